@@ -16,7 +16,7 @@ use std::sync::{Mutex, PoisonError};
 pub struct Level {
     /// Name, such as `dt=.1`.
     pub name: &'static str,
-    /// The resolution.
+    /// Time step, rigid-body substeps or grid of the level.
     pub resolution: Resolution,
 }
 
@@ -26,7 +26,7 @@ pub const fn fraction(name: &'static str, fraction: f64) -> Level {
     Level { name, resolution: Resolution::CriticalFraction(fraction) }
 }
 
-/// Returns a level of a method with a grid: cells per reference length, and material points per cell along each axis.
+/// Returns a level with a grid: cells per reference length, and material points per cell along each axis.
 #[must_use]
 pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
     Level { name, resolution: Resolution::grid(cells, points) }
@@ -34,7 +34,7 @@ pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
 
 /// A benchmark case. Its folder holds the scene, the claims and the derivation.
 pub struct Case {
-    /// Name of the case on the command line, and of its folder.
+    /// Name of the case on the command line and of its folder.
     pub name: &'static str,
     /// Title of the case in the report.
     pub title: &'static str,
@@ -66,12 +66,12 @@ pub struct Home {
     pub folder: &'static str,
     /// Reads grains for a scene from a data file.
     pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
-    /// Cache of scenes with many grains, shared by all callers. None if the scene files can change during the process.
+    /// Cache of scenes with many grains, shared by all runners. None if the scene files can change while the program runs.
     pub made: Option<&'static SceneCache>,
 }
 
-/// Cache of scenes with many grains, by case and variant. Several cases read the same scene, and parsing a scene takes
-/// time.
+/// Cache of scenes by case and variant. It stores only scenes with at least 1000 grains, because parsing them takes
+/// time and several runners of a case need the same scene.
 pub type SceneCache = Mutex<Vec<(&'static str, String, Scene)>>;
 
 /// Smallest number of grains of a cached scene.
@@ -84,7 +84,7 @@ impl Case {
         Path::new(self.home.folder).join(self.name)
     }
 
-    /// Returns the scene file.
+    /// Returns the source of the scene: the text of `scene.toml`, its name for messages and its folder.
     #[must_use]
     pub fn source(&self) -> SceneSource {
         SceneSource::from_text(&format!("{}/scene.toml", self.name), &self.directory(), self.scene)
@@ -93,7 +93,7 @@ impl Case {
     /// Returns the scene of a variant.
     ///
     /// # Errors
-    /// When the scene file is wrong or there is no such variant.
+    /// When the scene file is invalid or the variant does not exist.
     pub fn variant(&self, variant: &str) -> Result<Scene, SceneError> {
         let made = || self.home.made.map(|made| made.lock().unwrap_or_else(PoisonError::into_inner));
         let is_it = |(case, name, _): &&(&str, String, Scene)| *case == self.name && name == variant;
@@ -112,12 +112,12 @@ impl Case {
     /// Returns the names of the variants, or [`PLAIN`] alone if the scene has none.
     ///
     /// # Errors
-    /// When the scene file is wrong.
+    /// When the scene file is invalid.
     pub fn variants(&self) -> Result<Vec<String>, SceneError> {
         let names = self.source().variants()?;
         Ok(if names.is_empty() { vec![PLAIN.to_owned()] } else { names })
     }
 }
 
-/// Name of a scene without variants.
+/// Variant name for a scene that defines no variants.
 pub const PLAIN: &str = "plain";

@@ -1,5 +1,4 @@
-//! Claims: a quantity of one or more records, its expected value and source, its tolerance and reason, and a negative
-//! control.
+//! Claims: a quantity of one or more records, its expected value and source, its tolerance and reason, and a negative control.
 //!
 //! A claim is built in this order, and the compiler requires each part:
 //!
@@ -35,14 +34,14 @@ use std::sync::Arc;
 /// Reads the measured value from the records of a claim's runs, in the order of the runs.
 pub type Measure = Arc<dyn Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync>;
 
-/// Kind of expectation.
+/// Kind of the expected result.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub enum Expectation {
     /// A value from the scene or from a cited work.
     Equals,
     /// Conservation of a quantity, or a law that holds for every solution.
     Holds,
-    /// Agreement with another run.
+    /// Agreement of two runs.
     Agrees,
     /// A bound or a band.
     Bound(Bound),
@@ -57,9 +56,9 @@ pub enum Expectation {
 pub struct Claim {
     /// Measured quantity, in words.
     pub quantity: String,
-    /// Unit of the value, the expectation and the scale; `1` for a pure number.
+    /// Unit of the measured value, the expected value and the scale; `1` for a pure number.
     pub unit: &'static str,
-    /// Solvers that the claim applies to.
+    /// Solvers to which the claim applies.
     pub scope: Scope,
     /// Runs that the claim reads. The first run gives the result its variant, solver and expected outcome.
     pub runs: Vec<Run>,
@@ -71,33 +70,33 @@ pub struct Claim {
     pub tolerance: Tolerance,
     /// Reads the measured value from the runs.
     pub measure: Measure,
-    /// Negative control, which the claim must refuse.
+    /// Negative control: wrong physics under which the claim must fail.
     pub control: Control,
     /// Measured and expected curves, if the claim compares curves.
     pub trace: Option<Trace>,
-    /// Figure that shows the claim, and the label of its curve.
+    /// Figure in which the claim is plotted, and the label of its curve.
     pub drawn: Option<(&'static ClaimFigure, String)>,
-    /// Tolerance for scenes of the same kind with other parameters; none if it is not known.
+    /// Form of the claim for the case's scene with other parameter values; none if the tolerance is then unknown.
     pub elsewhere: Option<ParameterVariation>,
 }
 
-/// Form of a claim for scenes of the same kind with other parameters. The tolerance is computed from the scene.
+/// Form of a claim for the case's scene with other parameter values. The tolerance is computed from the changed scene.
 #[derive(Clone)]
 pub struct ParameterVariation {
     /// Measured quantity, in words.
     pub quantity: &'static str,
-    /// Largest |error| that passes.
+    /// Function that returns the largest |error| that passes for a scene; not finite if it is unknown for the scene.
     pub allowed: Arc<dyn Fn(&Scene) -> f64 + Send + Sync>,
     /// Reason for the tolerance, with its formula.
     pub because: &'static str,
 }
 
-/// Begins a claim with a quantity in words and its unit.
+/// Begins a claim about a quantity, described in words, with its unit.
 pub fn claim(quantity: impl Into<String>, unit: &'static str) -> Quantity {
     Quantity { quantity: quantity.into(), unit, runs: Vec::new() }
 }
 
-/// A claim without an expectation.
+/// Quantity and runs of a claim that has no expectation yet.
 #[must_use = "a claim needs a negative control"]
 pub struct Quantity {
     quantity: String,
@@ -105,7 +104,7 @@ pub struct Quantity {
     runs: Vec<Run>,
 }
 
-/// A claim with an expectation and without a tolerance.
+/// A claim that has an expectation, but no tolerance yet.
 #[must_use = "a claim needs a negative control"]
 pub struct ClaimWithExpectation {
     pub(crate) quantity: Quantity,
@@ -115,7 +114,7 @@ pub struct ClaimWithExpectation {
     pub(crate) trace: Option<Trace>,
 }
 
-/// A claim without a negative control.
+/// A claim that has an expectation and a tolerance, but no negative control yet.
 #[must_use = "a claim needs a negative control"]
 pub struct ClaimWithTolerance {
     expecting: ClaimWithExpectation,
@@ -144,7 +143,8 @@ impl Quantity {
         ClaimWithExpectation { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
     }
 
-    /// Expects the value that the source gives for the scene, at one time or over time.
+    /// Expects the value that the source gives for the scene. The value may be a single number or the worst sample of a
+    /// time series.
     pub fn equals(
         self,
         source: Source,
@@ -153,7 +153,7 @@ impl Quantity {
         self.expects(Expectation::Equals, source, measure)
     }
 
-    /// Expects a number from a cited work. The error is in units of `scale`.
+    /// Expects a number from a cited work. The error is the difference divided by `scale`.
     pub fn equals_cited(
         self,
         cited: CitedNumber,
@@ -250,7 +250,7 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// Expects at most this order of convergence, or none.
+    /// Expects at most this order of convergence. An error that does not decrease also passes.
     pub fn converges_at_most(
         self,
         order: f64,
@@ -261,10 +261,9 @@ impl Quantity {
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
-    /// Expects that the solver rejects the scene as unsupported. If it does, the result is amber, with the solver's
-    /// reason.
+    /// Expects that the solver rejects the scene as unsupported. The result is then amber and states the solver's reason.
     ///
-    /// The control replaces the scene by one that the solver can run. The result must then be red.
+    /// The negative control replaces the scene by one that the solver can run. The result must then be red.
     #[must_use]
     pub fn refused(self, because: &'static str, control: Control) -> Claim {
         let refused = |run| Run { standing: ExpectedOutcome::Refused, ..run };
@@ -278,7 +277,8 @@ impl Quantity {
     }
 }
 
-/// Returns the scale of the error of a bound: the bound itself, the width of a band, or 1 for an order and for zero.
+/// Returns the scale of the error of a bound. The scale is the magnitude of a non-zero bound, the width of a band, and
+/// 1 otherwise.
 fn scale_of(bound: Bound) -> f64 {
     match bound {
         Bound::AtLeast(at) | Bound::AtMost(at) if at != 0.0 => at.abs(),
@@ -299,7 +299,7 @@ impl ClaimWithExpectation {
 }
 
 impl ClaimWithTolerance {
-    /// Sets the negative control, which must make the claim fail by value.
+    /// Sets the negative control. The claim must fail by value under its wrong physics.
     #[must_use]
     pub fn refuses(self, control: Control) -> Claim {
         let Self { expecting: ClaimWithExpectation { quantity, expectation, source, measure, trace }, tolerance } =
@@ -309,8 +309,8 @@ impl ClaimWithTolerance {
         Claim { quantity, unit, scope, runs, expectation, source, tolerance, measure, control, trace, drawn, elsewhere }
     }
 
-    /// Sets a negative control that must make the claim fail by error: the run ends with an error or cannot be
-    /// measured.
+    /// Sets a negative control under which the claim must fail by error: the run ends with an error or the quantity
+    /// cannot be measured.
     #[must_use]
     pub fn breaks(self, control: Control) -> Claim {
         self.refuses(Control { red: FailureMode::Breaking, ..control })
@@ -318,25 +318,26 @@ impl ClaimWithTolerance {
 }
 
 impl Claim {
-    /// Makes the claim solver-independent: it applies to any solver that can run the scene.
+    /// Extends the claim to every solver that can run the scene.
     #[must_use]
     pub fn fair_to_any(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
     }
 
-    /// Makes the claim apply to any solver with deformable bodies.
+    /// Extends the claim to every solver with deformable bodies.
     #[must_use]
     pub fn fair_to_any_continuum(self) -> Self {
         Self { scope: Scope::AnyContinuum, ..self }
     }
 
-    /// Makes the claim apply to any solver whose contacts have the springs of the scene.
+    /// Extends the claim to every solver whose contacts have the springs and dashpots of the scene.
     #[must_use]
     pub fn fair_to_any_springs(self) -> Self {
         Self { scope: Scope::AnySprings, ..self }
     }
 
-    /// Extends the claim to scenes of the same kind with other parameters. `allowed` computes their tolerance.
+    /// Extends the claim to the case's scene with other parameter values. `allowed` computes the tolerance from the changed
+    /// scene.
     #[must_use]
     pub fn at_other_numbers(
         self,
@@ -360,7 +361,7 @@ impl Claim {
         match (self.source, self.expectation) {
             (Source::Program, _) => Evidence::OtherCode,
             (Source::Regression(_), _) => Evidence::Regression,
-            // The order follows from the method. Agreement of a prototype with this order is no stronger evidence.
+            // The method determines the order. Agreement of a prototype with this order is no stronger evidence.
             (Source::Printed(..), Expectation::Converges(_)) => Evidence::Convergence,
             (Source::Printed(work, _), _) => match work.kind {
                 Kind::Literature => Evidence::Paper,
@@ -375,19 +376,19 @@ impl Claim {
         }
     }
 
-    /// Returns the expected outcome, which is the expected outcome of the first run.
+    /// Returns the expected outcome of the first run, which is the expected outcome of the claim.
     #[must_use]
     pub fn standing(&self) -> ExpectedOutcome {
         self.runs.first().map(|run| run.standing).unwrap_or_default()
     }
 
-    /// Returns the smallest tier in which the claim can be judged.
+    /// Returns the smallest tier in which all runs of the claim are available.
     #[must_use]
     pub fn set(&self) -> Set {
         self.runs.iter().map(Run::judged_in).max().unwrap_or_default()
     }
 
-    /// Returns the resolution in words: one level, or the first and the last of several.
+    /// Returns the resolution in words: the only level, or the first and the last level.
     #[must_use]
     pub fn resolution(&self) -> String {
         let words: Vec<String> = self.runs.iter().map(|run| run.resolution.to_string()).collect();

@@ -1,4 +1,4 @@
-//! Negative controls: wrong physics that must make a claim fail, and the way in which the claim must fail.
+//! Negative controls: wrong physics under which a claim must fail, by value or by error.
 
 use crate::reading::Table;
 use crate::run::{Change, Set};
@@ -13,17 +13,17 @@ use std::sync::Arc;
 pub enum WrongPhysics {
     /// The solver gets a wrong scene.
     Scene(Change),
-    /// In a comparison with another program, only our solver gets a wrong scene.
+    /// In a comparison with another program, only our solver gets a wrong scene. The program runs the right scene.
     Ours(Change),
     /// The solver has a defect.
     Solver(Defect),
-    /// Another solver replaces the solver of the run.
+    /// Another solver performs the run.
     OtherSolver(&'static str),
-    /// Another solver replaces the solver of the run, at its own resolution.
+    /// Another solver performs the run, at another resolution.
     OtherRun(&'static str, Resolution),
-    /// Another variant replaces the scene. Other claims read the run of this variant.
+    /// Another variant of the scene is run.
     OtherVariant(&'static str),
-    /// The tables read from snapshots are changed.
+    /// The tables read from the snapshots are changed.
     Misread(fn(&mut [Table])),
 }
 
@@ -38,7 +38,7 @@ pub enum FailureMode {
 }
 
 impl FailureMode {
-    /// Returns the way as one word.
+    /// Returns the name of the failure mode in result files.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -53,13 +53,13 @@ impl FailureMode {
 pub struct Control {
     /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
-    /// Change of the scene, of the run or of its reading.
+    /// Change of the scene, the solver or the tables.
     pub wrong: WrongPhysics,
     /// Way in which the claim must fail.
     pub red: FailureMode,
     /// Smallest tier in which a stored run is repeated under this control.
     pub set: Set,
-    /// Resolution of the run with wrong physics, if not that of the claim.
+    /// Resolution of the run with wrong physics; none for the resolution of the claim.
     pub resolution: Option<Resolution>,
 }
 
@@ -68,20 +68,20 @@ impl Control {
         Self { name, wrong, red: FailureMode::Value, set: Set::Main, resolution: None }
     }
 
-    /// Makes the control repeat stored runs only in the long tier.
+    /// Repeats stored runs under this control only in the long tier.
     #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
-    /// Runs the wrong physics at a coarser resolution, which costs less. The tolerance of the claim still applies. The
-    /// right physics must pass at this resolution, or have less than half the error of the wrong one.
+    /// Runs the wrong physics at a coarser resolution, which costs less. The tolerance of the claim still applies. At
+    /// this resolution the right physics must pass, or have less than half the error of the wrong physics.
     #[must_use]
     pub fn coarser(self, resolution: Resolution) -> Self {
         Self { resolution: Some(resolution), ..self }
     }
 
-    /// Returns a control that changes the tables read from snapshots, such as swapped stresses or rotated angles.
+    /// Returns a control that changes the tables read from the snapshots, such as swapped stresses or rotated angles.
     #[must_use]
     pub const fn misread(name: &'static str, change: fn(&mut [Table])) -> Self {
         Self::new(name, WrongPhysics::Misread(change))
@@ -99,7 +99,7 @@ impl Control {
         Self::scene(effect.absence(), move |scene| effect.switch_off(scene))
     }
 
-    /// Returns a control with a wrong scene for our own side of a comparison with another program.
+    /// Returns a control for a comparison with another program: only our solver gets a wrong scene.
     #[must_use]
     pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, WrongPhysics::Ours(Arc::new(change)))
@@ -111,26 +111,25 @@ impl Control {
         Self::new("contacts forget their history", WrongPhysics::Solver(Defect::ForgetsHistory))
     }
 
-    /// Returns a control with another solver.
+    /// Returns a control in which the solver with the name `solver` does the runs.
     #[must_use]
     pub const fn solver(name: &'static str, solver: &'static str) -> Self {
         Self::new(name, WrongPhysics::OtherSolver(solver))
     }
 
-    /// Returns the control of a known error: a solver without this error, at its own resolution. The claim must then
-    /// pass.
+    /// Returns the control of a known error: a solver without this error, with which the claim must pass.
     #[must_use]
     pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::run(name, solver, resolution)
     }
 
-    /// Returns a control with another variant of the scene.
+    /// Returns a control that runs another variant of the scene.
     #[must_use]
     pub const fn variant(name: &'static str, variant: &'static str) -> Self {
         Self::new(name, WrongPhysics::OtherVariant(variant))
     }
 
-    /// Returns a control with another solver at its own resolution.
+    /// Returns a control in which the solver with the name `solver` does the runs at another resolution.
     #[must_use]
     pub const fn run(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::new(name, WrongPhysics::OtherRun(solver, resolution))

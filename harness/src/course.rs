@@ -1,6 +1,6 @@
-//! Claims about curves. A time series must follow an exact solution, or an error must decrease with the resolution.
+//! Claims about curves: a time series must follow an exact solution, or an error must decrease with the resolution.
 //!
-//! The figure of such a claim plots the data that the claim compares.
+//! The figure of a claim plots the data that the claim compares.
 
 use crate::case::Case;
 use crate::claim::{Claim, ClaimWithExpectation, Expectation, Quantity};
@@ -24,16 +24,16 @@ const DRAWN: usize = 300;
 pub struct ClaimCurves {
     /// Points (x, y) from the runs.
     pub measured: Points,
-    /// Points (x, y) of the expected curve or of the guide line.
+    /// Points (x, y) of the expected curve, or of a guide line with the expected slope.
     pub expected: Points,
-    /// Power of the expected points, if they are a guide line for resolution levels.
+    /// Power of the guide line; none if there is no guide line.
     pub slope: Option<f64>,
 }
 
-/// Reads both curves from the runs of a claim.
+/// Reads the measured and the expected curve from the runs of a claim.
 pub type Trace = Arc<dyn Fn(&[FinishedRun]) -> Result<ClaimCurves, MissingData> + Send + Sync>;
 
-/// Figure in which a claim is plotted. Claims with the same figure share its graph.
+/// Figure in which a claim is plotted. Claims with the same figure share one graph.
 #[derive(Debug)]
 pub struct ClaimFigure {
     /// Name of the figure.
@@ -48,18 +48,18 @@ pub struct ClaimFigure {
     pub logarithmic: bool,
 }
 
-/// Returns time (s) and value of every sample of a column.
+/// Returns the time (s) and the value of every sample of a column.
 ///
 /// # Errors
-/// When the record lacks the column.
+/// When the record lacks the column, or the column is empty.
 pub fn samples(done: &FinishedRun, column: &str) -> Result<Points, MissingData> {
     Ok(done.series().time.iter().copied().zip(done.column(column)?.iter().copied()).collect())
 }
 
-/// Returns time (s) and value minus the first value of every sample of a column.
+/// Returns the time (s) of every sample of a column, and its value minus the first value of the column.
 ///
 /// # Errors
-/// When the record lacks the column.
+/// When the record lacks the column, or the column is empty.
 pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingData> {
     let mut points = samples(done, column)?;
     let start = points[0].1;
@@ -70,14 +70,14 @@ pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingDat
 /// Reads a value from a run.
 type RunReader<T> = Arc<dyn Fn(&FinishedRun) -> Result<T, MissingData> + Send + Sync>;
 
-/// A claim about a time series, without an expectation.
+/// A claim about a time series that has no expectation yet.
 #[must_use = "a claim needs a negative control"]
 pub struct Series {
     quantity: Quantity,
     read: RunReader<Points>,
 }
 
-/// A claim about an error over resolution levels, without an expectation.
+/// A claim about the dependence of a quantity, such as an error, on a varied parameter. It has no expectation yet.
 #[must_use = "a claim needs a negative control"]
 pub struct Sweep {
     quantity: Quantity,
@@ -85,12 +85,13 @@ pub struct Sweep {
 }
 
 impl Quantity {
-    /// Reads a value at every sample of the first run.
+    /// Reads a time series from the first run: the time (s) and the value of every sample.
     pub fn series(self, read: impl Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync + 'static) -> Series {
         Series { quantity: self, read: Arc::new(read) }
     }
 
-    /// Reads from every run the swept parameter, such as a time step or a cell size, and the error.
+    /// Reads two numbers from every run: the varied parameter, such as a time step or a cell size, and the quantity that
+    /// depends on it, such as the error.
     pub fn sweep(
         self,
         read: impl Fn(&FinishedRun) -> Result<(f64, f64), MissingData> + Send + Sync + 'static,
@@ -100,7 +101,8 @@ impl Quantity {
 }
 
 impl Series {
-    /// Expects at every sample the value that the source gives for the scene. Errors are in units of `scale`.
+    /// Expects the exact value at every sample. `exact` returns this value from the scene and the time (s). The error
+    /// is divided by `scale`.
     pub fn follows(
         self,
         source: Source,
@@ -143,7 +145,8 @@ impl Sweep {
         self.quantity.expects(Expectation::Converges(bound), source, measure).traced(trace)
     }
 
-    /// Expects a power law from the source that is no order of convergence. Errors are in units of `scale`.
+    /// Expects that the quantity is proportional to the varied parameter raised to `power`. The error of the fitted power is
+    /// divided by `scale`.
     pub fn scales(self, power: f64, scale: f64, source: Source) -> ClaimWithExpectation {
         let expecting = self.falls(Bound::Order(power), source, Some(power));
         let fitted = Arc::clone(&expecting.measure);
@@ -161,13 +164,13 @@ impl Sweep {
         self.falls(Bound::AtLeast(order), source, Some(order))
     }
 
-    /// Expects at most this order of convergence, or none.
+    /// Expects at most this order of convergence. An error that does not decrease also passes.
     pub fn converges_at_most(self, order: f64, source: Source) -> ClaimWithExpectation {
         self.falls(Bound::AtMost(order), source, None)
     }
 }
 
-/// Returns the figures of some claims, one graph per figure, in the order in which the claims name them.
+/// Returns the figures of the claims, one graph per figure, in the order of the claims.
 ///
 /// # Errors
 /// When a run fails. Claims whose records lack the quantity are left out.
@@ -204,7 +207,7 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
     Ok(graphs.into_iter().map(figure).collect())
 }
 
-/// Returns the legend of an expected curve: "exact" if it is derived.
+/// Returns the legend of an expected curve: "exact" for a derived curve, "expected" otherwise.
 const fn expected_word(source: Source) -> &'static str {
     match source {
         Source::Derived(_) => "exact",
@@ -212,7 +215,7 @@ const fn expected_word(source: Source) -> &'static str {
     }
 }
 
-/// Returns true if two plotted curves coincide: they differ by less than the width of a line.
+/// Returns true if two plotted curves differ by less than the width of a line.
 fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     const LINE: f64 = 2e-3;
     let ends = |coordinate: &dyn Fn(&(f64, f64)) -> f64| {
@@ -220,7 +223,7 @@ fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
         all.fold((f64::INFINITY, f64::NEG_INFINITY), |(low, high), at| (low.min(at), high.max(at)))
     };
     let (low, high) = ends(&|point| point.1);
-    // In the middle between two points, a curve with a kink can differ from a straight line by half a second difference.
+    // Between two points, a curve with a kink differs from a straight line by at most half a second difference.
     let bend = |at: usize| match (at.checked_sub(1).and_then(|before| a.get(before)), a.get(at), a.get(at + 1)) {
         (Some(before), Some(here), Some(after)) => 0.5 * (before.1 - 2.0 * here.1 + after.1).abs(),
         _ => 0.0,
@@ -235,13 +238,13 @@ fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     })
 }
 
-/// Returns at most [`DRAWN`] evenly spaced points.
+/// Returns at most [`DRAWN`] points, evenly spaced in the list.
 fn thinned(points: Points) -> Points {
     let every = points.len().div_ceil(DRAWN).max(1);
     points.into_iter().step_by(every).collect()
 }
 
-/// Returns an empty list. Cases use it if all their figures come from claims.
+/// Returns no figures. Cases whose figures all come from claims use this function.
 ///
 /// # Errors
 /// Never.
@@ -249,7 +252,7 @@ pub const fn no_more(_: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(Vec::new())
 }
 
-/// Returns all figures of a case: the figures of some of its claims, and its own figures.
+/// Returns all figures of a case: the figures of the given claims and the case's own figures.
 ///
 /// # Errors
 /// When a run fails.

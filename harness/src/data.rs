@@ -1,4 +1,4 @@
-//! Third-party data from which a scene is made. The user supplies this data; it is not part of the project.
+//! Scenes made from third-party data. The user supplies the data; they are not part of the project.
 
 use grainbench_scene::scene::Scene;
 use std::path::Path;
@@ -8,23 +8,23 @@ use std::path::Path;
 pub struct Data {
     /// Name of the scene, which identifies its runs.
     pub name: &'static str,
-    /// Required files, their origin, and the way to supply them, in words.
+    /// Required files, their origin and the way to supply them, in words.
     pub needs: &'static str,
     /// Makes the scene from the files in a directory.
     pub scene: fn(&Path) -> Result<Scene, SceneDataError>,
 }
 
-/// Reason why a scene cannot be made: the expected files and the files found.
+/// Reason why a scene cannot be made from data.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub enum SceneDataError {
-    /// The directory lacks the files.
+    /// The directory lacks the files. The text names the expected files.
     Absent(String),
-    /// The files in the directory cannot be used.
+    /// The files in the directory cannot be used. The text states the reason.
     Wrong(String),
 }
 
 impl SceneDataError {
-    /// Returns the reason in words.
+    /// Returns the text of the error.
     #[must_use]
     pub fn into_words(self) -> String {
         match self {

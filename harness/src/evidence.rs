@@ -6,11 +6,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Evidence {
-    /// An exact solution of the same equations.
+    /// An exact solution of the equations of the model.
     Analytic,
     /// A measurement on real grains.
     Experiment,
-    /// Another program ran the same scene, and its run is stored or was done now.
+    /// A run of the same scene with another program, stored or done now.
     OtherCode,
     /// A figure or statement printed in a paper.
     Paper,
@@ -20,7 +20,7 @@ pub enum Evidence {
     Convergence,
     /// A law that holds for every solution: conservation, symmetry, determinism.
     Invariant,
-    /// Value of an earlier version, stored to detect changes. It does not show that the value is right.
+    /// Value of an earlier version, stored to detect changes. It does not show that the value is correct.
     Regression,
 }
 

@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
-/// Expectation of a result. It is never our own result for the same quantity.
+/// Expectation of a result. It is never our own result for the same quantity, except for a regression value.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(untagged)]
 pub enum ExpectedValue {
@@ -28,8 +28,8 @@ pub enum Bound {
 }
 
 impl ExpectedValue {
-    /// Returns the signed distance from the expectation. For a bound or a band it is the distance beyond it, and 0 if
-    /// it holds. NaN gives NaN.
+    /// Returns the signed distance of a value from the expectation. For a bound or a band, it is the distance beyond
+    /// the nearest limit, and 0 for a value within the limits. NaN gives NaN.
     #[must_use]
     pub fn off(self, value: f64) -> f64 {
         let beyond = |low: f64, high: f64| {
@@ -38,7 +38,7 @@ impl ExpectedValue {
             } else if value > high {
                 value - high
             } else {
-                // 0 for a finite value within the bound; NaN for a value that is not finite.
+                // 0 for a finite value within the limits; NaN for a value that is not finite.
                 value * 0.0
             }
         };
@@ -50,7 +50,7 @@ impl ExpectedValue {
         }
     }
 
-    /// Returns the value, the order, or the bound nearest to `value`.
+    /// Returns the expected value, the order, or the limit nearest to `value`.
     #[must_use]
     pub fn nearest(self, value: f64) -> f64 {
         match self {
@@ -65,7 +65,7 @@ impl ExpectedValue {
         }
     }
 
-    /// Returns the value if a single value is expected.
+    /// Returns the expected value; none for a bound, a band or an order.
     #[must_use]
     pub const fn value(self) -> Option<f64> {
         match self {
@@ -74,7 +74,7 @@ impl ExpectedValue {
         }
     }
 
-    /// Returns true if all its numbers are finite.
+    /// Returns true if all expected numbers are finite.
     #[must_use]
     pub fn is_finite(self) -> bool {
         match self {
@@ -117,7 +117,8 @@ pub struct Measurement {
     pub expected: ExpectedValue,
     /// Scale by which the error is divided.
     pub scale: f64,
-    /// Time (s) and signed error of every sample, for a comparison over time. A failure can then report when it began.
+    /// Time (s) and signed error of every sample in a comparison over time; empty for a single value. A failed result reports
+    /// the time of the first sample outside the tolerance.
     pub course: Vec<(f64, f64)>,
 }
 
@@ -128,14 +129,14 @@ impl Measurement {
         Self { value, expected: expected.into(), scale, course: Vec::new() }
     }
 
-    /// Returns the worst sample of a time series, compared with an exact solution.
+    /// Returns the worst sample of a time series compared with an exact solution.
     #[must_use]
     pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {
         let expected: Vec<f64> = time.iter().map(|&t| exact(t)).collect();
         Self::worst_of(time, values, &expected, scale)
     }
 
-    /// Returns the worst sample of a time series, compared with another series. NaN is worse than any number.
+    /// Returns the worst sample of a time series compared with another series. A NaN is worse than any number.
     #[must_use]
     pub fn worst_of(time: &[f64], values: &[f64], expected: &[f64], scale: f64) -> Self {
         let errors = values.iter().zip(expected).map(|(value, expected)| (value - expected) / scale);
@@ -145,7 +146,7 @@ impl Measurement {
         Self { value: pick(values), expected: ExpectedValue::Value(pick(expected)), scale, course }
     }
 
-    /// Returns the largest change since the first sample, for a series that should be constant.
+    /// Returns the largest change since the first sample, for a series that must be constant.
     #[must_use]
     pub fn drift(time: &[f64], values: &[f64], scale: f64) -> Self {
         let first = values.first().copied().unwrap_or(f64::NAN);
@@ -153,13 +154,13 @@ impl Measurement {
         Self::worst(time, &changes, |_| 0.0, scale)
     }
 
-    /// Returns the measurement with the largest error; none if there are none.
+    /// Returns the measurement with the largest |error|; none for an empty list.
     #[must_use]
     pub fn worst_among(all: impl IntoIterator<Item = Self>) -> Option<Self> {
         all.into_iter().reduce(|worst, found| if weight(found.error()) > weight(worst.error()) { found } else { worst })
     }
 
-    /// Returns the time of the first sample outside the allowed error in words. NaN is reported as such.
+    /// Returns a text with the time of the first sample that is NaN or outside the allowed error; none without such a sample.
     #[must_use]
     pub fn first_outside(&self, allowed: f64) -> Option<String> {
         let first = self.course.iter().find(|(_, error)| error.is_nan() || error.abs() > allowed);
@@ -169,8 +170,7 @@ impl Measurement {
         })
     }
 
-    /// Returns the signed error, (value − expected)/scale. For a bound it is the distance beyond it, divided by the
-    /// scale.
+    /// Returns the signed error, (value − expected)/scale. For a bound, it is the distance beyond the bound divided by the scale.
     #[must_use]
     pub fn error(&self) -> f64 {
         self.expected.off(self.value) / self.scale

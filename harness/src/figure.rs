@@ -1,4 +1,4 @@
-//! Figures of cases as data. Reports draw them without knowing any solver.
+//! Figures of cases as data. Reports plot them without using any solver.
 
 use crate::raster::Raster;
 use serde::{Deserialize, Serialize};
@@ -8,7 +8,7 @@ use serde::{Deserialize, Serialize};
 pub struct Axis {
     /// Quantity and unit, such as `time t (s)`.
     pub label: String,
-    /// True for a logarithmic axis. The drawing leaves out points that are not positive, and counts them.
+    /// True for a logarithmic axis. The plot leaves out points that are not positive, and states their number.
     pub logarithmic: bool,
 }
 
@@ -26,7 +26,7 @@ impl Axis {
     }
 }
 
-/// Line style of a curve. The colour follows from the solver that the label names, or from the order of the curves.
+/// Line style of a curve. The colour follows from the solver named in the label, or from the order of the curves.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub enum Stroke {
     /// A solid line.
@@ -37,7 +37,7 @@ pub enum Stroke {
     Markers,
     /// Markers joined by a line, for resolution levels.
     MarkedLine,
-    /// Small hollow markers in the style of the previous curve, for points that are not on its line.
+    /// Small hollow markers in the style of the previous curve, for points off its line.
     Beside,
     /// Crosses in the style of the previous curve, for failed runs.
     Failed,
@@ -80,18 +80,19 @@ pub struct Graph {
 pub struct ForceBar {
     /// First end of the bar (m).
     pub from: [f64; 2],
-    /// Other end (m).
+    /// Second end of the bar (m).
     pub to: [f64; 2],
-    /// Magnitude of the contact force (N); the width is proportional to it.
+    /// Magnitude of the contact force (N). The width of the bar is proportional to it.
     pub force: f64,
     /// True if the contact slips.
     pub slipping: bool,
 }
 
-/// Force plot of Cundall and Strack: rectangles along contacts, with widths proportional to the forces.
+/// Force plot of Cundall and Strack. A bar at each contact has the direction of the contact force, and a width
+/// proportional to its magnitude.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForcePlot {
-    /// Centre (m) and radius (m) of every disc, and its angle of rotation (rad).
+    /// Centre (m), radius (m) and angle of rotation (rad; NaN if unknown) of every disc.
     pub discs: Vec<([f64; 2], f64, f64)>,
     /// Pairs of end points of the walls (m), clipped to the drawing.
     pub walls: Vec<([f64; 2], [f64; 2])>,
@@ -99,7 +100,7 @@ pub struct ForcePlot {
     pub bars: Vec<ForceBar>,
 }
 
-/// Lines of one kind.
+/// Group of lines with one entry in the legend.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Lines {
     /// Label in the legend.
@@ -108,16 +109,16 @@ pub struct Lines {
     pub lines: Vec<([f64; 2], [f64; 2], f64)>,
 }
 
-/// A rectangle of the plane with lines.
+/// Lines in a rectangle of a plane.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Sheet {
     /// Title above the rectangle.
     pub title: String,
-    /// Lower and upper corner of the visible rectangle.
+    /// Lower left and upper right corner of the visible rectangle.
     pub seen: [[f64; 2]; 2],
-    /// Lower and upper corner of a marked rectangle.
+    /// Lower left and upper right corner of a rectangle drawn as a frame.
     pub marked: Option<[[f64; 2]; 2]>,
-    /// Lines in drawing order. A kind has the same index in all sheets, and may be empty.
+    /// Groups of lines in drawing order. A group has the same index in all sheets, and may be empty.
     pub kinds: Vec<Lines>,
 }
 
@@ -128,7 +129,7 @@ pub struct LinePlot {
     pub axes: [String; 2],
     /// True if both axes have the same scale, so that angles are preserved.
     pub to_scale: bool,
-    /// Graphs from left to right.
+    /// Rectangles from left to right.
     pub sheets: Vec<Sheet>,
 }
 
@@ -137,30 +138,30 @@ pub struct LinePlot {
 pub enum Shades {
     /// From dark to light on white, for amounts.
     Amount,
-    /// From black to light on black, for light intensity such as stress between crossed polarisers.
+    /// From black to light on a black background, for light intensity such as stress between crossed polarisers.
     Glow,
-    /// Two colours that meet in the middle of the range, for signed values.
+    /// Two colours that meet at the middle of the range, for signed values.
     Signed,
     /// Grey, for fringes.
     Fringes,
-    /// From dark to light, each colour in shades from dark to bright, for amounts on lit bodies. [`crate::raster::lit`]
-    /// gives the levels.
+    /// Several colours from dark to light, each in shades from dark to bright, for amounts on shaded bodies.
+    /// [`crate::raster::lit`] computes the levels.
     Lit,
 }
 
-/// A picture of a field, or the frames of its film.
+/// Picture of a field, or the frames of a film of it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Panel {
     /// Title above the panel.
     pub title: String,
-    /// Frames in the order of the field's times; all have the same size.
+    /// Frames at the times of the field. All have the same size.
     pub frames: Vec<Raster>,
-    /// Values of the lowest and the highest level and their unit, if they differ from those of the field.
+    /// Values of the lowest and the highest level, and their unit; none to use range and unit of the field.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     pub own: Option<((f64, f64), String)>,
 }
 
-/// A field over the plane in several panels. They share the colours, and the scale unless a panel has its own.
+/// Field over a plane, in one or more panels. All panels share the colour map, and the scale unless a panel has its own.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Field {
     /// Quantity, such as `σ₁ − σ₂`.
@@ -171,15 +172,15 @@ pub struct Field {
     pub range: (f64, f64),
     /// Colour map.
     pub shades: Shades,
-    /// Side of a pixel, in the unit of length; 0 if lengths have no unit.
+    /// Side of a pixel, in the unit of length; 0 if coordinates have no unit.
     pub pixel: f64,
     /// Unit of length: `m`, or the length scale of a scene without units, such as a diameter `d`.
     pub length: String,
     /// Panels, all of the same size.
     pub panels: Vec<Panel>,
-    /// Axis label of the frames of a film, such as `time t (s)`.
+    /// Label of the time axis of a film, such as `time t (s)`.
     pub clock: String,
-    /// Value of each frame on that axis; a picture has one.
+    /// Value of each frame on the time axis. A single picture has one value.
     pub times: Vec<f64>,
 }
 
@@ -203,9 +204,9 @@ pub struct Figure {
     pub name: String,
     /// Short title.
     pub title: String,
-    /// Description of the picture and its meaning, in one or two sentences.
+    /// Description of the figure and of the expected result, in one or two sentences.
     pub caption: String,
-    /// The drawing.
+    /// Curves, forces, field or lines.
     pub drawing: Drawing,
 }
 

@@ -4,10 +4,10 @@ use crate::figure::{ForceBar, ForcePlot};
 use grainbench_scene::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
-/// Returns a force plot of a snapshot. Contacts of grains that the snapshot lacks are left out.
+/// Returns a force plot of a snapshot. Contacts with grains that are not in the snapshot are left out.
 ///
 /// The bar of a contact passes through the contact point in the direction of the force. Its length is the sum of the
-/// radii.
+/// radii; at a wall, it is the radius of the grain.
 #[must_use]
 pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
     let flat = |point: Vector3<f64>| [point.x, point.y];
@@ -22,7 +22,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             };
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let magnitude = force.norm();
-            // A contact without force has only the orientation of its normal.
+            // Without force, the bar has the direction of the contact normal.
             let along = if magnitude > 0.0 { -force / magnitude } else { contact.normal };
             Some(ForceBar {
                 from: flat(contact.point - along * radius(contact.grain)?),
@@ -42,7 +42,7 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             if !wall.infinite {
                 return Some((flat(a), flat(b)));
             }
-            // An infinite wall is drawn as long as the box of the grains extends along it.
+            // An infinite wall is drawn over the length of the snapshot's bounds along the wall.
             let along = Vector3::new(-b.y, b.x, 0.0);
             let half = 0.5 * ((high - low).dot(&along.abs())).min(across);
             let middle = a + along * (0.5 * (low + high) - a).dot(&along);

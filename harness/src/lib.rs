@@ -1,9 +1,9 @@
 //! The harness: definition and evaluation of claims.
 //!
 //! A [`claim::Claim`] states the runs from which a quantity is read, the expectation with its source, and the tolerance
-//! with its reason. It also states the wrong physics that it must refuse. A [`runner::Runner`] does each run once, with
-//! solvers that the caller supplies, and returns a [`verdict::Verdict`]. The harness knows no solver: all records are
-//! evaluated in the same way.
+//! with its reason. It also states wrong physics under which it must fail. A [`runner::Runner`] does each run once,
+//! with solvers that the caller supplies, and returns a [`verdict::Verdict`]. The harness contains no solver, and
+//! evaluates all records in the same way.
 
 pub mod case;
 pub mod claim;

@@ -1,6 +1,6 @@
 //! Measurements that several cases share.
 
-/// Returns the slope of log|y| over log x by least squares, such as an order of accuracy or an exponent.
+/// Returns the slope of ln|y| over ln x by least squares: the order of convergence, or the exponent of a power law.
 #[must_use]
 pub fn slope(points: &[(f64, f64)]) -> f64 {
     let logs: Vec<(f64, f64)> = points.iter().map(|(x, y)| (x.ln(), y.abs().ln())).collect();
@@ -12,8 +12,8 @@ pub fn slope(points: &[(f64, f64)]) -> f64 {
     above / below
 }
 
-/// Returns the strongest angular frequency of a signal (rad/s), from the peak of its windowed spectrum between two
-/// bounds. Returns NaN if a value of the signal is NaN.
+/// Returns the angular frequency (rad/s) at the peak of the signal's windowed spectrum between `low` and `high`.
+/// Returns NaN if a value of the signal is NaN.
 #[must_use]
 pub fn dominant_frequency(time: &[f64], values: &[f64], low: f64, high: f64) -> f64 {
     const SAMPLES: usize = 4000;
@@ -37,16 +37,17 @@ pub fn dominant_frequency(time: &[f64], values: &[f64], low: f64, high: f64) -> 
     best.filter(|(power, _)| power.is_finite()).map_or(f64::NAN, |(_, omega)| omega)
 }
 
-/// Largest deviation of evenly spaced samples, as a fraction of the step.
+/// Largest deviation of a sample interval from the mean interval for even spacing, as a fraction of the mean interval.
 const EVEN: f64 = 1e-6;
 
-/// Number of frequencies evaluated in one pass over a signal. They fill the SIMD lanes of a processor.
+/// Number of frequencies evaluated in one pass over a signal, chosen for SIMD.
 const TOGETHER: usize = 16;
 
-/// Returns sums of an evenly sampled signal times cosine and sine of a phase that grows by one angle per sample.
+/// Returns Σ f cos φ and Σ f sin φ over the samples of an evenly sampled signal f, for several phases φ. Each phase starts
+/// at zero, and `angles` are the increments of the phases per sample (rad).
 ///
-/// Each phase is advanced by a rotation, which is cheaper than the two functions that [`at_times`] evaluates. The error
-/// after 10⁵ samples is about 1e-11.
+/// The phases advance by rotations, which cost less than the cosine and the sine of every sample in [`at_times`]. The
+/// error after 10⁵ samples is about 1e-11.
 fn turned(signal: &[f64], angles: [f64; TOGETHER]) -> [(f64, f64); TOGETHER] {
     let (turn_cosine, turn_sine) = (angles.map(f64::cos), angles.map(f64::sin));
     let (mut c, mut s) = ([1.0; TOGETHER], [0.0; TOGETHER]);
@@ -64,7 +65,7 @@ fn turned(signal: &[f64], angles: [f64; TOGETHER]) -> [(f64, f64); TOGETHER] {
     std::array::from_fn(|lane| (cosine[lane], sine[lane]))
 }
 
-/// Returns these sums for samples at arbitrary times.
+/// Returns Σ f cos ωt and Σ f sin ωt over the samples of a signal f at arbitrary times t, for several frequencies ω.
 fn at_times(signal: &[f64], time: &[f64], omegas: [f64; TOGETHER]) -> [(f64, f64); TOGETHER] {
     omegas.map(|omega| {
         signal.iter().zip(time).fold((0.0, 0.0), |(cosine, sine), (value, t)| {

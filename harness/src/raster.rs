@@ -1,4 +1,5 @@
-//! Raster pictures as levels, which reports colour. They are small enough to be stored with the results.
+//! Raster pictures as levels from 0 to 255; reports map levels to colours. The pictures are small enough to be stored
+//! with the results.
 
 use base64::Engine;
 use base64::engine::general_purpose::STANDARD;
@@ -11,46 +12,44 @@ use std::io::{Read, Write};
 
 /// Level of empty space.
 pub const VOID: u8 = 0;
-/// Level of the rim of a grain.
+/// Level of the outline of a grain.
 pub const RIM: u8 = 255;
-/// Lowest level of a value. Values have levels from here to [`HIGH`].
+/// Level of the lowest value. Values have levels from [`LOW`] to [`HIGH`].
 pub const LOW: u8 = 1;
 /// Level of the highest value.
 pub const HIGH: u8 = 254;
 /// Largest number of pixels of a picture.
 const MOST_PIXELS: u64 = 1 << 24;
 
-/// Levels of a picture, row by row from the top. In text they are the base64 code of a zlib stream.
+/// Levels of a picture, row by row from the top. They are serialised as the base64 code of a zlib stream.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Raster {
-    /// Pixels across.
+    /// Width (pixels).
     pub width: u32,
-    /// Pixels down.
+    /// Height (pixels).
     pub height: u32,
-    /// [`VOID`], [`RIM`], or a value from [`LOW`] to [`HIGH`].
+    /// Level of each pixel: [`VOID`], [`RIM`], or a value from [`LOW`] to [`HIGH`].
     pub levels: Vec<u8>,
 }
 
-/// Returns the level of a value within a range. Values outside have the level of the nearest end.
+/// Returns the level of a value. Values outside the range have the level of the nearest limit, and NaN has [`VOID`].
 #[must_use]
 pub fn level(value: f64, (low, high): (f64, f64)) -> u8 {
     let part = ((value - low) / (high - low)).clamp(0.0, 1.0);
-    // NaN is drawn as empty space.
     if part.is_nan() { VOID } else { LOW + (part * f64::from(HIGH - LOW)).round() as u8 }
 }
 
-/// Number of colours of lit values.
+/// Number of colours of [`lit`].
 pub const COLOURS: u8 = 8;
-/// Number of shades of each colour.
+/// Number of brightness levels of each colour of [`lit`].
 pub const LIGHTS: u8 = 31;
 
-/// Returns the level of a value from 0 to 1 under a light intensity from 0 to 1.
+/// Returns the level of a value from 0 to 1 at a light intensity from 0 to 1. NaN has [`VOID`].
 #[must_use]
 pub fn lit(value: f64, light: f64) -> u8 {
     let part = |fraction: f64, count: u8| {
         (fraction.clamp(0.0, 1.0) * f64::from(count)).floor().min(f64::from(count - 1)) as u8
     };
-    // NaN is drawn as empty space.
     if value.is_nan() || light.is_nan() { VOID } else { LOW + LIGHTS * part(value, COLOURS) + part(light, LIGHTS) }
 }
 
@@ -79,7 +78,7 @@ impl<'de> Deserialize<'de> for Raster {
         }
         let packed = STANDARD.decode(&levels).map_err(|error| D::Error::custom(format!("levels: {error}")))?;
         let mut levels = Vec::new();
-        // One more byte than expected reveals a stream that is too long.
+        // Reading one byte more than expected detects a stream that is too long.
         let read = ZlibDecoder::new(packed.as_slice()).take(pixels + 1).read_to_end(&mut levels);
         read.map_err(|error| D::Error::custom(format!("levels: {error}")))?;
         if levels.len() as u64 != pixels {

@@ -1,17 +1,17 @@
-//! Readers of the snapshots of a run while it runs, for runs with too many snapshots to store. A reader receives each
-//! snapshot once and returns tables.
+//! Processing of the snapshots of a run while it runs, for runs with too many snapshots to store. A reader receives
+//! each snapshot once, and returns tables at the end.
 
 use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, Solver, StorageError};
 use std::fmt;
 
-/// A named reader of the snapshots of a run.
+/// Named evaluation of the snapshots of a run.
 #[derive(Clone, Copy)]
 pub struct Reading {
-    /// Name, which distinguishes runs that are read differently.
+    /// Name. Runs with different evaluations are different runs.
     pub name: &'static str,
-    /// Creates a reader for the scene as the case defines it.
+    /// Creates a reader for the scene that the solver runs. Under a negative control, this is the wrong scene.
     pub begin: fn(&Scene) -> Box<dyn Reader>,
 }
 
@@ -21,11 +21,11 @@ impl fmt::Debug for Reading {
     }
 }
 
-/// Reads snapshots in order of time.
+/// Receives the snapshots of a run in order of time, and returns tables.
 pub trait Reader: Send {
-    /// Reads a snapshot.
+    /// Processes a snapshot.
     fn see(&mut self, snapshot: Snapshot);
-    /// Returns the tables.
+    /// Returns the tables after the last snapshot.
     fn end(self: Box<Self>) -> Vec<Table>;
 }
 
@@ -36,7 +36,7 @@ pub struct Table {
     pub name: String,
     /// Names of the columns.
     pub columns: Vec<String>,
-    /// Columns, each from top to bottom. A missing number is NaN.
+    /// Values of each column from top to bottom. A missing number is NaN.
     pub values: Vec<Vec<f64>>,
 }
 
@@ -61,7 +61,7 @@ impl Table {
         self.values.first().map_or(0, Vec::len)
     }
 
-    /// Returns the values of a column.
+    /// Returns the values of a column; none if there is no column with this name.
     #[must_use]
     pub fn column(&self, name: &str) -> Option<&[f64]> {
         let at = self.columns.iter().position(|column| column == name)?;
@@ -69,7 +69,7 @@ impl Table {
     }
 }
 
-/// Runs a scene with `threads` threads and reads its snapshots. Without a reading, the snapshots stay in the record.
+/// Runs a scene with `threads` threads and processes the snapshots. Without an evaluation, the snapshots stay in the record.
 ///
 /// # Errors
 /// When the solver does not support the scene or fails.
@@ -83,7 +83,7 @@ pub fn run(
     let mut watcher = Watcher { threads, reader: reading.map(|reading| (reading.begin)(scene)) };
     let mut record = solver.run(scene, resolution, &mut watcher)?;
     let Some(mut reader) = watcher.reader else { return Ok((record, Vec::new())) };
-    // An external program returns all snapshots at once, at the end.
+    // An external program returns all snapshots at the end of the run.
     record.snapshots.drain(..).for_each(|snapshot| reader.see(snapshot));
     Ok((record, reader.end()))
 }

@@ -22,20 +22,20 @@ pub struct Run {
     pub solver: &'static str,
     /// Time step, substeps or cells of the run.
     pub resolution: Resolution,
-    /// A change of the scene that belongs to the claim, such as another stiffness in a sweep. Its name distinguishes
-    /// runs.
+    /// Change of the scene that belongs to the claim, such as another stiffness in a parameter study. The name of the
+    /// change distinguishes runs.
     pub adjustment: Option<(String, Change)>,
-    /// Expected outcome of the result.
+    /// Expected outcome of a claim about this run.
     pub standing: ExpectedOutcome,
-    /// Largest |error| of a known error, in units of the claim's scale; a larger one is red.
+    /// Largest |error| of a known error, divided by the claim's scale. A larger error is red.
     pub known_up_to: f64,
-    /// Smallest tier to which the run belongs.
+    /// Tier of the run.
     pub set: Set,
     /// Reference run: negative controls are not applied to it.
     pub aside: bool,
-    /// Reading of its snapshots, if they are read and not stored.
+    /// Evaluation of the snapshots during the run; none if the snapshots stay in the record.
     pub reading: Option<Reading>,
-    /// True if its tables are stored with the case. Smaller tiers then use the stored result.
+    /// True if the tables of the run are stored with the case. Smaller tiers then use the stored result.
     pub kept: bool,
 }
 
@@ -44,21 +44,21 @@ pub struct Run {
 pub struct ResultOrigin {
     /// Date, program and commit, in words.
     pub words: String,
-    /// True if the sources of the solver are those of this program.
+    /// True if the solver's sources at the time of the result are those of this program.
     pub is_current: bool,
 }
 
-/// Tier of runs. Each tier includes all smaller ones.
+/// Tier of runs. Each tier includes all smaller tiers.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Set {
     /// Quick tier: runs of at most a few seconds each.
     #[default]
     Main,
-    /// Standard tier: runs of more than a few seconds, in the tests and with `--levels all`.
+    /// Standard tier: runs of more than a few seconds. The tests and `run --levels all` include them.
     Tests,
     /// Long tier: runs that take minutes.
     Long,
-    /// Full-scale tier: runs that take an hour, with scenes as large as in a publication.
+    /// Full-scale tier: runs that take about an hour, with scenes as large as in a publication.
     Paper,
 }
 
@@ -68,7 +68,7 @@ pub enum ExpectedOutcome {
     /// The result passes.
     #[default]
     Passes,
-    /// The solver rejects the scene because it cannot represent it.
+    /// The solver rejects the scene, because it cannot represent it.
     Refused,
     /// A documented error of the method or program, with the reason. The result is amber as long as the error exceeds
     /// the tolerance.
@@ -94,35 +94,35 @@ impl Run {
         }
     }
 
-    /// Uses a scene made from third-party data. The run needs data that the user supplies.
+    /// Replaces the scene by one made from third-party data, which the user must supply.
     #[must_use]
     pub fn from_data(self, data: &'static Data) -> Self {
         Self { data: Some(data), ..self }
     }
 
-    /// Adds a change of the scene.
+    /// Adds a named change of the scene.
     #[must_use]
     pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         self.adjustment = Some((name.to_owned(), Arc::new(change)));
         self
     }
 
-    /// Expects a documented error of the method.
+    /// Expects a documented error of the method, with its reason.
     #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
         Self { standing: ExpectedOutcome::Known(reason), ..self }
     }
 
-    /// Sets the bound of a known error, in units of the claim's scale. A larger |error| is red.
+    /// Sets the largest |error| of a known error, divided by the claim's scale. A larger error is red.
     ///
-    /// The bound is the documented error rounded up to 1, 2 or 5 in its leading digit. It follows from earlier results,
-    /// so it detects changes and does not show that the value is right.
+    /// The limit is the documented error rounded up to 1, 2 or 5 in its leading digit. It follows from earlier results,
+    /// so it detects changes but does not show that the value is correct.
     #[must_use]
     pub fn up_to(self, error: f64) -> Self {
         Self { known_up_to: error, ..self }
     }
 
-    /// Assigns the run to the standard tier, which only the tests run.
+    /// Assigns the run to the standard tier, which the tests and `run --levels all` include.
     #[must_use]
     pub fn slow(self) -> Self {
         Self { set: Set::Tests, ..self }
@@ -140,19 +140,19 @@ impl Run {
         Self { set: Set::Paper, ..self }
     }
 
-    /// Reads its snapshots with a reading; they are then not stored.
+    /// Evaluates the snapshots during the run. The snapshots are then not stored.
     #[must_use]
     pub fn read_by(self, reading: Reading) -> Self {
         Self { reading: Some(reading), ..self }
     }
 
-    /// Stores its tables with the case. Smaller tiers then judge the stored result, and its own tier repeats the run.
+    /// Stores the tables with the case. Smaller tiers then judge the stored result, and the tier of the run repeats it.
     #[must_use]
     pub fn kept(self) -> Self {
         Self { kept: true, ..self }
     }
 
-    /// Returns the smallest tier in which a claim about this run can be judged.
+    /// Returns the smallest tier in which a claim about this run can be judged. For a stored run, this is the quick tier.
     #[must_use]
     pub fn judged_in(&self) -> Set {
         if self.kept { Set::Main } else { self.set }
@@ -170,7 +170,7 @@ impl Run {
         Self { resolution, ..self.clone() }
     }
 
-    /// Returns the variant or the data, and the adjustment, in words.
+    /// Returns the name of the variant or of the data, followed by the name of the scene change.
     #[must_use]
     pub fn scene_words(&self) -> String {
         let scene = self.data.map_or(self.variant, |data| data.name);
@@ -180,7 +180,7 @@ impl Run {
         }
     }
 
-    /// Returns a key that distinguishes this run from all runs of its case.
+    /// Returns a key that distinguishes this run from all other runs of the case.
     #[must_use]
     pub fn key(&self) -> String {
         let adjustment = self.adjustment.as_ref().map(|(name, _)| name.as_str()).unwrap_or_default();
@@ -192,17 +192,17 @@ impl Run {
 /// A finished run: its scene and its output.
 #[derive(Clone, Debug)]
 pub struct FinishedRun {
-    /// Scene as the case defines it. Under a negative control, the solver got a wrong scene.
+    /// Scene as the case defines it. Under a negative control, the solver ran another scene.
     pub scene: Arc<Scene>,
-    /// The record.
+    /// Output of the solver.
     pub record: Arc<Record>,
-    /// Tables read from its snapshots.
+    /// Tables read from the snapshots.
     pub tables: Arc<Vec<Table>>,
     /// Provenance of a stored result; none if the run was done now.
     pub kept: Option<ResultOrigin>,
 }
 
-/// A quantity that the records lack.
+/// Name of a quantity that the records lack.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingData(pub String);
 
@@ -219,10 +219,10 @@ impl FinishedRun {
         Self { scene, record, tables: Arc::default(), kept: None }
     }
 
-    /// Returns a table that was read from its snapshots.
+    /// Returns a table that was read from the snapshots.
     ///
     /// # Errors
-    /// When there is no table with this name.
+    /// When no table has this name.
     pub fn table(&self, name: &str) -> Result<&Table, MissingData> {
         self.tables.iter().find(|table| table.name == name).ok_or_else(|| MissingData(format!("table `{name}`")))
     }
@@ -236,7 +236,7 @@ impl FinishedRun {
     /// Returns a column of the time series.
     ///
     /// # Errors
-    /// When there is no such column or it is empty.
+    /// When no column has this name, or the column is empty.
     pub fn column(&self, name: &str) -> Result<&[f64], MissingData> {
         match self.series().column(name) {
             Some(values) if !values.is_empty() => Ok(values),
@@ -247,7 +247,7 @@ impl FinishedRun {
     /// Returns the last value of a column.
     ///
     /// # Errors
-    /// When there is no such column or it is empty.
+    /// When no column has this name, or the column is empty.
     pub fn last(&self, name: &str) -> Result<f64, MissingData> {
         Ok(self.column(name)?[self.column(name)?.len() - 1])
     }
@@ -255,7 +255,7 @@ impl FinishedRun {
     /// Returns the value of a column at a step.
     ///
     /// # Errors
-    /// When the column is missing or was not sampled at that step.
+    /// When no column has this name, or the step was not sampled.
     pub fn at_step(&self, name: &str, step: u64) -> Result<f64, MissingData> {
         let values = self.column(name)?;
         let at = self.series().step.iter().position(|&sampled| sampled == step);

@@ -1,4 +1,4 @@
-//! Runner. It performs each run of a case once and judges the claims of the case.
+//! Runner of a case. It does each run of the case once and judges the claims.
 
 use crate::case::Case;
 use crate::claim::Claim;
@@ -20,49 +20,49 @@ use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// Output of a run: the record, the tables read from its snapshots, and the provenance of a stored result.
+/// Record of a run, tables read from the snapshots, and provenance if the result was stored.
 type RunOutput = (Arc<Record>, Arc<Vec<Table>>, Option<ResultOrigin>);
-/// Output of a run; empty until the run is done.
+/// Output of a run; empty until the run has ended.
 type Slot = Arc<OnceLock<Result<RunOutput, RunError>>>;
 /// A scene; empty until it is first requested.
 type SceneSlot = Arc<OnceLock<Result<Arc<Scene>, RunError>>>;
-/// Runs by key.
+/// Runs with their outputs, by [`Run::key`].
 type Runs = BTreeMap<String, (Run, Result<FinishedRun, RunError>)>;
-/// Scenes that were run, with their outputs, by solver and resolution.
+/// Scenes with the outputs of their runs, by solver, defect, resolution and evaluation.
 type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 
-/// Runner of one case. It uses the solvers that the claims name, or one external solver instead.
+/// Runner of one case. It uses the solvers named in the claims, or one external solver for all runs.
 pub struct Runner {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
     stranger: Option<Arc<dyn Solver>>,
-    /// True if other programs run even if their runs are stored.
+    /// True to run other programs even if their runs are stored.
     live: bool,
     /// True if figures may use the finest levels, which take minutes.
     thorough: bool,
-    /// True if an external solver must also be able to run the wrong physics.
+    /// True if an external solver passes only if it can also run the wrong physics.
     controlled: bool,
     /// Number of threads per run.
     threads: usize,
-    /// Largest tier whose runs are repeated even if their results are stored; none to repeat no stored run.
+    /// Largest tier whose stored runs are repeated; none to repeat no stored run.
     afresh: Option<Set>,
     /// Directory of third-party data.
     data: Option<PathBuf>,
-    /// Runs of the scenes as the case defines them, by [`Run::key`].
+    /// Runs with the scenes as the case defines them, by [`Run::key`].
     runs: Mutex<Runs>,
     /// Scenes as the case defines them, by [`Run::scene_words`].
     scenes: Mutex<BTreeMap<String, SceneSlot>>,
-    /// Every run of a scene, right or wrong, by solver and resolution. Claims with the same scene share it.
+    /// Outputs of all runs, with right or wrong physics, by solver and resolution. Claims with the same scene share a run.
     done: Mutex<Slots>,
 }
 
-/// Solver of a run, with or without a defect.
+/// Solver of a run, optionally with a defect.
 #[derive(Clone, Copy)]
 struct SolverChoice<'a> {
     solver: &'a str,
     defect: Option<Defect>,
     resolution: &'a Resolution,
-    /// Negative control of the run; none for a run of the claim itself.
+    /// Negative control of the run; none for a run of the claim.
     control: Option<&'a control::Control>,
 }
 
@@ -87,38 +87,38 @@ impl Runner {
         }
     }
 
-    /// Replaces every solver that the claims name by one external solver. This solver interprets their resolutions
-    /// itself.
+    /// Replaces every solver named in the claims by one external solver. The external solver interprets the resolutions
+    /// of the claims itself.
     #[must_use]
     pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
         Self { stranger: Some(solver), ..self }
     }
 
-    /// Sets whether other programs run even if their runs are stored.
+    /// Sets whether other programs run even if their runs are stored. Default: false.
     #[must_use]
     pub fn live(self, live: bool) -> Self {
         Self { live, ..self }
     }
 
-    /// Sets whether figures may use the finest runs, which take minutes.
+    /// Sets whether figures may use the finest levels, which take minutes. Default: false.
     #[must_use]
     pub fn thorough(self, thorough: bool) -> Self {
         Self { thorough, ..self }
     }
 
-    /// Sets whether a result requires that an external solver can run its wrong physics.
+    /// Sets whether an external solver passes only if it can also run the wrong physics. Default: true.
     #[must_use]
     pub fn controlled(self, controlled: bool) -> Self {
         Self { controlled, ..self }
     }
 
-    /// Sets the number of threads per run.
+    /// Sets the number of threads per run. Default: 1.
     #[must_use]
     pub fn threads(self, threads: usize) -> Self {
         Self { threads, ..self }
     }
 
-    /// Repeats the runs of all tiers up to this one even if their results are stored.
+    /// Repeats stored runs of all tiers up to this one.
     #[must_use]
     pub fn afresh(self, set: Set) -> Self {
         Self { afresh: Some(set), ..self }
@@ -136,7 +136,7 @@ impl Runner {
         self.thorough
     }
 
-    /// Returns all claims of the case, or only those that apply to the external solver.
+    /// Returns all claims of the case. With an external solver, returns only the claims that apply to it.
     #[must_use]
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
@@ -152,7 +152,7 @@ impl Runner {
         self.case
     }
 
-    /// Returns a finished run. Performs the run if it has not finished.
+    /// Returns a finished run, and does the run if it was not done before.
     ///
     /// # Errors
     /// When the solver does not support the scene or fails.
@@ -174,7 +174,7 @@ impl Runner {
         runs.values().filter_map(|(run, done)| Some((run.clone(), done.as_ref().ok()?.clone()))).collect()
     }
 
-    /// Returns true if all runs of a claim are available on this machine. Otherwise the claim has no control either.
+    /// Returns true if all runs of a claim are available: the data exist, and a result is stored or the solver is installed.
     #[must_use]
     pub fn is_available(&self, claim: &Claim) -> bool {
         let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
@@ -183,8 +183,8 @@ impl Runner {
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
     }
 
-    /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported. A panic
-    /// is a broken result, so that all other results are reported.
+    /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported. A
+    /// panic gives the outcome `broken`, so that all other results are still reported.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
         unless_panicked(|| self.judged(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
@@ -207,7 +207,7 @@ impl Runner {
         }
     }
 
-    /// Judges a claim, and its control if it is asked for and can be run.
+    /// Judges a claim and, if `with_control` is true and the control can be run, its negative control.
     #[must_use]
     pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<Control>) {
         let row = self.judge(claim);
@@ -215,8 +215,8 @@ impl Runner {
         (row, control)
     }
 
-    /// Returns true if the control of a judged claim is to be run: all its runs are available. An external solver also skips
-    /// it in two cases: the claim is unsupported, or the solver cannot run the wrong physics.
+    /// Returns true if the negative control of a judged claim can be run: all runs of the claim are available. For an
+    /// external solver, the claim must also be supported, and the solver must be able to run the wrong physics.
     fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
         self.is_available(claim) && self.has_control(claim, verdict)
     }
@@ -225,10 +225,10 @@ impl Runner {
         self.stranger.is_none() || verdict.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
     }
 
-    /// Returns the reason why an external solver cannot run the wrong physics of a claim.
+    /// Returns the reason why an external solver cannot run the wrong physics of a claim; none if it can.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
         let asked = self.controlled && self.stranger.is_some();
-        // A panic does not mean that the scene is unsupported. The control runs, and its outcome is `broken`.
+        // A panic does not mean that the scene is unsupported. The control is then run, and its outcome is `broken`.
         let wrong = |run: &Run| match unless_panicked(|| self.run_wrong(claim, run)) {
             Ok(Err(error @ RunError::Unsupported { .. })) => Some(error.to_string()),
             _ => None,
@@ -236,8 +236,8 @@ impl Runner {
         if asked { claim.runs.iter().find_map(wrong) } else { None }
     }
 
-    /// Judges a claim under its wrong physics. For a known error, another solver without this error performs the runs.
-    /// A panic is a control that did not fail by value.
+    /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs, and
+    /// the claim must pass. After a panic, the claim counts as failed by error.
     #[must_use]
     pub fn control(&self, claim: &Claim) -> Control {
         let start = Instant::now();
@@ -253,7 +253,7 @@ impl Runner {
         }
     }
 
-    /// Returns a run of a claim under its wrong physics.
+    /// Does a run of a claim under the wrong physics of its control.
     ///
     /// # Errors
     /// When the solver does not support the scene or fails.
@@ -263,7 +263,7 @@ impl Runner {
         let mut by = SolverChoice { solver: run.solver, defect: None, resolution, control };
         match &claim.control.wrong {
             _ if run.aside => self.run(run),
-            // Only our own side gets the wrong physics.
+            // Only our solver gets the wrong physics.
             WrongPhysics::Ours(_) | WrongPhysics::OtherSolver(_) if self.solvers.is_program(run.solver) => {
                 self.run(run)
             }
@@ -288,7 +288,7 @@ impl Runner {
         }
     }
 
-    /// Returns a run by a solver, with the scene of the case or with a changed scene.
+    /// Does a run with a given solver, on the scene of the case or on a changed scene.
     fn done_by(
         &self,
         run: &Run,
@@ -329,21 +329,21 @@ impl Runner {
     /// Returns the stored result of a run.
     fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
         let of_control = by.control.map(|control| control.name);
-        let none = || self.unusable(run, "no result is stored; `grainbench reference keep` stores it".to_owned());
+        let none = || self.unusable(run, "no result is stored; `grainbench reference keep` makes it".to_owned());
         let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
         let StoredResult { record, tables, made } = kept?;
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
     }
 
-    /// Returns true if the stored result of a run is used, because the run belongs to a larger tier than those repeated
-    /// now. An external solver never uses it.
+    /// Returns true if the stored result of a run is used, because its tier is larger than the tiers that are repeated
+    /// now. An external solver never uses stored results.
     fn is_read_back(&self, run: &Run, control: Option<&control::Control>) -> bool {
         let set = control.map_or(run.set, |control| run.set.max(control.set));
         let is_wanted_now = self.live && self.solvers.is_program(run.solver);
         run.kept && self.stranger.is_none() && !is_wanted_now && self.afresh.is_none_or(|afresh| set > afresh)
     }
 
-    /// Returns the slot for the output of a run: one per scene, solver, resolution and reading.
+    /// Returns the slot of a run: one for each combination of scene, solver, defect, resolution and evaluation.
     fn slot(&self, run: &Run, by: SolverChoice<'_>, scene: &Arc<Scene>) -> Slot {
         let key = format!("{}|{:?}|{:?}|{:?}", by.solver, by.defect, by.resolution, run.reading);
         let mut done = self.done.lock().unwrap_or_else(PoisonError::into_inner);
@@ -369,7 +369,7 @@ impl Runner {
     /// Returns the scene of a run as the case defines it.
     ///
     /// # Errors
-    /// When the scene file is wrong.
+    /// When the scene file is invalid, or third-party data are missing.
     pub fn scene(&self, run: &Run) -> Result<Arc<Scene>, RunError> {
         let slot = {
             let mut scenes = self.scenes.lock().unwrap_or_else(PoisonError::into_inner);
@@ -388,18 +388,18 @@ impl Runner {
         .clone()
     }
 
-    /// Returns a scene made from third-party data.
+    /// Makes a scene from third-party data.
     fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
         let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
         let made = folder.and_then(|folder| (data.scene)(folder).map_err(SceneDataError::into_words));
         made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
-    /// Returns the scene that the solver of a run gets: as the case defines it or, if `wrong`, as the control changes
-    /// it.
+    /// Returns the scene of a run as the case defines it. If `wrong` is true and the negative control changes the scene,
+    /// returns the changed scene.
     ///
     /// # Errors
-    /// When the scene file is wrong.
+    /// When the scene file is invalid, or third-party data are missing.
     pub fn given(&self, claim: &Claim, run: &Run, wrong: bool) -> Result<Arc<Scene>, RunError> {
         let scene = self.scene(run)?;
         match &claim.control.wrong {
@@ -412,12 +412,12 @@ impl Runner {
         }
     }
 
-    /// Returns the solver for a name, or the external solver.
+    /// Returns the external solver if there is one, otherwise the solver with this name.
     fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
         self.stranger.clone().or_else(|| self.solvers.find(name))
     }
 
-    /// Returns the name of the solver of a run in results.
+    /// Returns the name of the solver of a run, as it appears in results.
     fn solver_name(&self, run: &Run) -> String {
         self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
     }
@@ -426,13 +426,13 @@ impl Runner {
         RunError::Unsupported { solver: self.solver_name(run), reason }
     }
 
-    /// Estimates the numerical uncertainty of a claim with one run from three resolution levels. They are its own level
-    /// and two coarser ones, or two finer ones if there is no coarser level.
+    /// Estimates the numerical uncertainty of a claim with one run from three resolution levels: its own level and two
+    /// coarser ones. If there is no coarser level, two finer levels are used.
     ///
     /// # Errors
-    /// Returns the reason why there is no estimate.
+    /// When there is no estimate. The text states the reason.
     pub fn estimate(&self, claim: &Claim) -> Result<Estimate, String> {
-        let [run] = &claim.runs[..] else { return Err("it reads more than one run".to_owned()) };
+        let [run] = &claim.runs[..] else { return Err("the claim reads more than one run".to_owned()) };
         let formal = if Method::from_name(run.solver) == Some(Method::Rigid) { 1.0 } else { 2.0 };
         let value = |factor: f64| -> Result<(String, f64), String> {
             let resolution = run.resolution.coarser(factor).ok_or("there is no coarser level")?;
@@ -455,8 +455,7 @@ impl Runner {
         let values = [found[0].1, found[1].1, found[2].1];
         let (order, safety, mut uncertainty) = of_finest(values, formal);
         if at_coarsest {
-            // Uncertainty of the coarsest level: its distance from the finest level plus the uncertainty of the finest
-            // level.
+            // Uncertainty of the coarsest level: the distance from the finest value plus the uncertainty of the finest value.
             uncertainty += (values[2] - values[0]).abs();
         }
         let [a, b, c] = found.map(|(level, _)| level);
@@ -473,27 +472,27 @@ impl Runner {
         })
     }
 
-    /// Returns the tolerance of a claim for these runs, and its origin. A stored estimate replaces the stated tolerance
-    /// if it is smaller. Returns none if an estimate is required and not stored.
+    /// Returns the tolerance of a claim for these runs, and the origin of the tolerance. A stored estimate replaces the
+    /// stated tolerance if it is smaller. Returns none if an estimate is required but not stored.
     #[must_use]
     pub fn allowed(&self, claim: &Claim, done: &[FinishedRun]) -> Option<(f64, tolerance::ToleranceOrigin)> {
         let stated = (claim.tolerance.allowed(done), claim.tolerance.made_without_estimate());
         if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.stranger.is_some() {
             return Some(stated);
         }
-        // A stated bound below the estimate counts as engineering judgement.
+        // If the estimate is not below the stated limit, the limit applies as engineering judgement.
         let found = self.solvers.uncertainty(self.case, claim)?;
         Some(if found < claim.tolerance.up_to { (found, tolerance::ToleranceOrigin::Estimated) } else { stated })
     }
 
-    /// Returns the broken result of a claim at which our program panicked.
+    /// Returns the result of a claim whose evaluation panicked. Its outcome is `broken`.
     #[must_use]
     pub fn crashed(&self, claim: &Claim, reason: String) -> Verdict {
         let tolerance = &claim.tolerance;
         self.row(claim, Some((tolerance.allowed(&[]), tolerance.made))).left(Outcome::Broken, reason)
     }
 
-    /// Returns the result of a claim that is not judged yet, with its tolerance and the origin of the tolerance.
+    /// Returns the result of a claim before it is judged. `allowed` is the tolerance with its origin.
     fn row(&self, claim: &Claim, allowed: Option<(f64, tolerance::ToleranceOrigin)>) -> Verdict {
         let first = claim.runs.first();
         Verdict {
@@ -509,7 +508,7 @@ impl Runner {
         }
     }
 
-    /// Returns the result of a claim from its runs.
+    /// Judges a claim from its runs.
     fn conclude(&self, claim: &Claim, done: Result<Vec<FinishedRun>, RunError>) -> Verdict {
         let allowed = self.allowed(claim, done.as_deref().unwrap_or_default());
         let row = self.row(claim, allowed);
@@ -521,7 +520,7 @@ impl Runner {
             Ok(done) => {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
-                    // An external solver need not report every quantity that our solvers report.
+                    // An external solver may report fewer quantities than our solvers.
                     Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
                     Ok(found) => {
@@ -533,7 +532,7 @@ impl Runner {
         }
     }
 
-    /// The row, amber if it passes on a stored result of other solver sources.
+    /// Returns the result, with the outcome `outdated` if it passed with a stored result of other solver sources.
     fn unless_outdated(&self, row: Verdict, done: &[FinishedRun]) -> Verdict {
         let is_outdated = |done: &FinishedRun| done.kept.as_ref().is_some_and(|made| !made.is_current);
         if row.outcome == Outcome::Pass && done.iter().any(is_outdated) {
@@ -541,14 +540,15 @@ impl Runner {
             return row.left(
                 Outcome::Outdated,
                 format!(
-                    "the stored run has other solver sources; `grainbench reference keep {case} --no-cache` repeats it"
+                    "the stored run was made with other solver sources; `grainbench reference keep {case} --no-cache` \
+                     repeats it"
                 ),
             );
         }
         row
     }
 
-    /// Adds the programs of a comparison, and the stored results that were used, to the source of a result.
+    /// Adds the options of external programs, and the provenance of stored results, to the source of a result.
     fn with_programs(&self, mut row: Verdict, done: &[FinishedRun]) -> Verdict {
         for run in done.iter().map(|done| &done.record.provenance).filter(|run| self.solvers.is_program(&run.solver)) {
             row.source.push_str(&format!(": {}", run.options.join(", ")));
@@ -562,7 +562,7 @@ impl Runner {
     }
 }
 
-/// Calls a function. If it panics, the error is the message of the panic.
+/// Calls a function and returns its value. If it panics, returns an error with the message of the panic.
 fn unless_panicked<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     catch_unwind(AssertUnwindSafe(work)).map_err(|reason| {
         let words = reason.downcast_ref::<String>().map(String::as_str);
@@ -571,20 +571,20 @@ fn unless_panicked<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Changes the tables of a run.
+/// Changes the tables of a run, as a negative control requires.
 fn misread(mut done: FinishedRun, change: fn(&mut [Table])) -> FinishedRun {
     change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
     done
 }
 
-/// A method's own documented error is amber while it is finite and within its second bound.
+/// Returns the result, with the outcome `known` if its error is documented, finite and at most the limit of the known error.
 fn known(row: Verdict, claim: &Claim, found: &Measurement) -> Verdict {
     let ExpectedOutcome::Known(reason) = claim.standing() else { return row };
     let most = claim.runs.first().map_or(f64::INFINITY, |run| run.known_up_to);
     match row.outcome {
         Outcome::Fail if found.error().abs() <= most && found.error().is_finite() => row.left(Outcome::Known, reason),
         Outcome::Fail if found.error().is_finite() => {
-            row.left(Outcome::Fail, format!("beyond the known error, {most} of the scale: {reason}"))
+            row.left(Outcome::Fail, format!("larger than the bound of the known error, {most} of the scale: {reason}"))
         }
         _ => row,
     }

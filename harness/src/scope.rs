@@ -1,21 +1,21 @@
-//! Scope of a claim: only the solvers that it names, or any solver of a kind.
+//! Scope of a claim: only the solvers that it names, or all solvers of a kind.
 
 use grainbench_scene::solver::Solver;
 
-/// Solvers to which a claim applies. Every case states it for each claim.
+/// Solvers to which a claim applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Scope {
     /// Only the solvers named in the claim's runs. The expected value depends on the convention of a program, its order
     /// in Δt, the compliance of its contacts, or its agreement with another program.
     Named,
-    /// Any solver that can run the scene. The scene determines the expectation, and the tolerance allows for
-    /// conventions that it leaves open, such as lever arm and limit on the dashpot. The negative control is a wrong
-    /// scene, so that an external solver can run it too.
+    /// Any solver that can run the scene. The scene determines the expectation. The tolerance allows for conventions
+    /// that the scene leaves open, such as lever arm and limit on the dashpot. The negative control is a wrong scene,
+    /// so that an external solver can run it too.
     AnySolver,
     /// Any solver with deformable bodies. The tolerance allows for the discretisation error of a second-order method
     /// with the cells of the run.
     AnyContinuum,
-    /// Any solver whose contacts have the springs and dashpots of the scene. It excludes rigid contacts.
+    /// Any solver whose contacts have the springs and dashpots of the scene. Solvers with rigid contacts are excluded.
     AnySprings,
 }
 
@@ -43,7 +43,7 @@ impl Scope {
         }
     }
 
-    /// Returns true if the claim applies to a solver that the case does not name.
+    /// Returns true if the claim applies to a given solver that the case does not name.
     #[must_use]
     pub fn is_asked_of(self, solver: &dyn Solver) -> bool {
         match self {

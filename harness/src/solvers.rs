@@ -1,4 +1,4 @@
-//! Interface to the solvers, which the caller supplies; the harness knows none.
+//! Interface to the solvers. The caller supplies them, because the harness contains none.
 
 use crate::case::Case;
 use crate::claim::Claim;
@@ -20,34 +20,34 @@ pub struct StoredResult {
     pub made: ResultOrigin,
 }
 
-/// External solver, with the resolutions at which it is run.
+/// External solver, with the resolutions of its runs.
 #[derive(Clone, Debug, PartialEq)]
 pub struct ExternalSolver {
     /// Name of the solver in its manifest.
     pub name: String,
-    /// Time steps to run it with, as fractions of the critical time step; empty for the defaults.
+    /// Time steps of its runs, as fractions of the critical time step; empty for the defaults.
     pub fractions: Vec<f64>,
-    /// Cells per reference length to run it with; empty for the defaults.
+    /// Cells per reference length of its runs; empty for the defaults.
     pub cells: Vec<f64>,
     /// True if its contacts have springs.
     pub has_springs: bool,
     /// True if its bodies deform.
     pub deforms: bool,
-    /// True if its process continues from run to run.
+    /// True if one process does all runs.
     pub stays: bool,
 }
 
 /// Solvers by name, and stored runs of other programs.
 pub trait Solvers: Send + Sync {
-    /// Returns the solver with a name.
+    /// Returns the solver with this name; none if there is none.
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>>;
 
-    /// Returns the solver with a name, with a time limit on runs of another program.
+    /// Returns the solver with this name. A run of another program ends with an error after the time limit.
     fn find_within(&self, name: &str, _limit: Duration) -> Option<Arc<dyn Solver>> {
         self.find(name)
     }
 
-    /// Returns the solver with a name and a defect; none if it does not support defects.
+    /// Returns the solver with this name and a defect; none if it does not support defects.
     fn with_defect(&self, _name: &str, _defect: Defect) -> Option<Arc<dyn Solver>> {
         None
     }
@@ -62,19 +62,19 @@ pub trait Solvers: Send + Sync {
         Vec::new()
     }
 
-    /// Returns a string that, together with the name, identifies finished runs. For a program that may change, it is a
-    /// hash of its files or executable, or the time when they were read.
+    /// Returns a string that identifies the version of a solver, so that finished runs can be reused. For a program
+    /// that may change, it is a hash of its files or executable, or the time when they were read.
     fn edition(&self, _name: &str) -> String {
         String::new()
     }
 
-    /// Returns the stored record of a run of another program; none if there is none.
+    /// Returns the stored record of a run of another program; none if no record is stored.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
         None
     }
 
-    /// Returns the stored result of a run whose snapshots are read; none if there is none. `_scene` is the scene that
-    /// the solver got, and `_control` names the negative control that changed it.
+    /// Returns the stored result of a run whose snapshots are read; none if no result is stored. `_scene` is the scene
+    /// that the solver got, and `_control` names the negative control that changed it.
     fn kept(
         &self,
         _case: &Case,

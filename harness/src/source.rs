@@ -1,16 +1,16 @@
-//! Sources of expected values. A cited work exists only if its file with provenance exists, because the constants are
-//! generated from these files when the cases are built.
+//! Sources of expected values. A cited work is a constant generated from its provenance file when the cases are built,
+//! so a work without this file cannot be cited.
 
 /// Source of an expected value.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Source {
-    /// Derived: an equation or a law, in words. The derivation is stored with the case.
+    /// Derivation: an equation or a law, in words. The case stores the derivation.
     Derived(&'static str),
-    /// Printed in a cited work: the place in the work and the printed statement.
+    /// Statement in a cited work: the work, and the place and the statement in words.
     Printed(&'static Work, &'static str),
     /// Another program, whose run is stored or done now.
     Program,
-    /// Another of our runs, in words: the same solver at a finer resolution, or another method from the same initial
+    /// Another of our runs, in words: the same solver at a finer resolution, or another method with the same initial
     /// state. It shows only that our own results agree.
     Ourselves(&'static str),
     /// The value of the same solver when the claim was written.
@@ -28,10 +28,10 @@ pub enum Kind {
     Prototype,
 }
 
-/// A cited work. Its folder holds its provenance.
+/// Cited work. Its folder contains its provenance.
 #[derive(Debug, PartialEq, Eq)]
 pub struct Work {
-    /// Paper, measurement or prototype.
+    /// Kind of the work.
     pub kind: Kind,
     /// Folder in the directory of references, such as `literature/bardenhagen-2000`.
     pub id: &'static str,
@@ -42,13 +42,13 @@ pub struct Work {
 /// Number from a cited work, with its place in the work.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct CitedNumber {
-    /// The work.
+    /// Cited work.
     pub work: &'static Work,
-    /// Quantity and its place in the work.
+    /// Name of the quantity and its place in the work.
     pub what: &'static str,
     /// Value of the number.
     pub value: f64,
-    /// Uncertainty that the work states; 0 if it states none.
+    /// Uncertainty that the work states, in the unit of the value; 0 if it states none.
     pub uncertainty: f64,
 }
 
@@ -72,7 +72,7 @@ impl Source {
         }
     }
 
-    /// Returns the cited work, if the source is one.
+    /// Returns the cited work; none for another kind of source.
     #[must_use]
     pub const fn work(self) -> Option<&'static Work> {
         match self {

@@ -2,12 +2,12 @@
 
 use statrs::distribution::{ContinuousCDF as _, StudentsT};
 
-/// Number of blocks of a series.
+/// Number of blocks into which a series is divided.
 pub const BLOCKS: usize = 8;
 /// Confidence level of the intervals.
 pub const CONFIDENCE: f64 = 0.99;
 
-/// Means of two series, and the confidence interval of their difference.
+/// Means of two series, and the confidence interval of the difference of the means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
     /// Mean of the first series.
@@ -18,13 +18,14 @@ pub struct Estimate {
     pub half_width: f64,
 }
 
-/// Returns the difference of two series with the same sample times, from block averages.
+/// Returns the means of two series with the same sample times, and the confidence interval of their difference, from
+/// block averages.
 ///
-/// Both series are cut into `blocks` blocks of equal length; samples left over at the start are not used. The
-/// differences of the block means are treated as independent (Flyvbjerg & Petersen 1989). Their mean then has the
-/// half-width t s/√n, with their standard deviation s and Student's t for n − 1 degrees of freedom. A trend that both
-/// series share cancels in the differences. Returns none if a block would be empty, or if the lengths of the series
-/// differ.
+/// Both series are cut into `blocks` blocks of equal length; the samples left over at the start are not used. The
+/// differences of the block means are treated as independent (Flyvbjerg & Petersen 1989). The confidence interval of
+/// their mean has the half-width t s/√n. Here s is the standard deviation of the n differences, and t is Student's t
+/// for n − 1 degrees of freedom. A trend that both series share cancels in the differences. Returns none if a block
+/// would be empty, or if the series have different lengths.
 #[must_use]
 pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estimate> {
     let length = first.len().min(second.len()) / blocks.max(2);
@@ -45,7 +46,7 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
 }
 
-/// Returns the minimum, the median and the maximum; none without values.
+/// Returns the minimum, the median and the maximum; none for an empty list.
 #[must_use]
 pub fn range(values: &[f64]) -> Option<[f64; 3]> {
     let mut sorted = values.to_vec();
@@ -55,14 +56,14 @@ pub fn range(values: &[f64]) -> Option<[f64; 3]> {
     Some([*first, middle, *last])
 }
 
-/// Returns the median; NaN without values.
+/// Returns the median; NaN for an empty list.
 #[must_use]
 pub fn median(values: &[f64]) -> f64 {
     range(values).map_or(f64::NAN, |[_, middle, _]| middle)
 }
 
-/// Returns the half-width t s √2 of the prediction interval for the difference of two further values. Here s is the
-/// standard deviation of the given independent values. Returns none if there are too few values or all are equal.
+/// Returns the half-width t s √2 of the prediction interval for the difference of two further values. Here s is the standard
+/// deviation of the given independent values, and t is Student's t. Returns none for fewer than two values or if all are equal.
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
     let count = values.len() as f64;
@@ -72,8 +73,8 @@ pub fn spread(values: &[f64]) -> Option<f64> {
     (half_width > 0.0).then_some(half_width)
 }
 
-/// Returns the mean of independent values and the half-width t s/√n of its confidence interval. Returns none if there
-/// are too few values.
+/// Returns the mean of n independent values and the half-width t s/√n of its confidence interval. Here s is the
+/// standard deviation, and t is Student's t. Returns none for fewer than two values.
 #[must_use]
 pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
@@ -82,8 +83,8 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
 }
 
-/// Returns the mean of independent values, and the half-width t s √(1 + 1/n) of the prediction interval for one further
-/// value. Here s is their standard deviation. Returns none if there are too few values or all are equal.
+/// Returns the mean of n independent values and the half-width t s √(1 + 1/n) of the prediction interval for one further value.
+/// Here s is the standard deviation, and t is Student's t. Returns none for fewer than two values or if all are equal.
 #[must_use]
 pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
@@ -91,7 +92,7 @@ pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     Some((values.iter().sum::<f64>() / count, half_width))
 }
 
-/// Returns Student's t of the two-sided interval.
+/// Returns Student's t of the two-sided interval with the confidence level [`CONFIDENCE`].
 fn quantile(degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * CONFIDENCE))
 }
@@ -102,7 +103,7 @@ mod tests {
 
     use super::*;
 
-    /// Student's t of one degree of freedom is 63.66 at 99 %; two draws that are 2 apart have s = √2.
+    /// Student's t for one degree of freedom is 63.66 at 99 %. Two values that differ by 2 have s = √2.
     #[test]
     fn two_draws_are_told_apart_by_their_kind() {
         let half = spread(&[1.0, 3.0]).unwrap();
@@ -127,7 +128,7 @@ mod tests {
         })
     }
 
-    /// The interval contains the true difference about as often as the confidence level states.
+    /// The interval misses the true difference about as often as the confidence level states.
     #[test]
     fn the_interval_holds_what_it_says() {
         let trend = |at: usize| 0.05 * at as f64;

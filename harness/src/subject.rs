@@ -1,8 +1,8 @@
 //! Target quantities of accuracy studies. Each has an exact solution, and a scene for each method.
 //!
-//! The target quantities of a case come from its claims, so that a new case has its diagram without further input. They
-//! are quantities with an analytic solution, each method with the scene of its claim. A case folder with a `cost.rs`
-//! adds others, such as a sweep of stiffness.
+//! The target quantities of a case come from its claims, so that a new case has a cost diagram without further input.
+//! They are quantities with an analytic solution, and each method uses the scene of its claim. A file `cost.rs` in the
+//! case folder replaces them by other quantities, such as a parameter study of the stiffness.
 
 use crate::case::Case;
 use crate::claim::{Claim, Measure};
@@ -14,13 +14,13 @@ use grainbench_scene::solver::{Method, Resolution};
 /// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]
 pub struct SolverSetup {
-    /// Discrete elements, rigid bodies or a grid.
+    /// Method of the solver: DEM, rigid bodies or MPM.
     pub method: Method,
-    /// Parameters other than the resolution, in words; empty if there are none.
+    /// Choice of parameters other than the resolution, in words; empty if there is none.
     pub knobs: String,
     /// Change that turns the scene of the case into the scene of this setup.
     pub prepare: Option<Change>,
-    /// Resolution about which the study varies the resolution.
+    /// Resolution in the middle of the range that the study covers.
     pub about: Resolution,
 }
 
@@ -29,7 +29,7 @@ pub struct SolverSetup {
 pub struct TargetQuantity {
     /// Case that defines the scene.
     pub case: &'static Case,
-    /// Variant of its scene.
+    /// Variant of the case that the solvers run.
     pub variant: &'static str,
     /// Quantity in words.
     pub quantity: String,
@@ -46,8 +46,7 @@ pub struct TargetQuantity {
 /// Largest number of target quantities from the claims of one case.
 const MOST: usize = 2;
 
-/// Returns the target quantities from the claims of a case: the first of each variant, those with the most methods
-/// first.
+/// Returns the target quantities from the claims of a case, at most one per variant. Quantities with the most methods come first.
 #[must_use]
 pub fn from_claims(case: &'static Case) -> Vec<TargetQuantity> {
     let mut subjects: Vec<TargetQuantity> = Vec::new();
@@ -70,11 +69,12 @@ pub fn from_claims(case: &'static Case) -> Vec<TargetQuantity> {
     chosen
 }
 
-/// Adds the quantity of a claim to the target quantities.
+/// Adds the quantity of a claim to the list, or adds the claim's solver setup if the list contains the quantity. Ignores
+/// claims with several runs, without an analytic solution, or with an unsupported scene.
 fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<TargetQuantity>) {
     let [run] = claim.runs.as_slice() else { return };
     let Some(method) = Method::from_name(run.solver) else { return };
-    // Readings of many snapshots need long runs.
+    // Runs whose snapshots are read are long.
     if claim.evidence() != Evidence::Analytic
         || run.standing == ExpectedOutcome::Refused
         || run.reading.is_some()
@@ -82,7 +82,8 @@ fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<TargetQuantity>) {
     {
         return;
     }
-    // Claims with the same wording have the same expectation, because text after a comma may state it.
+    // Claims with the same wording are about the same quantity. If their expectations differ, the wording states them
+    // after a comma.
     let quantity = claim.quantity.clone();
     let lane = |method, about| SolverSetup {
         method,

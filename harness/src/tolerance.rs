@@ -3,26 +3,26 @@
 use crate::run::FinishedRun;
 use serde::{Deserialize, Serialize};
 
-/// Way in which the size of a tolerance was determined.
+/// Origin of the size of a tolerance.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOrigin {
-    /// From the formula in its reason.
+    /// The formula in the reason of the tolerance.
     Computed,
-    /// From three resolution levels: observed order and factor of safety, stored with provenance.
+    /// Results at three resolution levels: observed order and factor of safety, stored with provenance.
     Estimated,
-    /// In units of a confidence interval from the runs themselves.
+    /// A confidence interval from the runs themselves, which is the unit of the error.
     Interval,
-    /// Zero: the bound or the equality of bits holds exactly or fails.
+    /// Zero: a bound or the equality of bits holds exactly or fails.
     Exact,
-    /// Required before the solver existed.
+    /// A requirement stated before the solver existed.
     Required,
     /// Engineering judgement, without formula or estimate.
     Judged,
 }
 
 impl ToleranceOrigin {
-    /// Returns the origin as one word.
+    /// Returns the name of the origin in result files.
     #[must_use]
     pub const fn word(self) -> &'static str {
         match self {
@@ -39,9 +39,9 @@ impl ToleranceOrigin {
 /// Largest |error| that passes, with its origin and reason.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tolerance {
-    /// Largest |error| that passes. For an estimate, the limit for external solvers; for rounding, the limit per step.
+    /// Largest |error| that passes. For an estimate, this is the limit for external solvers; for rounding, the limit per step.
     allowed: f64,
-    /// Largest value of an estimate. Above it, the limit for external solvers applies as engineering judgement.
+    /// Largest accepted estimate. If the estimate is larger, the limit for external solvers applies as engineering judgement.
     pub(crate) up_to: f64,
     /// True if the limit grows with the number of steps of the first run.
     each_step: bool,
@@ -52,8 +52,7 @@ pub struct Tolerance {
 }
 
 impl Tolerance {
-    /// Returns the origin of the tolerance without a stored estimate. The largest value of an estimate is engineering
-    /// judgement.
+    /// Returns the origin of the tolerance if no estimate is stored. An estimated tolerance then counts as engineering judgement.
     #[must_use]
     pub const fn made_without_estimate(&self) -> ToleranceOrigin {
         match self.made {
@@ -62,14 +61,14 @@ impl Tolerance {
         }
     }
 
-    /// Returns the largest |error| that passes for these runs. Without runs, it is the value for one step.
+    /// Returns the largest |error| that passes for these runs. Without runs, it is the limit for one step.
     #[must_use]
     pub fn allowed(&self, done: &[FinishedRun]) -> f64 {
         self.after(done.first().and_then(|done| done.series().step.last()).copied().unwrap_or(1))
     }
 
-    /// Sets the largest accepted estimate. It may exceed the limit for external solvers if the numerical uncertainty of
-    /// a value is larger than its error.
+    /// Sets the largest accepted estimate. It may exceed the limit for external solvers, because the numerical
+    /// uncertainty of a value may be larger than its error.
     #[must_use]
     pub fn up_to(self, most: f64) -> Self {
         Self { up_to: most, ..self }
@@ -84,7 +83,7 @@ impl Tolerance {
     }
 }
 
-/// Returns a tolerance from the formula that the reason states.
+/// Returns a tolerance from the formula in the reason.
 #[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Computed, allowed, because)
@@ -93,7 +92,7 @@ pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
 /// Returns a tolerance for rounding errors.
 ///
 /// Each step rounds positions and velocities by half a unit in the last place, in the run and in its reference. After N
-/// steps they differ by at most 2 N ε, in units of the rounded quantity; N is the number of steps of the first run.
+/// steps the two differ by at most 2 N ε, in units of the rounded quantity. N is the number of steps of the first run.
 /// `lever` converts these units to units of the result.
 #[must_use]
 pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
@@ -101,13 +100,13 @@ pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
     Tolerance { each_step: true, ..computed(2.0 * lever * f64::EPSILON, because) }
 }
 
-/// Returns a tolerance from three resolution levels, whose estimate is stored. It is at most `most`.
+/// Returns a tolerance that is a stored estimate from three resolution levels. It is at most `most`.
 #[must_use]
 pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Estimated, most, because)
 }
 
-/// Returns a tolerance of one confidence interval. The interval is computed from the runs and is the unit of the error.
+/// Returns a tolerance of one confidence interval. The runs determine the interval, which is the unit of the error.
 #[must_use]
 pub fn one_interval(because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Interval, 1.0, because)
@@ -127,7 +126,7 @@ pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
 
 /// Reason for the tolerance of an order of convergence.
 pub(crate) const ASYMPTOTIC: &str =
-    "a tenth of the method's order, as ASME V&V 20-2009 asks of levels in the asymptotic range";
+    "a tenth of the order of the method, which ASME V&V 20-2009 requires for levels in the asymptotic range";
 
 /// Returns the tolerance of an order of convergence: 0.1 of the method's order, as ASME V&V 20-2009 (section 2)
 /// requires of levels in the asymptotic range.
@@ -136,7 +135,7 @@ pub fn asymptotic(order: f64) -> Tolerance {
     required(0.1 * order, ASYMPTOTIC)
 }
 
-/// Returns a tolerance from engineering judgement. The reason names the physics that it allows for.
+/// Returns a tolerance from engineering judgement. The reason names the physics that the tolerance allows for.
 #[must_use]
 pub fn judged(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Judged, allowed, because)

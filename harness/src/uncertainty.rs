@@ -7,7 +7,7 @@
 
 use serde::{Deserialize, Serialize};
 
-/// Ratio of a level's step or cell to the step or cell of the next finer level.
+/// Ratio of the time step or cell size of a level to that of the next finer level.
 pub const RATIO: f64 = 2.0;
 /// Smallest order used in an estimate.
 const LEAST_ORDER: f64 = 0.5;
@@ -17,26 +17,26 @@ const LEAST_ORDER: f64 = 0.5;
 pub struct Estimate {
     /// Variant of the claim.
     pub variant: String,
-    /// Name of the solver of the claim.
+    /// Name of the claim's solver.
     pub solver: String,
-    /// Resolution of the claim.
+    /// Resolution of the claim, in words.
     pub resolution: String,
-    /// Claimed quantity, in words.
+    /// Quantity of the claim, in words.
     pub quantity: String,
-    /// Resolutions of the levels, fine to coarse.
+    /// Resolutions of the three levels in words, from fine to coarse.
     pub levels: [String; 3],
-    /// Measured error at each level, in units of the claim's scale.
+    /// Error at each level, divided by the claim's scale.
     pub values: [f64; 3],
     /// Observed order; none if the differences change sign or grow.
     pub order: Option<f64>,
-    /// Factor of safety.
+    /// Factor of safety F_s.
     pub safety: f64,
-    /// Uncertainty U at the claim's level, in units of the claim's scale.
+    /// Uncertainty U at the claim's level, divided by the claim's scale.
     pub uncertainty: f64,
 }
 
-/// Returns order, factor of safety and uncertainty of the finest of three values, which are ordered from fine to
-/// coarse. `formal` is the order of the method.
+/// Returns the observed order, the factor of safety and the uncertainty of the finest of three values. The values are
+/// ordered from fine to coarse, and `formal` is the order of the method.
 #[must_use]
 pub fn of_finest([fine, middle, coarse]: [f64; 3], formal: f64) -> (Option<f64>, f64, f64) {
     let (near, far) = (fine - middle, middle - coarse);
@@ -55,11 +55,11 @@ mod tests {
 
     #[test]
     fn a_known_order_is_found_and_the_error_is_within() {
-        // f(h) = 1 + .3 h² at h = 1, 2, 4: off by .3 at the finest.
+        // f(h) = 1 + 0.3 h² at h = 1, 2, 4 has an error of 0.3 at the finest level.
         let (order, safety, uncertainty) = of_finest([1.3, 2.2, 5.8], 2.0);
         assert!(order.is_some_and(|order| (order - 2.0).abs() < 1e-12) && safety == 1.25);
         assert!((uncertainty - 1.25 * 0.3).abs() < 1e-12);
-        // First order instead of the second order of the method: three times the remaining error.
+        // First order, although the method has second order: the uncertainty is three times the remaining error.
         let (order, safety, uncertainty) = of_finest([1.3, 1.6, 2.2], 2.0);
         assert!(order.is_some_and(|order| (order - 1.0).abs() < 1e-12) && safety == 3.0);
         assert!((uncertainty - 0.9).abs() < 1e-12);

@@ -1,4 +1,4 @@
-//! Results of claims, as printed in all tables and written to `results.json`.
+//! Results of claims, as shown in all tables and written to `results.json`.
 
 use crate::control::FailureMode;
 use crate::evidence::Evidence;
@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 pub enum Severity {
     /// The result passes.
     Green,
-    /// The result has no judged value, or a documented error.
+    /// The result is inconclusive, or it has a documented error.
     Amber,
     /// The result fails, its run crashed, or its reference belongs to another scene.
     Red,
@@ -23,21 +23,21 @@ pub enum Severity {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
-    /// Within the allowed error.
+    /// The error is at most the allowed error.
     Pass,
-    /// Outside the allowed error.
+    /// The error exceeds the allowed error.
     Fail,
-    /// Documented error of a published method.
+    /// The error exceeds the allowed error, but is a documented error of the method or program.
     Known,
     /// The reference was made from another scene.
     Stale,
-    /// The result passes, with a stored result of older solver sources.
+    /// The result passes, but uses a stored result of older solver sources.
     Outdated,
-    /// There is no reference to compare with.
+    /// There is no reference to compare with, or the tolerance is too large for a conclusion.
     NoReference,
     /// The solver cannot represent this scene.
     Unsupported,
-    /// The program is not installed.
+    /// The program is not installed, or third-party data are missing.
     NotAvailable,
     /// The run ended with an error.
     Broken,
@@ -105,7 +105,7 @@ pub struct Verdict {
     pub variant: String,
     /// Solver and convention, such as `dem:lammps`.
     pub solver: String,
-    /// Level or levels of resolution, such as `dt=.1`.
+    /// Resolution level, or first and last of several levels, such as `dt=.1`.
     pub resolution: String,
     /// Measured quantity, in words.
     pub quantity: String,
@@ -117,7 +117,8 @@ pub struct Verdict {
     pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,
-    /// Signed `(value − expected)/scale`; for a bound, the distance beyond it. Absent if it is not finite.
+    /// Signed `(value − expected)/scale`; for a bound, the distance beyond the bound, divided by `scale`. Absent if it
+    /// is not finite.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: f64,
@@ -132,12 +133,13 @@ pub struct Verdict {
     /// Outcome of the result.
     #[serde(rename = "verdict")]
     pub outcome: Outcome,
-    /// Reason for an outcome other than pass or fail, or details of a failure, such as its first time.
+    /// Reason for an outcome other than pass or fail, or details of a failure, such as the time of the first sample outside
+    /// the tolerance.
     pub detail: Option<String>,
 }
 
 impl Verdict {
-    /// Returns a result before it is judged. Its outcome is `Fail`.
+    /// Returns a result that is not judged yet. Its outcome is `Fail`.
     #[must_use]
     pub fn open(case: impl Into<String>, quantity: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
@@ -161,7 +163,7 @@ impl Verdict {
         }
     }
 
-    /// Returns the result of a run that ended with an error and left no record.
+    /// Returns the result of a run that ended with an error.
     #[must_use]
     pub fn ended(self, error: &RunError) -> Self {
         Self { outcome: Outcome::from(error), detail: Some(error.to_string()), ..self }
@@ -173,7 +175,7 @@ impl Verdict {
         Self { outcome, detail: Some(reason.into()), ..self }
     }
 
-    /// Returns the judged result. It passes only if the error is finite and at most the allowed error.
+    /// Returns the judged result. It passes only if the error is finite and |error| is at most the allowed error.
     #[must_use]
     pub fn judged(self, found: &Measurement) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
@@ -190,21 +192,22 @@ impl Verdict {
         }
     }
 
-    /// Makes a passed result amber, with a reason, if its allowed error exceeds `most`, a fraction of the scale.
+    /// Makes a passed result amber, with a reason, if the allowed error exceeds `most`. Both are fractions of the scale.
     #[must_use]
     pub fn unless_wider_than(self, most: f64) -> Self {
         if self.outcome == Outcome::Pass && self.allowed > most {
             let [allowed, most] = [self.allowed, most].map(|part| 100.0 * part);
             return self.left(
                 Outcome::NoReference,
-                format!("inconclusive: an error of {allowed:.3} % of the scale is allowed, above {most} %"),
+                format!("inconclusive: the tolerance is {allowed:.3} % of the scale, above {most} %"),
             );
         }
         self
     }
 
-    /// Makes a passed result amber, with a reason, if a single value is expected and the allowed error is as large as
-    /// the scale. A confidence interval, and a computed limit of exactly 1, are scales that are themselves the limit.
+    /// Makes a passed result amber, with a reason, if a single value is expected and the allowed error is at least the
+    /// scale. This does not apply to a confidence interval. A computed tolerance of exactly 1 is also accepted, because
+    /// the scale is then the limit itself.
     #[must_use]
     pub fn unless_as_wide_as_the_scale(self) -> Self {
         let is_value = matches!(self.expected, Some(ExpectedValue::Value(_)));
@@ -215,13 +218,13 @@ impl Verdict {
         };
         if self.outcome == Outcome::Pass && is_value && is_wide {
             let allowed = 100.0 * self.allowed;
-            let reason = format!("inconclusive: an error of {allowed:.3} % of the scale is allowed, 100 % or more");
+            let reason = format!("inconclusive: the tolerance is {allowed:.3} % of the scale, 100 % or more");
             return self.left(Outcome::NoReference, reason);
         }
         self
     }
 
-    /// Returns the way in which the result failed, if it failed.
+    /// Returns the way in which the claim failed; none for an outcome other than `Fail` and `Broken`.
     #[must_use]
     pub fn red(&self) -> Option<FailureMode> {
         match self.outcome {
@@ -231,42 +234,42 @@ impl Verdict {
         }
     }
 
-    /// Returns |error|/allowed, which is 1 at the limit; none if the allowed error is zero or there is no error.
+    /// Returns |error|/allowed, which is 1 at the limit; none if the allowed error is zero or the error is unknown.
     #[must_use]
     pub fn closeness(&self) -> Option<f64> {
         self.error.filter(|_| self.allowed > 0.0).map(|error| error.abs() / self.allowed)
     }
 }
 
-/// Result of a negative control: a claim judged under wrong physics, which must make it fail.
+/// Result of a negative control, under whose wrong physics the claim must fail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Control {
     /// Case of the claim.
     pub case: String,
     /// Variant of the claim.
     pub variant: String,
-    /// Solver that ran the wrong physics.
+    /// Solver of the claim's first run, or the external solver.
     pub solver: String,
     /// Quantity of the claim.
     pub quantity: String,
     /// Wrong physics, in words.
     pub wrong_physics: String,
-    /// Way in which the claim must fail.
+    /// Required way of failing: by value or by error.
     pub how: FailureMode,
     /// Signed error under wrong physics; absent if it is not finite or the run crashed.
     pub error: Option<f64>,
-    /// Largest |error| that would have passed.
+    /// Largest |error| that passes.
     pub allowed: f64,
-    /// True if the claim failed in the required way.
+    /// True if the claim failed in the required way. For a known error, true if the claim passed.
     pub turned_red: bool,
-    /// Detail of the result, if the claim did not fail in the required way.
+    /// Detail of the result; absent if the claim failed in the required way.
     pub detail: Option<String>,
-    /// Elapsed time (s). It includes runs that this control performed and other controls share.
+    /// Elapsed time (s). It includes runs that other controls share.
     pub seconds: f64,
 }
 
 impl Control {
-    /// Returns the control from a result under wrong physics, which must fail in the way `how`.
+    /// Returns a control from a result under wrong physics. `how` is the required way of failing.
     #[must_use]
     pub fn new(row: Verdict, wrong_physics: &str, how: FailureMode, seconds: f64) -> Self {
         let turned_red = row.red() == Some(how);
@@ -306,10 +309,10 @@ mod tests {
         let bound = row(20.0, ToleranceOrigin::Judged, ExpectedValue::Bound(Bound::AtMost(1.0)));
         assert_eq!(bound.outcome, Outcome::Pass);
         let detail = row(20.0, ToleranceOrigin::Judged, ExpectedValue::Value(1.0)).detail;
-        assert!(detail.is_some_and(|detail| detail.contains("an error of 2000.000 % of the scale is allowed")));
+        assert!(detail.is_some_and(|detail| detail.contains("the tolerance is 2000.000 % of the scale")));
     }
 
-    /// This holds for any tolerance, because a failed run may have determined the tolerance.
+    /// This holds for every tolerance, because a failed run may have determined the tolerance.
     #[test]
     fn what_is_not_finite_is_never_green() {
         for allowed in [0.0, 1.0, f64::INFINITY, f64::NAN] {

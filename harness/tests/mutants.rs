@@ -1,5 +1,4 @@
-//! The properties objectivity and passivity pass a small solver with the correct method. Planted defects make them fail
-//! by value.
+//! Objectivity and passivity pass for a small solver with the correct method, and fail by value with a planted mistake.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
@@ -9,13 +8,13 @@ use grainbench_harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_scene::terms::Terms;
 
-/// Returns the results of some properties.
+/// Returns the results of the named properties.
 fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {
     let asked = ALL.iter().filter(|known| properties.contains(&known.name));
     asked.flat_map(|property| property.check(&solver, terms)).collect()
 }
 
-/// Returns the variants of results that failed by value.
+/// Returns the variants of the results that fail by value with a mistake.
 fn failed(mistake: MethodMistake) -> Vec<String> {
     let found = rows(SmallDem { mistake: Some(mistake) }, &["objectivity", "passivity"], &Terms::SECOND_ORDER);
     let red = found.into_iter().filter(|row| row.red() == Some(FailureMode::Value));
@@ -29,7 +28,7 @@ fn the_right_laws_pass() {
     }
 }
 
-/// Runs 10⁵ steps of the bouncing grains if `GRAINBENCH_LONG=1`.
+/// Bouncing grains gain no energy in 10⁵ steps. The test runs only if `GRAINBENCH_LONG=1`.
 #[test]
 fn the_right_laws_gain_nothing_in_the_long_run() {
     if std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1") {
@@ -60,7 +59,7 @@ fn planted_defects_fail_by_value() {
     }
 }
 
-/// The grains of these scenes are equal. Claims about unequal grains test the lever arms.
+/// All grains of these scenes are equal, so wrong lever arms have no effect. Claims about unequal grains test the lever arms.
 #[test]
 fn wrong_lever_arms_are_right_between_equal_grains() {
     for mistake in [MethodMistake::MeanArm, MethodMistake::OneArm] {

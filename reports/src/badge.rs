@@ -1,4 +1,5 @@
-//! README badge: the number of passed results. It is green if some results pass and none is red.
+//! Badge for the README with the number of passed results. It is green if a result passes and nothing is red. Red counts
+//! include failed results, negative controls that did not fail as required, and reasons such as an interrupted run.
 
 use maud::html;
 
@@ -27,7 +28,7 @@ pub fn badge(report: &Report) -> String {
         (1.., _) => "#b3261e",
         _ if reason.is_some() => "#b3261e",
         _ if counts.rows() == 0 => "#b3261e",
-        // Nothing failed and nothing passed.
+        // Nothing failed and nothing passed: grey.
         (0, 0) => "#666",
         (0, _) => "#2e7d32",
     };

@@ -1,4 +1,4 @@
-//! Report for GitHub jobs: a Markdown summary, and one annotation for each red result.
+//! Report for GitHub Actions: a Markdown summary, and one annotation for each red result.
 
 use std::fmt::Write;
 
@@ -9,10 +9,10 @@ use crate::line;
 use crate::report::Report;
 use crate::terminal::{failing_lines, is_red};
 
-/// Largest number of results in a summary, because a job summary holds at most 1 MB.
+/// Largest number of results in a summary. GitHub limits a job summary to 1 MB.
 const MOST: usize = 100;
 
-/// Returns the counts, the red results, and one table row per case.
+/// Returns a Markdown summary: the counts, the red results, and a table with one row per case.
 #[must_use]
 pub fn summary(report: &Report) -> String {
     let mut text = format!("## grainbench: {}\n\n", Headline::of_report(report).sentence());
@@ -36,7 +36,7 @@ pub fn summary(report: &Report) -> String {
     text
 }
 
-/// Returns text from scenes and cases with Markdown markup escaped. Line breaks become spaces.
+/// Returns a text with its Markdown characters escaped and its line breaks replaced by spaces.
 fn escaped(text: &str) -> String {
     let mut escaped = String::with_capacity(text.len());
     for character in text.chars() {
@@ -63,12 +63,12 @@ pub fn annotations(report: &Report) -> Vec<String> {
     lines
 }
 
-/// Returns the message of a workflow command as one line.
+/// Returns the message of a workflow command with its line breaks escaped.
 fn data(text: &str) -> String {
     text.replace('%', "%25").replace('\r', "%0D").replace('\n', "%0A")
 }
 
-/// Returns a property of a workflow command, with `,` and `:` escaped because they would end it.
+/// Returns a property of a workflow command. `,` and `:` are escaped, because they would end the property.
 fn property(text: &str) -> String {
     data(text).replace(':', "%3A").replace(',', "%2C")
 }
@@ -84,7 +84,7 @@ mod tests {
         insta::assert_snapshot!(annotations(&sample::report()).join("\n"));
     }
 
-    /// A quantity comes from the author of a case. It must not start a command.
+    /// The text of a quantity comes from the author of a case. It must not start a workflow command.
     #[test]
     fn names_are_no_commands_and_no_markup() {
         let mut report = sample::report();

@@ -22,31 +22,31 @@ pub const OUTCOMES: [Outcome; 9] = [
 /// Counts of results by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Headline {
-    /// Results within the allowed error.
+    /// Number of results within the allowed error.
     pub pass: usize,
-    /// Results outside the allowed error.
+    /// Number of results outside the allowed error.
     pub fail: usize,
-    /// Documented errors of published methods.
+    /// Number of results with a documented error of the method or program.
     pub known: usize,
-    /// Results whose reference belongs to another scene.
+    /// Number of results whose reference belongs to another scene.
     pub stale: usize,
-    /// Results that pass with a stored result of older solver sources.
+    /// Number of results that pass, but use a stored result of older solver sources.
     pub outdated: usize,
-    /// Results without a reference.
+    /// Number of results without a reference, or with a tolerance that is too large for a conclusion.
     pub no_reference: usize,
-    /// Results whose scene the solver cannot represent.
+    /// Number of results whose scene the solver cannot represent.
     pub unsupported: usize,
-    /// Results of programs that are not installed.
+    /// Number of results whose program is not installed or whose third-party data are missing.
     pub not_available: usize,
-    /// Results whose run ended with an error.
+    /// Number of results whose run ended with an error.
     pub broken: usize,
-    /// Negative controls.
+    /// Number of negative controls that were run.
     pub controls: usize,
-    /// Negative controls that failed as required.
+    /// Number of negative controls that failed as required.
     pub controls_red: usize,
-    /// Negative controls that failed by error as required; they are included in `controls_red`.
+    /// Number of negative controls that failed by error, as required. They are included in `controls_red`.
     pub controls_broken: usize,
-    /// Passed results that compare only with earlier values. They do not show that a solver is right.
+    /// Number of passed results that are compared only with earlier values. They do not show that a solver is correct.
     pub regression: usize,
 }
 
@@ -98,19 +98,19 @@ impl Headline {
         OUTCOMES.into_iter().map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Returns the number of results with a colour.
+    /// Returns the number of results with this colour.
     #[must_use]
     pub fn of_severity(self, severity: Severity) -> usize {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Returns the number of results without a judged value or with a documented error.
+    /// Returns the number of amber results: those that are inconclusive or have a documented error.
     #[must_use]
     pub fn amber(self) -> usize {
         self.of_severity(Severity::Amber)
     }
 
-    /// Returns the number of results that fail, crashed, or have a reference of another scene.
+    /// Returns the number of red results: those that fail, crashed, or have a reference of another scene.
     #[must_use]
     pub fn red(self) -> usize {
         self.of_severity(Severity::Red)
@@ -159,8 +159,7 @@ impl Headline {
     }
 }
 
-/// Returns |error| divided by the allowed error. It is infinite if a non-zero error has no tolerance, or if there is no
-/// finite error.
+/// Returns |error|/allowed. It is infinite if a non-zero error has no tolerance, or if there is no finite error.
 #[must_use]
 pub fn used_tolerance(verdict: &Verdict) -> f64 {
     match verdict.error.map(f64::abs) {
@@ -170,7 +169,8 @@ pub fn used_tolerance(verdict: &Verdict) -> f64 {
     }
 }
 
-/// Returns the result that uses the largest part of its tolerance, including known errors.
+/// Returns the result with the largest |error|/allowed among those that pass, fail, have a known error, or are
+/// outdated.
 #[must_use]
 pub fn worst(section: &Section) -> Option<&Verdict> {
     section
@@ -180,7 +180,7 @@ pub fn worst(section: &Section) -> Option<&Verdict> {
         .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 
-/// Returns the solvers of a case without duplicates, in the order of their results.
+/// Returns the solvers of a case, each once: first in the order of the results, then solvers that have only runs.
 #[must_use]
 pub fn solvers(section: &Section) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();

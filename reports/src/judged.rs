@@ -1,4 +1,4 @@
-//! Stored results of an external solver, with the version of the solver, the hash of its adapter, date and machine.
+//! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
@@ -14,7 +14,7 @@ pub struct ExternalResults {
     pub program: String,
     /// Version that the solver reports.
     pub version: String,
-    /// Hash of its manifest and of the files in the manifest's directory.
+    /// Hash of the manifest and of all files in the directory of the manifest.
     pub adapter: String,
     /// Version of grainbench, date and machine.
     pub provenance: Provenance,
@@ -40,40 +40,41 @@ pub struct Row {
     pub value: Option<f64>,
     /// Expected value, bound, band or order; absent if it is unknown.
     pub expected: Option<ExpectedValue>,
-    /// Signed error, in units of the result's scale.
+    /// Signed error, divided by the scale of the result.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: f64,
     /// Outcome of the result.
     pub verdict: Outcome,
-    /// Reason for an outcome other than pass or fail, or details of a failure, such as its first time.
+    /// Reason for an outcome other than pass or fail, or details of a failure, such as the time of the first sample outside
+    /// the tolerance.
     pub detail: Option<String>,
-    /// True if the negative control failed as required; absent if it was not run.
+    /// True if the negative control failed as required; absent if the control was not run.
     pub control_red: Option<bool>,
 }
 
-/// Relative rounding error of stored errors.
+/// Relative difference of two errors up to which the difference counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Counts of the results of an external solver in a case.
+/// Numbers of results and controls of an external solver.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct Count {
-    /// Results within the allowed error.
+    /// Number of results within the allowed error.
     pub pass: usize,
-    /// Results that fail, crashed, or have a reference of another scene.
+    /// Number of results that fail, crashed, or have a reference of another scene.
     pub red: usize,
-    /// Results without a judged value or with a documented error.
+    /// Number of results that are inconclusive or have a documented error.
     pub amber: usize,
     /// Number of negative controls that were run.
     pub controls: usize,
-    /// Controls that failed as required.
+    /// Number of negative controls that failed as required.
     pub controls_red: usize,
     /// Largest |error|/allowed of the results that pass or fail.
     pub worst: Option<f64>,
 }
 
 impl ExternalResults {
-    /// Collects the results of a report on this solver alone.
+    /// Collects the results of a report that contains only this solver.
     #[must_use]
     pub fn from_report(program: String, version: String, adapter: String, report: &Report) -> Self {
         let controls = || report.sections.iter().flat_map(|section| &section.controls);
@@ -100,8 +101,9 @@ impl ExternalResults {
         Self { program, version, adapter, provenance: report.provenance.clone(), rows }
     }
 
-    /// Returns the differences between the stored results and another run of the solver, one line each. It compares
-    /// outcomes and controls, and lists new results and errors that changed by more than the tolerance.
+    /// Returns the differences between the stored results and a report of the same solver, one line each. A line states
+    /// an outcome or control that differs, a result that is not stored, or an error that changed by more than the
+    /// tolerance.
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
         let now = Self::from_report(self.program.clone(), String::new(), String::new(), report);
@@ -134,7 +136,7 @@ impl ExternalResults {
     /// Returns the results as JSON text.
     ///
     /// # Errors
-    /// When a value has no JSON form; this does not occur in reports of this project.
+    /// When a value has no JSON form. This does not occur in reports of this project.
     pub fn text(&self) -> Result<String, serde_json::Error> {
         serde_json::to_string_pretty(self).map(|text| text + "\n")
     }
@@ -142,12 +144,12 @@ impl ExternalResults {
     /// Reads stored results.
     ///
     /// # Errors
-    /// When the text is not in the written format.
+    /// When the text is not in the format that [`ExternalResults::text`] writes.
     pub fn read(text: &str) -> Result<Self, serde_json::Error> {
         serde_json::from_str(text)
     }
 
-    /// Counts all results, or the results of one case.
+    /// Counts the results of one case, or all results.
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
         let mut count = Count::default();
@@ -160,7 +162,7 @@ impl ExternalResults {
             count.controls += usize::from(row.control_red.is_some());
             count.controls_red += usize::from(row.control_red == Some(true));
             if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.verdict, row.error) {
-                // An exact result without error uses no tolerance.
+                // An error of zero uses no tolerance, even if none is allowed.
                 let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
                 count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
             }
@@ -168,14 +170,14 @@ impl ExternalResults {
         count
     }
 
-    /// Returns the date of the run.
+    /// Returns the date of the run, without the time.
     #[must_use]
     pub fn day(&self) -> &str {
         self.provenance.date.split(' ').next().unwrap_or_default()
     }
 }
 
-/// Returns the cases with results of any solver, in order of appearance.
+/// Returns the cases with results of any external solver, in order of appearance.
 #[must_use]
 pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
     let mut cases = Vec::new();
@@ -210,7 +212,7 @@ mod tests {
     #[test]
     fn what_ends_otherwise_is_told() {
         let mut report = sample::report();
-        // A solver has one result per quantity.
+        // The sample report has results of several solvers; an external solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
         let kept = ExternalResults::from_report("other".to_owned(), String::new(), String::new(), &report);

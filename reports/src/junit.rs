@@ -1,4 +1,4 @@
-//! Report as `junit.xml`, which continuous-integration services display.
+//! Report as `junit.xml`, a format that continuous-integration services display.
 
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
@@ -6,11 +6,11 @@ use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, Test
 use crate::line;
 use crate::report::Report;
 
-/// Returns one test suite per case, and one test per result and per negative control. Amber results count as skipped,
-/// with their reason, and never as passed. Each reason why the run is red apart from its results is an error.
+/// Returns a document with one test suite per case, and one test per result and per negative control. Amber results
+/// count as skipped, with their reason, and never as passed. Each further reason why the run is red is an error.
 ///
 /// # Errors
-/// When a value has no XML form; this does not occur in reports of this project.
+/// When a value has no XML form. This does not occur in reports of this project.
 pub fn junit_xml(report: &Report) -> Result<String, SerializeError> {
     let mut document = quick_junit::Report::new("grainbench");
     for section in &report.sections {

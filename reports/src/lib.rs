@@ -1,4 +1,4 @@
-//! Figures, pages and result files. They need only records and results, and no solver.
+//! Figures, pages and result files from records and results. No solver is needed.
 
 pub mod badge;
 pub mod elements;

@@ -1,4 +1,4 @@
-//! Results in one line each, for messages about failures.
+//! Results as one line each, for messages.
 
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
@@ -6,13 +6,13 @@ use grainbench_harness::verdict::{Control, Outcome, Verdict};
 
 use crate::number;
 
-/// Returns `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
+/// Returns the line `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
 #[must_use]
 pub fn verdict(verdict: &Verdict) -> String {
     format!("{} · {}", place(&verdict.case, &verdict.variant), within_case(verdict))
 }
 
-/// Returns the line without the case: `variant · solver …`.
+/// Returns the line of a result without the case: `variant · solver …`.
 #[must_use]
 pub fn verdict_in_section(verdict: &Verdict) -> String {
     if verdict.variant.is_empty() {
@@ -22,13 +22,14 @@ pub fn verdict_in_section(verdict: &Verdict) -> String {
     }
 }
 
-/// Returns `case · solver · quantity: wrong physics, off error, allowed tolerance: stayed green`.
+/// Returns the line of a negative control: `case · solver · quantity: …`, with wrong physics, error, tolerance, required way
+/// of failing and outcome.
 #[must_use]
 pub fn control(control: &Control) -> String {
     format!("{} · {}", place(&control.case, &control.variant), tried(control))
 }
 
-/// Returns the line without the case.
+/// Returns the line of a negative control without the case.
 #[must_use]
 pub fn control_in_section(control: &Control) -> String {
     if control.variant.is_empty() { tried(control) } else { format!("{} · {}", control.variant, tried(control)) }
@@ -52,7 +53,7 @@ fn tried(control: &Control) -> String {
     )
 }
 
-/// Returns the name of an expected value for each kind of evidence.
+/// Returns the word that describes an expected value, by kind of evidence.
 #[must_use]
 pub const fn expected_word(evidence: Evidence) -> &'static str {
     match evidence {
@@ -67,13 +68,14 @@ pub const fn expected_word(evidence: Evidence) -> &'static str {
     }
 }
 
-/// Returns the expectation with its unit, such as `1.43 m/s`, `≥ 5` or `order 2`. Returns a dash if there is none.
+/// Returns the expectation with its unit, such as `1.43 m/s`, `≥ 5` or `order 2`; a dash if there is none.
 #[must_use]
 pub fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
     expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 
-/// Returns `of SCALE` if the scale of the error differs from the expected value.
+/// Returns `of SCALE` if the scale of the error differs from the magnitude of the expected value or of the nearest bound;
+/// none otherwise.
 #[must_use]
 pub fn scale_note(verdict: &Verdict) -> Option<String> {
     let scale = verdict.scale?;

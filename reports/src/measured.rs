@@ -8,79 +8,79 @@ use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-/// Errors for which costs are reported.
+/// Errors for which costs are reported, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = cost::TARGETS;
 
-/// Index of the error in [`TARGETS`] that the top of the page shows.
+/// Index in [`TARGETS`] of the error for which the first screen shows costs.
 pub const AT: usize = 1;
 
 /// Stored measurements.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Measurements {
-    /// Cost of accuracy.
+    /// Computing cost of accuracy.
     pub cost: Option<Costs>,
-    /// Largest stable steps and hard cases of each solver.
+    /// Largest stable time steps and hard cases of each solver.
     pub stability: Option<Stability>,
-    /// Influence of physical effects on the answers.
+    /// Influence of physical effects on the results.
     #[serde(default)]
     pub effects: Option<Effects>,
 }
 
-/// Provenance of a measurement, and the solvers that changed since.
+/// Provenance of a measurement, and the solvers that have changed since.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Stamp {
     /// Version, date and machine.
     pub provenance: Provenance,
-    /// Solvers whose sources changed since, or are not known to be unchanged.
+    /// Solvers whose sources have changed since the measurement, or are not known to be unchanged.
     pub changed: Vec<String>,
 }
 
-/// Cost of accuracy over all cases.
+/// Computing cost of accuracy over all cases.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Costs {
     /// Provenance of the measurement.
     pub stamp: Stamp,
     /// Number of target quantities with an exact solution.
     pub quantities: usize,
-    /// One entry per solver, ours first.
+    /// One entry per solver, our solvers first.
     pub lines: Vec<Line>,
-    /// Example for the first screen: the first quantity for which most solvers reach an error of 1 %.
+    /// Example for the first screen: the first quantity among those for which the most solvers reach an error of 1 %.
     #[serde(default)]
     pub example: Option<Diagram>,
 }
 
-/// Cost of accuracy of one solver.
+/// Computing cost of accuracy of one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Line {
     /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Number of quantities that the solver was run for.
+    /// Number of quantities that were run with the solver.
     pub asked: usize,
-    /// Pareto front of its settings: time divided by the time of the cheapest solver at an error of 1 %, and error.
+    /// Pareto fronts of all quantities: time divided by the time of the cheapest solver at an error of 1 %, and error.
     pub points: Vec<(f64, f64)>,
-    /// Cost of each error in [`TARGETS`].
+    /// Cost for each error in [`TARGETS`]; none if the solver reaches it for no quantity.
     pub factors: [Option<Factor>; 3],
 }
 
 /// Cost of an error with one solver, over the quantities for which the solver reaches the error.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Factor {
-    /// Geometric mean of its time divided by the time of the cheapest solver at the same error, over the quantities for
-    /// which another solver reaches the error too; 1 if there is none.
+    /// Geometric mean of the solver's time divided by the time of the cheapest solver at the same error. It covers the
+    /// quantities for which another solver also reaches the error; 1 if there are none.
     pub times: f64,
-    /// Number of these quantities.
+    /// Number of quantities in the mean `times`.
     #[serde(default)]
     pub compared: usize,
-    /// Geometric mean of its time divided by the time of the cheapest solver at an error of 1 %, over the quantities
-    /// that several solvers reach within 1 %; none if there is none.
+    /// Geometric mean of the solver's time divided by the time of the cheapest solver at an error of 1 %. It covers the
+    /// quantities for which another solver also reaches 1 %; none if there are none.
     #[serde(default)]
     pub place: Option<f64>,
-    /// Shortest and longest time (s).
+    /// Shortest and longest time over the quantities (s).
     pub seconds: [f64; 2],
     /// Number of quantities for which the solver reaches the error.
     pub reached: usize,
-    /// Geometric mean of its time divided by the time of `dem`, and number of quantities for which both reach the
-    /// error.
+    /// Geometric mean of the solver's time divided by the time of `dem`, and number of quantities for which both reach
+    /// the error.
     pub over_dem: Option<(f64, usize)>,
 }
 
@@ -91,7 +91,7 @@ pub struct Stability {
     pub stamp: Stamp,
     /// One entry per solver.
     pub lines: Vec<Hold>,
-    /// Largest stable steps.
+    /// Largest stable time steps.
     #[serde(default)]
     pub limits: Vec<Limit>,
     /// Results of the hard cases.
@@ -99,12 +99,12 @@ pub struct Stability {
     pub hard: Vec<HardCaseResult>,
 }
 
-/// Effects that are on in the scenes of the cases.
+/// Effects that the scenes of the cases contain.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Effects {
     /// Provenance of the measurement.
     pub stamp: Stamp,
-    /// One entry per scene and effect.
+    /// One entry per scene and per effect that the scene contains.
     pub ledger: Vec<Entry>,
 }
 
@@ -113,13 +113,13 @@ pub struct Effects {
 pub struct Hold {
     /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Smallest and largest ratio of the largest stable step to the exact limit, and number of assemblies.
+    /// Smallest and largest ratio of the largest stable time step to the exact limit, and number of assemblies.
     pub limit: Option<([f64; 2], usize)>,
-    /// Smallest and largest value of the largest stable step where no exact limit is known, and its unit.
+    /// Smallest and largest value of the largest stable time step of assemblies without exact limit, and its unit.
     pub found: Option<([f64; 2], String)>,
-    /// Number of hard cases in which the required property holds at the default step.
+    /// Number of hard cases in which the required property holds at the default time step.
     pub holds: usize,
-    /// Number of hard cases in which it holds only at a smaller step.
+    /// Number of hard cases in which the required property holds only at a smaller time step.
     pub smaller: usize,
     /// Number of hard cases that end with an error message.
     pub typed: usize,
@@ -128,7 +128,7 @@ pub struct Hold {
 }
 
 impl Hold {
-    /// Returns the number of hard cases that the solver supports.
+    /// Returns the number of hard cases that the solver can represent.
     #[must_use]
     pub const fn asked(&self) -> usize {
         self.holds + self.smaller + self.typed + self.wrong
@@ -146,13 +146,13 @@ impl Stamp {
         Self { provenance: study.provenance.clone(), changed }
     }
 
-    /// Returns true if a solver changed since the measurement.
+    /// Returns true if a solver has changed since the measurement, or is not known to be unchanged.
     #[must_use]
     pub fn is_old(&self, solver: &str) -> bool {
         self.changed.iter().any(|changed| changed == solver)
     }
 
-    /// Returns the date of the measurement.
+    /// Returns the date of the measurement, without the time.
     #[must_use]
     pub fn day(&self) -> &str {
         self.provenance.date.split(' ').next().unwrap_or_default()
@@ -168,7 +168,7 @@ fn ends(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
-/// Returns the time of the cheapest setting of a solver within an error (s).
+/// Returns the time (s) of the cheapest setting of a solver with at most the error `target`.
 fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
     cost::cheapest(diagram, line, target)?.wall_seconds
 }
@@ -178,7 +178,7 @@ fn cheapest(diagram: &Diagram, lines: &[&str], target: f64) -> Option<f64> {
 }
 
 impl Costs {
-    /// Summarises a stored study.
+    /// Summarises a stored study. `today` returns the hash of the present sources of a solver.
     #[must_use]
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let names = cost::lines(&study.diagrams);
@@ -191,7 +191,7 @@ impl Costs {
             factors: TARGETS.map(|target| factor(study, name, &names, target)),
         });
         let count = |diagram: &&Diagram| names.iter().filter(|name| time(diagram, name, TARGETS[AT]).is_some()).count();
-        // The maximum of the reversed order is the first one.
+        // The last maximum of the reversed list is the first maximum of the list.
         let example = study.diagrams.iter().rev().max_by_key(count).cloned();
         let stamp = Stamp::new(study, &names, today);
         Self { stamp, quantities: study.diagrams.len(), lines: lines.collect(), example }
@@ -199,8 +199,8 @@ impl Costs {
 }
 
 impl Costs {
-    /// Adds the solvers of another session that are not yet included. Each is in units of the cheapest solver of its
-    /// session.
+    /// Adds the solvers of another study that are not yet included. Their costs are relative to the cheapest solver of
+    /// their own study.
     pub fn add(&mut self, other: Self) {
         let is_new = |line: &Line| self.lines.iter().all(|known| known.solver != line.solver);
         let new: Vec<Line> = other.lines.into_iter().filter(is_new).collect();
@@ -214,7 +214,8 @@ fn is_asked(diagram: &Diagram, line: &str) -> bool {
     cost::of_line(diagram, line).any(|point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed))
 }
 
-/// Returns the Pareto front of a solver in a diagram, in units of the cheapest time at an error of 1 %.
+/// Returns the Pareto front of a solver in a diagram. Times are divided by the time of the cheapest solver at an error
+/// of 1 %.
 fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
     let Some(unit) = cheapest(diagram, lines, TARGETS[AT]) else { return Vec::new() };
     let front = cost::front(cost::of_line(diagram, line));
@@ -223,7 +224,7 @@ fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
 
 fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Factor> {
     let reached = || study.diagrams.iter().filter_map(|diagram| Some((diagram, time(diagram, line, target)?)));
-    // A solver alone is the cheapest, which says nothing about its cost.
+    // A solver without a competitor is always the cheapest, so its ratio would say nothing about its cost.
     let competes = |diagram: &Diagram, target: f64| {
         let reaching = lines.iter().filter(|other| time(diagram, other, target).is_some());
         reaching.filter(|other| **other != line).count() > 0
@@ -250,7 +251,7 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
 }
 
 impl Stability {
-    /// Summarises a stored study.
+    /// Summarises a stored study. `today` returns the hash of the present sources of a solver.
     #[must_use]
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut names: Vec<&str> = Vec::new();
@@ -268,7 +269,7 @@ impl Stability {
 }
 
 impl Effects {
-    /// Summarises a stored study.
+    /// Summarises a stored study. `today` returns the hash of the present sources of a solver.
     #[must_use]
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let names: Vec<&str> = study.sources.keys().map(String::as_str).collect();
@@ -310,7 +311,7 @@ mod tests {
         let study = sample::costs();
         let costs = Costs::from_study(&study, &|_| Some("as then".to_owned()));
         let at = |name: &str| costs.lines.iter().find(|line| line.solver == name).unwrap().factors[AT];
-        // dem takes 1 ms and 4 ms, mpm 100 ms and 400 ms; rigid takes 2 ms for the first quantity only.
+        // `dem` takes 1 ms and 4 ms, `mpm` takes 100 ms and 400 ms, and `rigid` takes 2 ms for the first quantity only.
         let (dem, mpm, rigid) = (at("dem").unwrap(), at("mpm").unwrap(), at("rigid").unwrap());
         assert!((dem.times - 1.0).abs() < 1e-12 && dem.reached == 2 && dem.over_dem.is_none());
         assert!(
@@ -323,7 +324,7 @@ mod tests {
         assert!(line.asked == 2 && line.factors[2].is_none());
     }
 
-    /// The example of the first screen is the quantity that most solvers reach within 1 %: not the last one.
+    /// The example of the first screen is the quantity for which the most solvers reach 1 %, here not the last one.
     #[test]
     fn the_example_is_what_most_solvers_reach() {
         let example = Costs::from_study(&sample::costs(), &|_| None).example.unwrap();
@@ -336,7 +337,7 @@ mod tests {
         let then = |solver: &str| (solver != "mpm").then(|| "as then".to_owned());
         let costs = Costs::from_study(&study, &then);
         assert!(costs.stamp.is_old("mpm") && !costs.stamp.is_old("dem"));
-        // Without a stored hash, the sources are not known to be unchanged.
+        // Without a stored hash, the sources count as changed.
         let without = Study { sources: BTreeMap::new(), ..study };
         assert!(Costs::from_study(&without, &then).stamp.is_old("dem"));
     }

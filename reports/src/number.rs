@@ -1,15 +1,15 @@
 //! Numbers as text: few digits, `×10ⁿ` for very large or small values, and a true minus sign.
 
-/// A non-breaking space of fixed width between a number and its unit and within long counts.
+/// Narrow non-breaking space between a number and its unit, and between groups of digits.
 const THIN: char = '\u{202f}';
 
-/// Returns `value` with at most `digits` significant digits.
+/// Returns `value` with at most `digits` significant digits. A value below 10⁴ keeps all digits before the decimal point.
 #[must_use]
 pub fn significant(value: f64, digits: usize) -> String {
     trim(&fixed(value, digits))
 }
 
-/// Returns a measured or expected value with six significant digits.
+/// Returns a measured or expected value with at most six significant digits.
 #[must_use]
 pub fn value(value: f64) -> String {
     significant(value, 6)
@@ -21,8 +21,8 @@ pub fn with_unit(number: f64, unit: &str) -> String {
     append_unit(value(number), unit)
 }
 
-/// Returns the magnitude of an error or a tolerance with two significant digits. It is in percent unless it is very
-/// large or small.
+/// Returns an error or a tolerance with two significant digits. A magnitude from 9.95e-4 to 10 is written in percent; from
+/// 100 % on, all digits before the decimal point are kept.
 #[must_use]
 pub fn fraction(size: f64) -> String {
     let magnitude = size.abs();
@@ -35,7 +35,7 @@ pub fn fraction(size: f64) -> String {
     }
 }
 
-/// Returns a signed error as a fraction, or a dash if there is none.
+/// Returns a signed error in the form of [`fraction`], or a dash if there is none.
 #[must_use]
 pub fn error(error: Option<f64>) -> String {
     match error {
@@ -59,7 +59,7 @@ pub fn count(count: u64) -> String {
     text
 }
 
-/// Returns a duration (s) with an SI prefix and three significant digits.
+/// Returns a duration (s) with an SI prefix and at most three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
     let (scale, unit) = match seconds.abs() {
@@ -85,7 +85,8 @@ fn exponent_of(value: f64, digits: usize) -> i32 {
         .unwrap_or(0)
 }
 
-/// Returns exactly `digits` significant digits.
+/// Returns a value with `digits` significant digits, including trailing zeros. A value below 10⁴ keeps all digits before
+/// the decimal point.
 fn fixed(value: f64, digits: usize) -> String {
     if value.is_nan() {
         return "not a number".to_owned();

@@ -1,4 +1,4 @@
-//! Pages with figures of records, without results.
+//! Pages that contain figures of records, without results of claims.
 
 use crate::page::{figures, shell, slug, unique};
 use crate::store::{SaveError, add_figure};
@@ -9,8 +9,8 @@ use maud::{PreEscaped, html};
 use std::collections::BTreeSet;
 use std::path::Path;
 
-/// Writes `index.html` and `figures/NAME.svg` to `dir`, and films also as `figures/NAME.png`. Writes all files, or none
-/// if an error occurs.
+/// Writes `index.html` and `figures/NAME.svg` to `dir`, and each film also as `figures/NAME.png`. If an error occurs,
+/// no file is written.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.

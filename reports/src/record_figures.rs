@@ -1,6 +1,6 @@
-//! Figures of any record. A scene in two dimensions has forces, stress, fringes, plastic strain, rotation, speed,
-//! profiles and films. A scene in three dimensions has lit grains and contact forces. All scenes have the time series
-//! of their probes. Several records are shown side by side at equal times.
+//! Figures of any record. Figures of a two-dimensional scene show forces, stress, fringes, plastic strain, rotation,
+//! speed, profiles and films. Figures of a three-dimensional scene show lit grains and contact forces. All have the
+//! time series of their probes. Several records are shown side by side at equal times.
 
 use crate::number;
 use crate::series_figures;
@@ -12,23 +12,25 @@ use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::force_plot::force_plot;
 use grainbench_scene::record::{Record, Snapshot};
 
-/// Pixels along the longer side of a picture, and of a film.
+/// Number of pixels along the longer side of a picture.
 const PIXELS: u32 = 800;
+/// Number of pixels along the longer side of a film.
 const FILM_PIXELS: u32 = 400;
-/// Largest number of frames of a film, and largest number of pictures of a quantity.
+/// Largest number of frames of a film.
 const FRAMES: usize = 60;
+/// Largest number of times at which a quantity of a single record is shown.
 const PICTURES: usize = 3;
-/// Smallest number of snapshots for a film.
+/// Smallest number of snapshots from which a film is made.
 const FEWEST: usize = 8;
-/// Number of fringes from zero stress to the 98th percentile of the stress, if the stress c of a fringe is not given.
+/// Number of fringes between zero and the 98th percentile of the stress, if the stress c of a fringe is not given.
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
-/// Record of a run, with the name that distinguishes it in figures.
+/// Record of a run, with a name that distinguishes it in figures.
 pub struct NamedRecord<'a> {
-    /// Title of its panels.
+    /// Name, which is the title of its panels.
     pub name: String,
-    /// The record.
+    /// Record of the run.
     pub record: &'a Record,
 }
 
@@ -47,7 +49,7 @@ pub fn is_plane(record: &Record) -> bool {
         let grains = snapshot.grains.iter().map(|grain| grain.position.z);
         grains.chain(snapshot.points.iter().map(|point| point.position.z)).collect::<Vec<f64>>()
     };
-    // If grains are inserted during a run, the first snapshots may be empty.
+    // If grains are inserted during a run, its first snapshots may be empty.
     let all: Vec<f64> = record.snapshots.iter().flat_map(heights).collect();
     !all.is_empty() && all.iter().all(|&height| height == 0.0)
 }
@@ -55,9 +57,9 @@ pub fn is_plane(record: &Record) -> bool {
 /// Options of the figures of records.
 #[derive(Clone, Copy, Debug)]
 pub struct FigureOptions {
-    /// Stress c of a photoelastic fringe (Pa); none to show about three fringes.
+    /// Stress c of a photoelastic fringe (Pa). With none, about three fringes are shown.
     pub fringe: Option<f64>,
-    /// First and last time (s).
+    /// First and last time of the figures (s).
     pub window: (f64, f64),
     /// Largest number of frames of a film.
     pub frames: usize,
@@ -69,15 +71,15 @@ impl Default for FigureOptions {
     }
 }
 
-/// Returns all figures for which the records have data, at times of the first record, and the time series of their
-/// probes. Records in three dimensions are drawn from the front, the right and above.
+/// Returns all figures for which the records have data, at times of the first record, and the time series of the
+/// probes. Three-dimensional records are shown in one view, obliquely from the front, the right and above.
 #[must_use]
 pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure> {
     let (from, to) = shown.window;
     let Some(first) = records.first() else { return Vec::new() };
     let mut all: Vec<&Snapshot> =
         first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
-    // Final snapshots without points and contacts are omitted, because they show nothing, for example after an outflow.
+    // Final snapshots without points and contacts are omitted. They would show nothing, for example after an outflow.
     let shows = |snapshot: &&Snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty();
     if let Some(last) = all.iter().rposition(shows) {
         all.truncate(last + 1);
@@ -91,7 +93,7 @@ pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure
     figures
 }
 
-/// Returns the snapshots of each record at some times. Records without snapshots are left out, and not shown as empty.
+/// Returns the name of each record and its snapshots nearest to the given times (s). Records without snapshots are left out.
 fn film_of<'a>(records: &'a [NamedRecord<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
     let frames = |named: &'a NamedRecord<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
     records
@@ -101,7 +103,7 @@ fn film_of<'a>(records: &'a [NamedRecord<'_>], clock: &[f64]) -> Vec<(String, Ve
         .collect()
 }
 
-/// Returns grains and contact forces at the end, and a film.
+/// Returns figures of a three-dimensional scene: grains and contact forces at the end, and a film.
 fn solid(records: &[NamedRecord<'_>], all: &[&Snapshot], shown: &FigureOptions) -> Vec<Figure> {
     let Some(last) = all.last() else { return Vec::new() };
     let shots = |clock: &[f64]| film_of(records, clock).into_iter().map(|(title, frames)| Lit { title, frames });
@@ -120,7 +122,7 @@ fn solid(records: &[NamedRecord<'_>], all: &[&Snapshot], shown: &FigureOptions) 
     figures
 }
 
-/// Returns the fields over the plane.
+/// Returns figures of a two-dimensional scene.
 fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions) -> Vec<Figure> {
     let shown: Vec<f64> = spread(all, if records.len() > 1 { 1 } else { PICTURES }).map(|shot| shot.time).collect();
     let mut figures: Vec<Figure> =
@@ -157,7 +159,7 @@ fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions
                     frames: clock.iter().filter_map(|&time| named.at(time)).collect(),
                 })
                 .collect();
-            // The colours of a film do not change over time.
+            // All frames of a film have the range of the pictures, so that a colour means the same value at all times.
             let moving = film(quantity, &shots, ("time t (s)", &clock), FILM_PIXELS, Some(range));
             figures.push(Figure::field(&format!("{name}-film"), &format!("{title}, film"), &caption, moving));
         }
@@ -166,7 +168,7 @@ fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions
     figures
 }
 
-/// Returns true if a snapshot has data for a quantity. Missing data are not zero.
+/// Returns true if a snapshot has data for a quantity. Missing data do not count as zero.
 fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
     let has_points = !snapshot.points.is_empty();
     match quantity {
@@ -177,21 +179,22 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
     }
 }
 
-/// Returns a note that names the records without the quantity.
+/// Returns a sentence that names the records without data for the quantity.
 fn not_told(mute: &[&NamedRecord<'_>]) -> String {
     let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
     if names.is_empty() { String::new() } else { format!(" Not recorded by {}.", names.join(", ")) }
 }
 
-/// Returns up to `count` evenly spaced snapshots, including the last. The first is left out if there are several.
+/// Returns at most `count` evenly spaced snapshots. The last snapshot is always included, and the first only if it is the
+/// only snapshot.
 fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item = &'a Snapshot> {
     let last = snapshots.len().saturating_sub(1);
     let count = count.min(last.max(1)).max(1);
     (1..=count).filter_map(move |at| snapshots.get(at * last / count).copied())
 }
 
-/// Returns the quantities to plot: stress if there are contacts or points, plastic strain and rotation if they are not
-/// zero, and speed.
+/// Returns the quantities to plot: speed, stress if there are contacts or points, and plastic strain and rotation if
+/// they are not zero.
 fn quantities(records: &[NamedRecord<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
     let mut quantities = Vec::new();
@@ -221,14 +224,14 @@ fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {
     Some(Figure::forces(
         &name,
         format!("Contact forces {when} {}", if several { &named.name } else { "" }).trim_end(),
-        "Bars through the contacts along the force, with the length of both radii and a width proportional to the \
-         force (Cundall and Strack 1979). Radii show the rotation of the grains.",
+        "Each bar passes through a contact along the force. Its length is the sum of both radii, and its width is \
+         proportional to the force (Cundall and Strack 1979). The drawn radii show the rotation of the grains.",
         force_plot(last),
     ))
 }
 
-/// Returns profiles of velocity and displacement across a domain that is periodic along one axis, the direction of
-/// flow.
+/// Returns profiles of velocity and displacement across the flow, if the domain is periodic along exactly one axis, the
+/// direction of flow.
 fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
     let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {
@@ -249,7 +252,7 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
             Figure::graph(
                 word,
                 &format!("Profile of {word} at the end"),
-                &format!("Mean {word} along {to} of the material in slices across {from}."),
+                &format!("Mean {word} of the material along {to}, in slices along {from}."),
                 [Axis::linear(&format!("{from} (m)")), Axis::linear(&format!("{word} along {to} ({unit})"))],
                 curves.collect(),
             )
@@ -257,7 +260,7 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
         .collect()
 }
 
-/// Returns the file name and the title.
+/// Returns the file name and the title of a quantity's figure.
 const fn words(quantity: Quantity) -> (&'static str, &'static str) {
     match quantity {
         Quantity::StressDifference => ("stress", "Difference of principal stresses"),
@@ -271,16 +274,16 @@ const fn words(quantity: Quantity) -> (&'static str, &'static str) {
 fn caption(quantity: Quantity) -> String {
     match quantity {
         Quantity::StressDifference => {
-            "Difference of the principal stresses: of the material points if there are any, otherwise from the elastic \
-             solution of every disc under its contact forces."
+            "Difference of the principal stresses. It is the stress of the material points if there are any, and \
+             otherwise the elastic solution for each disc under its contact forces."
                 .to_owned()
         }
         Quantity::Fringes(constant) => {
-            format!("Photoelastic fringes, bright where there is no stress; c = {constant:.3e} Pa.")
+            format!("Photoelastic fringes, bright at zero stress; c = {constant:.3e} Pa.")
         }
         Quantity::PlasticStrain => "Equivalent plastic strain of the material points.".to_owned(),
         Quantity::Rotation => "Rotation since the start, counter-clockwise positive.".to_owned(),
-        Quantity::Speed => "Speed of the material, spin included.".to_owned(),
+        Quantity::Speed => "Speed of the material, including the spin of grains.".to_owned(),
     }
 }
 
@@ -330,7 +333,7 @@ mod tests {
         );
     }
 
-    /// A dump has neither contacts nor angles: its panels are left out, and the caption states it.
+    /// A dump contains neither contacts nor angles. Its panels are then left out, and the caption states this.
     #[test]
     fn what_nobody_told_is_not_zero() {
         let grains = sample::record();

@@ -1,4 +1,4 @@
-//! Data of a report. They suffice to write every output again without a solver.
+//! Data of a report. With them, all output files can be written again without a solver.
 
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
@@ -9,7 +9,7 @@ use crate::judged::ExternalResults;
 use crate::measured::Measurements;
 use crate::stored_figure;
 
-/// Report of one run of the harness.
+/// Report of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Version, date, machine and options of the run.
@@ -19,26 +19,26 @@ pub struct Report {
     /// Stored results of external solvers.
     #[serde(default)]
     pub judged: Vec<ExternalResults>,
-    /// Outcomes that the page and the terminal show; empty for all. Every file holds all results.
+    /// Outcomes that the page and the terminal show; empty to show all. Files always contain all results.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub shown: Vec<Outcome>,
-    /// Stored measurements of cost and stability.
+    /// Stored measurements of cost, stability and effects.
     #[serde(default)]
     pub measured: Measurements,
-    /// Reasons why the run is red apart from its results, such as `interrupted: 3 checks left out`.
+    /// Further reasons why the run is red, such as `interrupted: 3 checks left out`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub red_because: Vec<String>,
 }
 
 impl Report {
-    /// Returns a report of some sections, without stored results of other solvers.
+    /// Returns a report with the given sections. It has no stored results of external solvers and no measurements.
     #[must_use]
     pub fn new(provenance: Provenance, sections: Vec<Section>) -> Self {
         let measured = Measurements::default();
         Self { provenance, sections, judged: Vec::new(), shown: Vec::new(), measured, red_because: Vec::new() }
     }
 
-    /// Returns a report with only the results that are shown, and their controls.
+    /// Returns a report that contains only the results to be shown, and their controls.
     #[must_use]
     pub fn view(&self) -> Cow<'_, Self> {
         if self.shown.is_empty() {
@@ -62,9 +62,9 @@ impl Report {
 pub struct Provenance {
     /// Version of the harness.
     pub version: String,
-    /// Commit of the harness, with a mark if the working tree was modified.
+    /// Commit of the harness. A mark shows that the working tree was modified.
     pub commit: String,
-    /// Date and time.
+    /// Date and time of the run.
     pub date: String,
     /// Processor and operating system.
     pub machine: String,
@@ -72,7 +72,7 @@ pub struct Provenance {
     pub rustc: String,
     /// Options of the run in words.
     pub options: Vec<String>,
-    /// Wall-clock time of the whole run (s).
+    /// Wall-clock time of the run (s).
     #[serde(deserialize_with = "stored_figure::number")]
     pub wall_seconds: f64,
 }
@@ -84,37 +84,37 @@ pub struct Section {
     pub name: String,
     /// Title in words.
     pub title: String,
-    /// Claim of the case, in one paragraph.
+    /// Claim of the case in words.
     pub claim: String,
-    /// Derivation of the expected answer: Markdown without raw HTML, formulas as text.
+    /// Derivation of the expected values, in Markdown without raw HTML. Formulas are text.
     pub derivation: String,
     /// Limitations of this test, in Markdown.
     pub weak: String,
-    /// Figures in the order of presentation.
+    /// Figures in the order in which they are shown.
     #[serde(deserialize_with = "stored_figure::figures")]
     pub figures: Vec<Figure>,
     /// Results in the order of the claims.
     pub verdicts: Vec<Verdict>,
     /// Negative controls.
     pub controls: Vec<Control>,
-    /// Cost of every run.
+    /// Computing cost of every run.
     pub runs: Vec<RunCost>,
 }
 
-/// Computing cost of one run of a claim.
+/// Computing cost of a run of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
     /// Variant of the scene.
     pub variant: String,
-    /// Solver and convention.
+    /// Solver and contact convention, such as `dem:lammps`.
     pub solver: String,
-    /// Resolution level.
+    /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
     /// Number of steps.
     pub steps: u64,
     /// Number of steps times number of grains.
     pub particle_steps: u64,
-    /// Number of evaluated contact laws; absent if a program does not report it.
+    /// Number of evaluations of contact laws; absent if the program does not report it.
     pub contact_evaluations: Option<u64>,
     /// Wall-clock time of the stepping loop (s).
     #[serde(deserialize_with = "stored_figure::number")]

@@ -12,11 +12,11 @@ struct Results<'a> {
     verdicts: Vec<Row<'a>>,
     controls: Vec<&'a Control>,
     points: Vec<Point<'a>>,
-    /// Reasons for which the report is red beside its results, such as an interrupted run.
+    /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],
 }
 
-/// A result with its colour.
+/// A result with its outcome and colour.
 #[derive(Serialize)]
 struct Row<'a> {
     #[serde(flatten)]
@@ -30,7 +30,7 @@ impl<'a> Row<'a> {
     }
 }
 
-/// One line of `points.csv`: the cost of a run, regardless of its results.
+/// Cost of a run: one line of `points.csv`, and one entry of `points` in `results.json`.
 #[derive(Serialize)]
 struct Point<'a> {
     case: &'a str,
@@ -62,10 +62,10 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
     })
 }
 
-/// Returns `results.json`: provenance, results, controls and cost of runs.
+/// Returns `results.json`: provenance, results, controls and costs of runs.
 ///
 /// # Errors
-/// When a value has no JSON form; this does not occur in reports of this project.
+/// When a value has no JSON form. This does not occur in reports of this project.
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
@@ -77,13 +77,13 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Returns `points.csv`: a header and one line per run.
+/// Returns `points.csv` with a header and one line per run.
 ///
 /// # Errors
-/// When a line cannot be encoded; this does not occur in reports of this project.
+/// When a line cannot be encoded. This does not occur in reports of this project.
 pub fn points_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    // The header is written separately, so that a report without runs has one too.
+    // The header is written separately, so that it exists without any run.
     table.write_record([
         "case",
         "variant",

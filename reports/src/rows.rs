@@ -1,4 +1,4 @@
-//! Results of a report as a table: `rows.csv` and, on request, Parquet.
+//! Results of a report as a table: `rows.csv` and, if requested, Parquet.
 
 use std::io;
 
@@ -8,11 +8,11 @@ use crate::report::Report;
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::Verdict;
 
-/// Name of the table as Parquet.
+/// File name of the table as Parquet.
 pub const ROWS_PARQUET: &str = "rows.parquet";
 
-/// Returns the columns with their names. Absent values are null. For a bound, a band or an order, `expected` is null
-/// and `bound` holds the expectation in words.
+/// Returns the columns of the table with their names. Absent values are null. For a bound, a band or an order,
+/// `expected` is null, and `bound` contains the expectation in words.
 fn columns(report: &Report) -> Vec<(String, Values)> {
     let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
     let words = |value: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| value(row)).collect());
@@ -44,16 +44,16 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
     columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
 }
 
-/// Returns `rows.csv`: a header and one line per result. Each number is the shortest text that reads back to the same
-/// bits.
+/// Returns `rows.csv` with a header and one line per result. Each number is the shortest text that reads back to the
+/// same bits.
 ///
 /// # Errors
-/// When a line cannot be encoded; this does not occur in reports of this project.
+/// When a line cannot be encoded. This does not occur in reports of this project.
 pub fn rows_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
     csv(&columns(report))
 }
 
-/// Returns columns of words and numbers as CSV.
+/// Returns columns of texts and optional numbers as CSV. Cells of columns of other types are empty.
 pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(columns.iter().map(|(name, _)| harmless(name.clone())))?;

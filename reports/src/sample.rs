@@ -1,4 +1,4 @@
-//! A small report for tests, with every kind of result and figure.
+//! A small report for tests, with all kinds of results and figures.
 
 use crate::study::effects::{EffectResult, Entry, Shift};
 use crate::study::point::{Counts, Diagram, Point, PointStatus};
@@ -15,7 +15,7 @@ use crate::measured::{Costs, Effects, Measurements, Stability};
 use crate::report::{Provenance, Report, RunCost, Section};
 use crate::study::Study;
 
-/// Returns a result that passes or fails by its numbers.
+/// Returns a result that passes if |value − expected|/|expected| is at most `allowed`, and fails otherwise.
 pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expected: f64, allowed: f64) -> Verdict {
     let error = (value - expected) / expected.abs();
     Verdict {
@@ -80,7 +80,7 @@ fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {
 fn backspin() -> Section {
     let case = "backspin";
     let times = || (0..=400).map(|step| f64::from(step) * 0.002);
-    // The sphere slides until t = 0.2913 s and rolls after that.
+    // The sphere slides until t = 0.2913 s, and then rolls.
     let exact = |t: f64| {
         if t < 0.2913 { 2.0 - 1.9620 * t } else { 1.428_471 }
     };
@@ -300,8 +300,8 @@ pub(crate) fn report() -> Report {
     report
 }
 
-/// Returns the cost of two quantities with three solvers. `dem` takes 1 ms and 4 ms, `mpm` 100 ms and 400 ms. `rigid`
-/// reaches 1 % in the first quantity only.
+/// Returns the cost of two quantities with three solvers. `dem` takes 1 ms and 4 ms, and `mpm` takes 100 ms and 400 ms.
+/// `rigid` reaches 1 % only for the first quantity.
 pub(crate) fn costs() -> Study {
     let point = |solver: &str, quantity: &str, error: f64, wall: f64| Point {
         case: "backspin".into(),
@@ -340,7 +340,7 @@ pub(crate) fn costs() -> Study {
     study
 }
 
-/// Returns the stability of two solvers: stable steps with and without an exact limit, and two hard cases.
+/// Returns the stability of two solvers: largest stable time steps with and without an exact limit, and two hard cases.
 pub(crate) fn stability() -> Study {
     let limit = |solver: &str, unit: &str, at: f64, found: f64, exact: Option<f64>| Limit {
         scene: "disc on a wall".into(),
@@ -381,7 +381,7 @@ pub(crate) fn stability() -> Study {
     study
 }
 
-/// Returns effects of two scenes. Without friction, the answers change by a tenth, a fifth and a half.
+/// Returns effects of two scenes. Without friction, the results change by a tenth, a fifth and a half of their scale.
 pub(crate) fn effects() -> Study {
     let shift = |without: f64| Shift {
         quantity: "velocity".into(),
@@ -412,14 +412,14 @@ pub(crate) fn effects() -> Study {
     study
 }
 
-/// Returns the report with text in every field that breaks out of a page without escaping.
+/// Returns a report in which every text would end its HTML element if it were not escaped.
 pub(crate) fn hostile() -> Report {
     const TEXT: &str =
         "\"'></title></svg></style><script>alert(1)</script><img src=x onload=\"y\"> &amp; ![i](a) [l](javascript:z)";
     fn poison(value: &mut serde_json::Value) {
         match value {
             serde_json::Value::String(text) => {
-                // Values of enumerations must stay valid.
+                // Texts that name variants of enumerations must stay valid.
                 let fixed = ["Line", "Dashed", "Markers", "MarkedLine"];
                 let is_word = fixed.contains(&text.as_str())
                     || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()

@@ -1,19 +1,19 @@
-//! Time series of probes: one graph per quantity, such as velocities, positions and forces.
+//! Time series of probes: one graph per quantity, such as velocity, position or force.
 
 use crate::record_figures::NamedRecord;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_scene::record::Series;
 
-/// Largest number of curves in a graph that are easy to distinguish.
+/// Largest number of curves of a graph. More curves would be hard to distinguish.
 const CURVES: usize = 8;
 
-/// Splits the name of a column into probe and quantity: `disc.vx` is `vx` of `disc`.
+/// Splits the name of a column into probe and quantity: `disc.vx` is the quantity `vx` of the probe `disc`.
 fn parts(name: &str) -> (&str, &str) {
     name.rsplit_once('.').unwrap_or(("", name))
 }
 
-/// Returns one graph for each quantity of the probes of any record, within a window of time. Missing values and values
-/// that are not finite are not plotted.
+/// Returns one graph for each quantity of the probes of all records, within a time window (s). Values that are missing
+/// or not finite are not plotted.
 pub(crate) fn figures(records: &[NamedRecord<'_>], window: (f64, f64)) -> Vec<Figure> {
     let mut quantities: Vec<(&str, &str)> = Vec::new();
     for column in records.iter().flat_map(|named| &named.record.series.columns) {
@@ -42,7 +42,7 @@ fn figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), window: (
         }
     }
     let more = curves.len().saturating_sub(CURVES);
-    let left_out = if more > 0 { format!(" {more} more are in the table of probes.") } else { String::new() };
+    let left_out = if more > 0 { format!(" The table of probes has {more} more.") } else { String::new() };
     curves.truncate(CURVES);
     let words = quantity.replace('_', " ");
     let label = if unit == "1" { words.clone() } else { format!("{words} ({unit})") };

@@ -1,8 +1,7 @@
-//! Figures of records in three dimensions: grains as lit spheres without perspective, walls as lines, contact forces as
-//! bars.
+//! Figures of three-dimensional records: grains as lit spheres, walls as lines, contact forces as bars.
 //!
-//! The projection is orthographic. A position p is drawn at (p·r, p·u), where r, u and t point right, up and towards
-//! the eye. Of two objects in one pixel, the one with the larger p·t is visible.
+//! The projection is orthographic. A position p is drawn at (p·r, p·u), where the unit vectors r, u and t point right,
+//! up and towards the eye. If two objects cover one pixel, the object with the larger p·t is visible.
 
 use crate::number;
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
@@ -11,7 +10,7 @@ use grainbench_scene::record::{Partner, Snapshot, WallState};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
-/// Pixels along the longer side of a picture.
+/// Number of pixels along the longer side of a picture.
 const PIXELS: f64 = 640.0;
 /// Direction of the eye from the centre of the scene.
 const EYE: Vector3<f64> = Vector3::new(0.5, -0.8, 0.4);
@@ -19,18 +18,18 @@ const EYE: Vector3<f64> = Vector3::new(0.5, -0.8, 0.4);
 const LIGHT: Vector3<f64> = Vector3::new(0.1, -0.7, 0.8);
 /// Light intensity on surfaces that face away from the light source.
 const AMBIENT: f64 = 0.3;
-/// Half-width of the widest bar, in radii.
+/// Half-width of the widest force bar, in grain radii.
 const WIDEST: f64 = 0.7;
-/// Number of straight pieces of a circle.
+/// Number of straight lines that represent a circle.
 const PIECES: usize = 48;
 
-/// Snapshots of a record, and a title.
+/// Snapshots of a record, with a title.
 pub(crate) struct Shot<'a> {
     pub(crate) title: String,
     pub(crate) frames: Vec<&'a Snapshot>,
 }
 
-/// Projection from positions to pixels.
+/// Projection from positions (m) to pixels.
 struct View {
     right: Vector3<f64>,
     up: Vector3<f64>,
@@ -41,7 +40,7 @@ struct View {
 }
 
 impl View {
-    /// Returns a view that contains all grains, material points and finite walls.
+    /// Returns a projection that shows all grains, material points and finite walls.
     fn from_shots(shots: &[Shot<'_>]) -> Option<Self> {
         let toward = EYE.normalize();
         let right = Vector3::z().cross(&toward).normalize();
@@ -67,7 +66,7 @@ impl View {
         Some(Self { right, up, toward, low, pixel, size: (count(reach.x), count(reach.y)) })
     }
 
-    /// Returns the pixel from the left and from the top, and the depth towards the eye.
+    /// Returns the pixel coordinates from the left and from the top, and the depth towards the eye (m).
     fn at(&self, place: Vector3<f64>) -> (f64, f64, f64) {
         let across = (place.dot(&self.right) - self.low.x) / self.pixel;
         let up = (place.dot(&self.up) - self.low.y) / self.pixel;
@@ -75,7 +74,7 @@ impl View {
     }
 }
 
-/// Levels of the pixels, and the depth of the visible objects.
+/// Levels of all pixels, and depths of the visible objects.
 struct Canvas<'a> {
     view: &'a View,
     levels: Vec<u8>,
@@ -99,7 +98,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a sphere; `level` returns the level for a light intensity.
+    /// Draws a sphere. `level` returns the level for a light intensity from 0 to 1.
     fn sphere(&mut self, centre: Vector3<f64>, radius: f64, level: impl Fn(f64) -> u8) {
         let (x, y, depth) = self.view.at(centre);
         let (reach, light) = (radius / self.view.pixel, LIGHT.normalize());
@@ -120,7 +119,7 @@ impl<'a> Canvas<'a> {
         }
     }
 
-    /// Draws a straight bar with a width in pixels.
+    /// Draws a straight bar. `width` is in pixels.
     fn bar(&mut self, from: Vector3<f64>, to: Vector3<f64>, width: f64, level: u8) {
         let (a, b) = (self.view.at(from), self.view.at(to));
         let length = (b.0 - a.0).hypot(b.1 - a.1);
@@ -163,7 +162,7 @@ fn outlines(snapshot: &Snapshot) -> Vec<Vec<Vector3<f64>>> {
 
 fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<Vec<Vector3<f64>>> {
     match wall.corners[..] {
-        // An infinite plane is drawn as far as the domain extends.
+        // An infinite plane is drawn over the extent of the domain.
         [point, normal, ..] if wall.infinite => {
             let middle = 0.5 * (low + high);
             let foot = middle + normal * (point - middle).dot(&normal);
@@ -172,7 +171,7 @@ fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<V
             let (a, b) = (first * half(first), second * half(second));
             vec![vec![foot - a - b, foot + a - b, foot + a + b, foot - a + b, foot - a - b]]
         }
-        // Two ends of an axis and a point of the rim at each end describe a cylinder or a cone.
+        // A cylinder or cone is given by the two ends of its axis and a point on the rim at each end.
         [a, b, rim_a, rim_b] if is_round([a, b, rim_a, rim_b]) => {
             let (first, second) = across((b - a).normalize());
             let circle = |centre: Vector3<f64>, radius: f64| {
@@ -186,21 +185,21 @@ fn outline(wall: &WallState, (low, high): (Vector3<f64>, Vector3<f64>)) -> Vec<V
             let sides = (0..PIECES).step_by(PIECES / 8).map(|at| vec![ring_a[at], ring_b[at]]).collect::<Vec<_>>();
             [vec![ring_a, ring_b], sides].concat()
         }
-        // The snapshot contains the position of a mesh, but not its triangles.
+        // A snapshot contains the position of a mesh, but not its triangles, so nothing is drawn.
         [] | [_, _, _] => Vec::new(),
         ref corners => vec![corners.iter().chain(corners.first()).copied().collect()],
     }
 }
 
-/// Returns true for the corners of a round wall. The third point of a round wall lies on the rim, so its direction from
-/// the first is perpendicular to the axis. In a rectangle, it is the opposite corner.
+/// Returns true if four points describe a round wall. The third point of a round wall is on the rim, so its direction
+/// from the first is perpendicular to the axis. The third point of a rectangle is the opposite corner.
 fn is_round([a, b, rim_a, rim_b]: [Vector3<f64>; 4]) -> bool {
     let axis = b - a;
     let is_across = |way: Vector3<f64>| way.dot(&axis).abs() <= 1e-9 * axis.norm_squared();
     is_across(rim_a - a) && is_across(rim_b - b)
 }
 
-/// Returns two unit vectors that are perpendicular to a third and to each other.
+/// Returns two unit vectors that are perpendicular to `normal` and to each other.
 fn across(normal: Vector3<f64>) -> (Vector3<f64>, Vector3<f64>) {
     let other = if normal.z.abs() < 0.9 { Vector3::z() } else { Vector3::x() };
     let first = normal.cross(&other).normalize();
@@ -213,7 +212,7 @@ fn speeds(snapshot: &Snapshot) -> impl Iterator<Item = f64> {
     snapshot.grains.iter().map(|grain| grain.velocity.norm()).chain(points)
 }
 
-/// Returns the grains, lit and coloured by their speed. Several frames make a film.
+/// Returns a figure of the lit grains, coloured by speed. Several frames make a film.
 pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
     let view = View::from_shots(shots)?;
     let all = shots.iter().flat_map(|shot| &shot.frames).flat_map(|snapshot| speeds(snapshot));
@@ -226,7 +225,7 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
                 canvas.sphere(grain.position, grain.radius, |shade| lit(colour(grain.velocity), shade));
             }
         }
-        // A material point is drawn as a sphere of its volume.
+        // A material point is drawn as a sphere of the same volume.
         for point in &snapshot.points {
             let radius = (0.75 / std::f64::consts::PI * point.volume).cbrt();
             canvas.sphere(point.position, radius, |shade| lit(colour(point.velocity), shade));
@@ -238,12 +237,13 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
     Some(Figure::field(
         if film { "grains-film" } else { "grains" },
         if film { "Grains, film" } else { "Grains" },
-        "Grains from the front, the right and above, without perspective, coloured by their speed; walls as lines.",
+        "Grains from the front, from the right and from above, without perspective, coloured by speed. Lines are \
+         walls.",
         field(&view, shots, times, ("speed", "m/s"), range, Shades::Lit, &frame),
     ))
 }
 
-/// Returns the contact forces as bars through the contacts; none if no contacts are reported.
+/// Returns a figure of the contact forces as bars; none if no record contains a contact.
 pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     let view = View::from_shots(shots)?;
     let shots_with_contacts: Vec<Shot<'_>> = shots
@@ -289,7 +289,10 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     Some(Figure::field(
         "forces",
         "Contact forces",
-        &format!("Bars from centre to centre, with a width proportional to the contact force.{missing}"),
+        &format!(
+            "Each bar connects the centres of two grains in contact. Its width is proportional to the contact \
+                  force.{missing}"
+        ),
         field(&view, &shots_with_contacts, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
     ))
 }
@@ -321,7 +324,7 @@ fn field(
     }
 }
 
-/// Returns a number with two digits that is at least `value`, or 1 if `value` is not positive.
+/// Returns the smallest number with two significant digits that is at least `value`; 1 if `value` is not positive.
 fn readable(value: f64) -> f64 {
     if value > 0.0 {
         let unit = 10_f64.powf(value.log10().floor() - 1.0);
@@ -341,7 +344,7 @@ mod tests {
         snapshot.grains.truncate(2);
         for (at, grain) in snapshot.grains.iter_mut().enumerate() {
             grain.radius = 1.0;
-            // Seen from the eye, the second grain is behind the first.
+            // From the eye, the second grain is behind the first.
             grain.position = -EYE.normalize() * 5.0 * at as f64;
             grain.velocity = Vector3::new(at as f64, 0.0, 0.0);
         }

@@ -1,4 +1,4 @@
-//! Output directory of a report. It is written completely, and can be read back to draw the report again.
+//! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
 use std::fs;
 use std::io;
@@ -20,7 +20,7 @@ use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
 use grainbench_store::StagedDir;
 use grainbench_store::WriteError;
 
-/// File from which all other files can be written again.
+/// File from which all files of a report can be written again.
 pub const REPORT_FILE: &str = "report.json";
 
 /// Error when a report cannot be written.
@@ -32,7 +32,7 @@ pub enum SaveError {
     /// A figure cannot be drawn.
     #[error(transparent)]
     Draw(#[from] plot::DrawError),
-    /// A value has no form in a file format.
+    /// A value cannot be written in a file format.
     #[error("cannot encode {file}: {reason}")]
     Encode {
         /// Name of the file.
@@ -42,7 +42,7 @@ pub enum SaveError {
     },
 }
 
-/// Error when a report cannot be read.
+/// Error when a report or a record cannot be read.
 #[derive(Debug, Error)]
 pub enum LoadError {
     /// The file cannot be read.
@@ -53,13 +53,13 @@ pub enum LoadError {
         /// Error of the operating system.
         source: io::Error,
     },
-    /// The directory holds the output of a run that crashed or was ended.
+    /// The directory contains the output of a run that crashed or was interrupted.
     #[error("{}: expected a complete record, but the run did not finish; the file contains the reason", path.display())]
     Broken {
         /// Path of the file with the reason.
         path: PathBuf,
     },
-    /// The file is not a valid report.
+    /// The file is not JSON, or its content is not that of a report or record.
     #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
     Damaged {
         /// Path of the file.
@@ -68,18 +68,18 @@ pub enum LoadError {
         line: usize,
         /// Column, from 1.
         column: usize,
-        /// Keys that lead to the invalid value.
+        /// Path of keys to the invalid value.
         place: String,
-        /// Expected and found content.
+        /// Expected content and content found.
         reason: String,
     },
 }
 
-/// Writes a report to `dir`: all files, or none if an error occurs.
+/// Writes the files of a report to `dir`. If an error occurs, no file is written.
 ///
 /// The files are `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
-/// `figures/CASE-NAME.svg`. The data of graphs are added as `.csv`, films as `.png`, and parts that the page has no
-/// room for as separate pages.
+/// `figures/CASE-NAME.svg`. The data of graphs are added as `.csv` and films as `.png`. Parts that would make the page
+/// too large become separate pages.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
@@ -90,7 +90,7 @@ pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveEr
     Ok(())
 }
 
-/// Writes a report to `dir`, with the results also as Parquet.
+/// Writes the files of a report to `dir`, and the results also as Parquet.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
@@ -137,7 +137,7 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     Ok(())
 }
 
-/// Adds the files of a figure: the picture, the data of a graph as CSV, and a film as an animated PNG.
+/// Adds the files of a figure: the picture as SVG, the data of a graph as CSV, and a film as an animated PNG.
 ///
 /// # Errors
 /// When a file cannot be written or the figure cannot be drawn.
@@ -148,7 +148,7 @@ pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Re
     Ok(())
 }
 
-/// Returns the paths and the contents of the files of a figure.
+/// Returns the path and the content of each file of a figure.
 fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
     let mut files = vec![(format!("figures/{name}.svg"), plot::draw(figure)?.into_bytes())];
     if let Drawing::Graph(graph) = &figure.drawing {
@@ -162,14 +162,14 @@ fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, S
     Ok(files)
 }
 
-/// Returns the data of a graph, one line per point. Values that are not finite are left empty.
+/// Returns the data of a graph as CSV, one line per point. Values that are not finite are empty cells.
 fn graph_csv(graph: &Graph) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     table.write_record(["curve", &graph.x.label, &graph.y.label])?;
     let number = |value: f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
     let mut name = String::new();
     for curve in &graph.curves {
-        // Points without a label belong to the previous curve with a label.
+        // Points without a label belong to the previous labelled curve.
         if !curve.label.is_empty() {
             name = harmless(curve.label.clone());
         }
@@ -184,7 +184,7 @@ impl Report {
     /// Reads the report that [`write_report`] wrote to `dir`.
     ///
     /// # Errors
-    /// When the file is missing or damaged; the message names the position.
+    /// When the file is missing or damaged. The message names the position in the file.
     pub fn load(dir: impl AsRef<Path>) -> Result<Self, LoadError> {
         let path = dir.as_ref().join(REPORT_FILE);
         let text = match fs::read_to_string(&path) {
@@ -195,14 +195,14 @@ impl Report {
     }
 }
 
-/// Returns text from a file in a form that is safe in a one-line message.
+/// Returns a text from a file on one line, without control characters.
 fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }
 
-/// Returns the expected and the found content.
+/// Returns the message of a JSON error, without the position in the file.
 fn reason(error: &serde_json::Error, text: &str) -> String {
-    // The message of the parser repeats line and column at its end.
+    // The message of the parser ends with line and column, which the error states separately.
     let words = error.to_string();
     let words = words.split(" at line ").next().unwrap_or_default();
     match words.strip_prefix("EOF while parsing ") {
@@ -212,7 +212,7 @@ fn reason(error: &serde_json::Error, text: &str) -> String {
     }
 }
 
-/// Reads one of our files. An error names the position.
+/// Reads a JSON file of this project. An error names the position in the file.
 pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
     let mut json = serde_json::Deserializer::from_str(text);
     let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
@@ -257,7 +257,7 @@ mod tests {
         ] {
             assert!(out.join(name).is_file(), "{name}");
         }
-        // A copy of the report for inspection in a browser.
+        // With this variable, a copy of the report is written, so that it can be opened in a browser.
         if let Ok(copy) = std::env::var("GRAINBENCH_REPORT_DIR") {
             write_report(copy, &report).unwrap();
         }
@@ -278,7 +278,7 @@ mod tests {
         assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
         assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
 
-        // Control characters of a terminal are escaped.
+        // Terminal control characters are escaped.
         fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"ma\u{7f}ny\"", 1)).unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
         assert!(message.contains("string \"ma\\u{7f}ny\""), "{message:?}");

@@ -1,10 +1,10 @@
-//! Reading of stored figures. A diverged run has points that are not finite, which JSON stores as `null`. They are read
-//! back as NaN; drawings leave them out and count them.
+//! Reading of stored figures. Points of a diverged run may not be finite, and JSON stores them as `null`. They are read
+//! as NaN; figures leave them out and state their number.
 
 use grainbench_harness::figure::{Axis, Curve, Drawing, Field, Figure, ForceBar, ForcePlot, Graph, LinePlot, Stroke};
 use serde::{Deserialize, Deserializer};
 
-/// A number, or `null`.
+/// A number; `null` is read as NaN.
 #[derive(Clone, Copy, Deserialize)]
 #[serde(transparent)]
 struct Number(#[serde(deserialize_with = "number")] f64);
@@ -54,12 +54,12 @@ struct StoredBar {
     slipping: bool,
 }
 
-/// Reads a number that may be `null`.
+/// Reads a number; `null` is read as NaN.
 pub(crate) fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
     Ok(Option::<f64>::deserialize(from)?.unwrap_or(f64::NAN))
 }
 
-/// Reads figures whose numbers may be `null`.
+/// Reads figures in which numbers may be `null`.
 pub(crate) fn figures<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Figure>, D::Error> {
     let stored = Vec::<StoredFigure>::deserialize(from)?;
     Ok(stored.into_iter().map(StoredFigure::read).collect())

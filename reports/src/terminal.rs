@@ -1,4 +1,4 @@
-//! Summary of a report as plain text.
+//! Summary of a report as plain text for the terminal.
 
 use grainbench_harness::verdict::Verdict;
 
@@ -7,7 +7,8 @@ use crate::line;
 use crate::number;
 use crate::report::{Report, Section};
 
-/// Returns one row per case, the counts, and all failures. It has no colour codes, because it is also written to files.
+/// Returns one row per case, the counts, and all failures. There are no colour codes, because the text is also written
+/// to files.
 #[must_use]
 pub fn summary_table(report: &Report) -> String {
     let (counts, all) = (Headline::of_report(report), report);
@@ -36,13 +37,13 @@ pub fn summary_table(report: &Report) -> String {
     text
 }
 
-/// Returns true if a result is red, which includes stale references.
+/// Returns true if a result is red: it fails, its run crashed, or its reference was made from another scene.
 #[must_use]
 pub fn is_red(verdict: &Verdict) -> bool {
     verdict.outcome.is_red()
 }
 
-/// Returns one line for each red result, for each negative control that did not fail as required, and for each other
+/// Returns one line for each red result, for each negative control that did not fail as required, and for each further
 /// reason why the run is red.
 #[must_use]
 pub fn failing_lines(report: &Report) -> Vec<String> {

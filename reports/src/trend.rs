@@ -1,4 +1,4 @@
-//! Trend over several reports: outcomes and counts side by side, as `trend.html`.
+//! Trend over several reports: outcomes and counts side by side, written as `trend.html`.
 
 use crate::number;
 use crate::page::{scrolling, shell, sign};
@@ -14,21 +14,21 @@ use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
 
-/// Largest number of changed rows that are listed.
+/// Largest number of changed results that are listed.
 const MOST: usize = 400;
-/// Counts of runs, in the order of the tables.
+/// Names of the counts of runs, in the order of the tables.
 const COUNTED: [&str; 5] = ["steps", "particle_steps", "contact_evaluations", "node_updates", "pair_tests"];
 
-/// A report of the trend.
+/// A report as a column of the trend.
 #[derive(Clone, Debug)]
 pub struct Column {
     /// Name of the report.
     name: String,
     commit: String,
     date: String,
-    /// Outcome of each result, by its key.
+    /// Outcome of each result, by the key of the result.
     rows: BTreeMap<String, Outcome>,
-    /// Counts by run.
+    /// Counts of each run, by the key of the run.
     runs: BTreeMap<String, BTreeMap<&'static str, u64>>,
 }
 
@@ -57,7 +57,7 @@ struct Row {
     verdict: Option<Outcome>,
 }
 
-/// Returns a key in words that identifies a result or a run.
+/// Returns the key of a result or a run: its descriptive fields, joined as words.
 fn key(about: &Map<String, Value>) -> String {
     const PARTS: [&str; 7] = ["case", "variant", "set", "solver", "resolution", "knobs", "quantity"];
     let words = PARTS.iter().filter_map(|part| match about.get(*part)? {
@@ -73,7 +73,7 @@ fn key(about: &Map<String, Value>) -> String {
 }
 
 impl Column {
-    /// Reads a `results.json`.
+    /// Reads a report from the text of its `results.json`.
     ///
     /// # Errors
     /// When the text is not a valid `results.json`.
@@ -81,7 +81,7 @@ impl Column {
         let Results { provenance, verdicts, points } = serde_json::from_str(text)?;
         let rows = verdicts.iter().filter_map(|row| Some((key(&row.about), row.verdict?))).collect();
         let counts = |point: &Map<String, Value>| {
-            // Points of a study have their counts one level deeper.
+            // In a study, the counts of a point are in an object of their own.
             let inner = point.get("counts").and_then(Value::as_object).unwrap_or(point);
             COUNTED.iter().filter_map(|name| Some((*name, inner.get(*name)?.as_u64()?))).collect()
         };
@@ -93,23 +93,23 @@ impl Column {
         self.rows.values().filter(|outcome| outcome.severity() == severity).count() as u64
     }
 
-    /// Returns the sum of a count over the runs that all reports contain.
+    /// Returns the sum of a count over the runs that are in all reports.
     fn sum(&self, name: &str, shared: &[&String]) -> u64 {
         shared.iter().filter_map(|run| self.runs.get(*run)?.get(name)).sum()
     }
 }
 
-/// Labels of the colours.
+/// Labels of the colours, with the severities.
 const KINDS: [(&str, Severity); 3] =
     [("pass", Severity::Green), ("fail, broken or stale", Severity::Red), ("amber", Severity::Amber)];
 
-/// Adds `trend.html` to the directory of a report. The reports are ordered from the oldest to the present one.
+/// Adds `trend.html` to the directory of a report. The columns are in order of time, and the last is this report.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
 pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), SaveError> {
     let page = render(columns)?;
-    // The page is part of the directory, whose other files are kept.
+    // The other files of the directory stay unchanged.
     let mut out = StagedDir::new(dir.as_ref())?;
     keep(&mut out, dir.as_ref(), dir.as_ref())?;
     out.write("trend.html", page)?;
@@ -117,7 +117,7 @@ pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), Save
     Ok(())
 }
 
-/// Adds the existing files of a directory.
+/// Adds the existing files of a directory to the staged directory, except hidden files and `manifest.json`.
 fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
     let write_error = |source| grainbench_store::WriteError::new(folder, source);
     for entry in fs::read_dir(folder).map_err(write_error)? {
@@ -177,7 +177,7 @@ fn verdicts(columns: &[Column]) -> Figure {
     )
 }
 
-/// Returns the figure of counts divided by the counts of the first report.
+/// Returns the figure of counts, each divided by the count of the first report.
 fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
     let first = columns.first()?;
     let curves: Vec<Curve> = COUNTED
@@ -193,8 +193,8 @@ fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
         Figure::graph(
             "trend-counts",
             "Operation counts relative to the first report",
-            "The sums over the runs that all reports have.",
-            [Axis::linear("report"), Axis::linear("count / that of the first report")],
+            "Sums over the runs that are in all reports.",
+            [Axis::linear("report"), Axis::linear("count / count in the first report")],
             curves,
         )
     })
@@ -219,7 +219,7 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
     html! { section id="reports" { h2 { "Reports" } (scrolling("Reports", &table)) } }
 }
 
-/// Renders the results whose outcome differs between reports.
+/// Renders a table of the results whose outcome differs between reports.
 fn changed_rows(columns: &[Column]) -> Markup {
     let mut names: Vec<&String> = columns.iter().flat_map(|column| column.rows.keys()).collect();
     names.sort();
@@ -254,7 +254,7 @@ fn changed_rows(columns: &[Column]) -> Markup {
     }
 }
 
-/// Renders the runs whose counts differ between consecutive reports.
+/// Renders a table of the runs whose counts differ between consecutive reports.
 fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
     let mut lines: Vec<[String; 4]> = Vec::new();
     for run in shared {
@@ -278,7 +278,7 @@ fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
     html! {
         section id="counts" {
             h2 { "Counts that changed" }
-            @if count == 0 { p { "None: every run of all reports has the same counts." } }
+            @if count == 0 { p { "None: each run has the same counts in all reports." } }
             @else {
                 @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
                 (scrolling("Counts that changed", &table))

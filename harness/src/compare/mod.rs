@@ -1,4 +1,5 @@
-//! Comparison of two runs. Samples are compared until a perturbed run diverges, and means after that.
+//! Comparison of runs. Chaotic runs are compared sample by sample until a perturbed run diverges, and by their means
+//! after that.
 
 pub mod peers;
 pub mod perturbed;

@@ -1,7 +1,7 @@
 //! Comparison of an observed series with several runs of the same scene.
 //!
-//! Each column is compared with the run that is nearest to the whole series. The tolerance can use the difference
-//! between the runs and the change from halving their time step.
+//! All columns are compared with the run that is nearest to the whole series. The allowed error can depend on the
+//! difference between the runs and on the change due to half the time step.
 
 use super::pointwise::largest;
 use crate::expect::{Measurement, larger, weight};
@@ -14,11 +14,11 @@ pub struct Peer {
     pub name: String,
     /// Time series of its probes.
     pub series: Series,
-    /// Series with half the time step; none if this run was not done.
+    /// Time series of the same scene with half the time step; none if there is no such run.
     pub half_step: Option<Series>,
 }
 
-/// A column of the observed series, compared with the nearest run.
+/// Column of the observed series, compared with the nearest run.
 pub struct ColumnComparison<'a> {
     /// Name of the column.
     pub name: &'a str,
@@ -26,13 +26,13 @@ pub struct ColumnComparison<'a> {
     pub unit: &'a str,
     /// Scale that differences are divided by.
     pub scale: f64,
-    /// Samples at the times that both series share.
+    /// Samples at the times that occur in both series.
     pub samples: Vec<Sample>,
     /// Largest uncertainty of the observed values, as a fraction of the scale.
     pub open: f64,
 }
 
-/// A sample of an observed column, compared with the nearest run.
+/// Sample of an observed column, compared with the nearest run.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Sample {
     /// Time (s).
@@ -41,15 +41,15 @@ pub struct Sample {
     pub found: f64,
     /// Value of the nearest run.
     pub expected: f64,
-    /// Difference between the runs, as a fraction of the scale.
+    /// Largest difference between the nearest run and any other run over all times, as a fraction of the scale.
     pub between: f64,
-    /// Change from halving the time step around this time, as a fraction of the scale.
+    /// Largest change of the column around this time if the time step is halved, as a fraction of the scale.
     pub halved: f64,
 }
 
-/// The sample that decides the result of a column.
+/// Sample that decides the result of a column.
 pub struct DecisiveSample {
-    /// The sample.
+    /// Time, observed value and expected value.
     pub sample: Sample,
     /// Largest |error| that passes at the sample.
     pub allowed: f64,
@@ -59,13 +59,14 @@ pub struct DecisiveSample {
     pub first_outside: Option<f64>,
 }
 
-/// Allowed error, as a fraction of the scale, above which a sample is too uncertain to decide.
+/// Allowed error, as a fraction of the scale, above which a sample is too uncertain to decide a result.
 pub const WIDE: f64 = 0.05;
 
 impl ColumnComparison<'_> {
-    /// Returns the sample with the largest ratio of error to allowed error.
+    /// Returns the sample with the largest ratio of error to allowed error. `allowed` returns the allowed error of a
+    /// sample as a fraction of the scale.
     ///
-    /// If no sample is outside, samples that allow more than [`WIDE`] are skipped as long as other samples remain.
+    /// If no error exceeds the allowed error, samples that allow more than [`WIDE`] are skipped, unless all samples allow more.
     #[must_use]
     pub fn decisive(&self, allowed: impl Fn(&Sample) -> f64) -> Option<DecisiveSample> {
         let ratio = |sample: &Sample| weight((sample.found - sample.expected) / self.scale) / allowed(sample);
@@ -84,14 +85,14 @@ impl ColumnComparison<'_> {
         Some(DecisiveSample { sample, allowed: allowed(&sample), wide, first_outside })
     }
 
-    /// Returns the observed value at a sample with its expected value and scale.
+    /// Returns the observed value at a sample, with the expected value and the scale.
     #[must_use]
     pub fn measured(&self, sample: &Sample) -> Measurement {
         Measurement::new(sample.found, sample.expected, self.scale)
     }
 }
 
-/// Compares the observed columns that `is_compared` selects and every run has.
+/// Compares the observed columns that `is_compared` selects and that all runs contain.
 ///
 /// `scale` computes the scale of a unit from the largest extent of the columns with that unit. Columns with a scale of
 /// zero are left out. Returns the name of the nearest run and one comparison per column; none if there are no runs.
@@ -106,7 +107,7 @@ pub fn against<'a>(
     let known = |name: &str| peers.iter().all(|peer| peer.series.column(name).is_some());
     columns.retain(|(_, column)| is_compared(&column.name) && known(&column.name));
     let scale_in = |peer: &Peer, unit: &str| {
-        // Columns of a unit share one scale, so that rounding along an axis without motion is not judged.
+        // Columns with the same unit share one scale. Rounding errors along an axis without motion then stay small fractions.
         let of_unit = |unit: &str| {
             let extents = columns.iter().filter(|(_, column)| column.unit == unit);
             extents.filter_map(|(_, column)| Some(extent(peer.series.column(&column.name)?, unit))).fold(0.0, f64::max)
@@ -128,8 +129,8 @@ pub fn against<'a>(
         let (times, found, expected) = together(observed, &observed.values[at], &nearest.series, &column.name)?;
         let own = nearest.series.column(&column.name)?;
         let others = peers.iter().filter_map(|peer| together(&nearest.series, own, &peer.series, &column.name));
-        // Contact conventions differ in free vibration and drift. The difference at one time is therefore not
-        // representative. The largest difference over time is used.
+        // Contact conventions differ in free vibration and in drift. The difference at one time is therefore not
+        // representative, and the largest difference over time is used.
         let between = others.map(|(_, a, b)| apart(&a, &b)).fold(0.0, larger) / scale;
         let halved = with_half.map(|(peer, half)| {
             let values_of = |series: &Series| series.column(&column.name).unwrap_or_default().to_vec();
@@ -153,21 +154,21 @@ pub fn against<'a>(
     Some((&nearest.name, compared.collect()))
 }
 
-/// Difference between two runs as a function of time.
+/// Bound on the difference between two runs, as a function of time.
 struct Envelope {
     times: Vec<f64>,
     values: Vec<f64>,
 }
 
-/// Half-width of the window of an envelope, as a fraction of the series.
+/// Half-width of the window of an envelope, as a fraction of the number of samples.
 const WINDOW: f64 = 0.01;
 
 impl Envelope {
-    /// Computes the envelope of two runs at times that they share (s).
+    /// Computes the envelope of the difference of two runs with the same sample times (s).
     ///
-    /// Each value is the larger of two numbers: the largest difference within a window, and the 90th percentile of all
-    /// differences, which is close to the amplitude of an oscillation. A difference that occurs only at an impact
-    /// therefore increases the allowed error only around that impact.
+    /// Each value is the larger of two numbers: the largest difference within a window around the sample, and the 90th
+    /// percentile of all differences. The percentile is close to the amplitude of an oscillation. A difference that
+    /// occurs only at an impact therefore increases the allowed error only around that impact.
     fn new(times: Vec<f64>, a: &[f64], b: &[f64]) -> Self {
         let off: Vec<f64> = a.iter().zip(b).map(|(a, b)| (a - b).abs()).collect();
         let mut sorted = off.clone();
@@ -191,7 +192,8 @@ impl Envelope {
     }
 }
 
-/// Returns, for each value, the largest from `half` places before it to `half` places after it; NaN if one is NaN.
+/// Returns, for each value, the largest value in a window from `half` places before it to `half` places after it. A
+/// window with a NaN gives NaN.
 fn windowed(values: &[f64], half: usize) -> Vec<f64> {
     let mut queue: VecDeque<usize> = VecDeque::new();
     let mut found = Vec::with_capacity(values.len());
@@ -212,11 +214,13 @@ fn windowed(values: &[f64], half: usize) -> Vec<f64> {
     found
 }
 
-/// Returns the times (s) that two series share, and the values of a column at them; none for fewer than two times.
+/// Returns the times (s) that occur in both series, and the values of a column at these times in each series. Returns
+/// none for fewer than two times.
 #[must_use]
 pub fn together(first: &Series, values: &[f64], second: &Series, name: &str) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let others = second.column(name)?;
-    // Printed times have few digits. The spacing of samples is larger than this rounding.
+    // Times printed by a program have few digits. The tolerance exceeds their rounding and is smaller than the spacing
+    // of samples.
     let interval = second.time.get(1).zip(second.time.first()).map_or(0.0, |(next, first)| next - first);
     let near = (1e-6 * second.time.last().copied().unwrap_or_default()).min(0.01 * interval);
     let (mut times, mut a, mut b) = (Vec::new(), Vec::new(), Vec::new());
@@ -237,7 +241,7 @@ fn extent(values: &[f64], unit: &str) -> f64 {
     values.iter().map(|value| (value - start).abs()).fold(0.0, f64::max)
 }
 
-/// Returns the largest difference; NaN if one is NaN.
+/// Returns the largest |difference|; NaN if a difference is NaN.
 fn apart(a: &[f64], b: &[f64]) -> f64 {
     a.iter().zip(b).map(|(a, b)| (a - b).abs()).fold(0.0, larger)
 }
@@ -257,7 +261,8 @@ mod tests {
         Peer { name: name.to_owned(), series: series(values), half_step: half_step.map(series) }
     }
 
-    /// A run with a NaN is never the nearest one, and it never counts as a run that agrees.
+    /// A run with a NaN is the nearest run only if it is the only run, and its error is then NaN. The differences from a
+    /// run with a NaN are NaN.
     #[test]
     fn what_is_not_a_number_is_far_from_everything() {
         let observed = series([0.0, 1.0, 2.0]);
@@ -278,7 +283,7 @@ mod tests {
         assert!(against_all(&peers[..1]).is_some_and(|(_, error, ..)| error.is_nan()));
     }
 
-    /// If the half-step run differs at an impact alone, the tolerance is not wider long after the impact.
+    /// If the half-step run differs only at an impact, the allowed error is not larger long after the impact.
     #[test]
     fn what_is_allowed_follows_the_course() {
         let mut off = vec![0.0; 1000];

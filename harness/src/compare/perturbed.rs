@@ -2,10 +2,11 @@
 //! intervals after it.
 //!
 //! The horizon is measured with a second run, in which one position is perturbed by one unit in the last place. Up to
-//! the horizon, this run remains within [`PARTED`] of the original run. Two programs that sum in another order differ
-//! by many units in the last place at once. [`ALLOWED`] is larger for this reason.
+//! the horizon, the two runs differ by at most [`PARTED`] of the largest value. Two programs that sum in different
+//! orders differ by many units in the last place from the first step. [`ALLOWED`] is therefore larger than [`PARTED`].
 //!
-//! The runs of a claim have a fixed order: our run, the other program's run, our run again, and its perturbed run.
+//! The runs of a claim have a fixed order: our run, the run of another program, our run at the resolution that defines
+//! the horizon, and its perturbed run.
 
 use super::pointwise::{largest, together};
 use crate::claim::{Claim, claim};
@@ -20,17 +21,17 @@ use grainbench_scene::scene::Duration;
 
 /// Allowed difference between two programs up to the horizon, as a fraction of the largest value of the column.
 pub const ALLOWED: f64 = 1e-8;
-/// Name of the adjustment that makes a perturbed run.
+/// Name of the scene change that makes a perturbed run.
 pub const PERTURBED: &str = "one position moved by 1 ulp";
 
 /// Columns of the series in which the divergence of perturbed runs is measured.
 #[derive(Clone, Copy, Debug)]
 pub struct DivergenceColumns {
-    /// The columns.
+    /// Names of the columns.
     pub columns: &'static [&'static str],
 }
 
-/// Returns the index of the last sample up to which the perturbed run is within [`PARTED`].
+/// Returns the index of the last sample before a run and its perturbed run differ by more than [`PARTED`] of the largest value.
 fn last_together(columns: DivergenceColumns, run: &FinishedRun, perturbed: &FinishedRun) -> Result<usize, MissingData> {
     let mut last = run.series().step.len();
     for column in columns.columns {
@@ -42,15 +43,15 @@ fn last_together(columns: DivergenceColumns, run: &FinishedRun, perturbed: &Fini
     last.checked_sub(1).ok_or_else(|| MissingData("moment at which perturbed runs are together".to_owned()))
 }
 
-/// Returns the step number of the horizon, from our run and its perturbed run.
+/// Returns the step number at the horizon, from our run and its perturbed run.
 fn step_of_horizon(columns: DivergenceColumns, run: &FinishedRun, perturbed: &FinishedRun) -> Result<u64, MissingData> {
     Ok(run.series().step[last_together(columns, run, perturbed)?])
 }
 
-/// Returns the time of the horizon (s).
+/// Returns the time at the horizon (s).
 ///
 /// # Errors
-/// When a column is missing.
+/// When a column or a step is missing, or the two runs differ at the first sample.
 pub fn time_of_horizon(
     columns: DivergenceColumns,
     run: &FinishedRun,
@@ -59,7 +60,8 @@ pub fn time_of_horizon(
     Ok(run.series().time[last_together(columns, run, perturbed)?])
 }
 
-/// Returns the claim about the horizon itself. The expected value is a regression value from when the case was written.
+/// Returns the claim that the horizon is at step `steps`. This expected value is a regression value: the result when the
+/// case was written.
 #[must_use]
 pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
@@ -67,7 +69,8 @@ pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim 
         .runs(runs)
         .equals(
             Source::Regression(
-                "steps until a run and its perturbed run, one position moved by one unit in the last place, part",
+                "number of steps until a run and a perturbed run, with one position changed by one unit in the last \
+                 place, differ",
             ),
             move |done| Ok(Measurement::new(step_of_horizon(columns, &done[0], &done[1])? as f64, expected, expected)),
         )
@@ -81,10 +84,10 @@ pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim 
         }))
 }
 
-/// Returns the claim that compares all watched columns of our run (first) with another program (second) up to the
+/// Returns the claim that compares all `columns` of our run (first) and of another program's run (second) up to the
 /// horizon.
 ///
-/// The third and the fourth run give the horizon.
+/// The horizon follows from our run (third) and its perturbed run (fourth).
 #[must_use]
 pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
@@ -109,29 +112,29 @@ pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -
         })
         .within(computed(
             ALLOWED,
-            "ten times the difference of perturbed runs at the horizon, because two programs round every sum \
-             differently; relative to the largest value",
+            "ten times the difference of perturbed runs at the horizon, because two programs round sums differently; \
+             relative to the largest value",
         ))
         .refuses(control)
 }
 
-/// Column whose mean is compared.
+/// Column whose mean values are compared.
 #[derive(Clone, Copy, Debug)]
 pub struct Sum {
-    /// The column of the series.
+    /// Name of the column in the series.
     pub column: &'static str,
     /// Name of the averaged quantity.
     pub words: &'static str,
     /// Unit of the averaged quantity.
     pub unit: &'static str,
-    /// True for the mean of the logarithm. It suits a quantity that changes by factors, whose largest values would
+    /// True to average the logarithm. This suits a quantity that changes by factors, whose largest values would
     /// dominate the mean.
     pub logarithm: bool,
 }
 
 /// Returns the claim about the mean of a column after the horizon.
 ///
-/// The error is in units of half the confidence interval of the difference.
+/// The error is the difference of the two means. It is divided by half the width of its confidence interval.
 #[must_use]
 pub fn statistics(
     columns: DivergenceColumns,

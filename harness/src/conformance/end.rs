@@ -18,7 +18,7 @@ pub(super) struct End {
 /// Reason why there is no final state to compare.
 pub(super) enum NoEnd {
     Run(RunError),
-    /// The record lacks data, or a scene is wrong: the reason in words.
+    /// Reason in words, if the record lacks data or a scene is invalid.
     Record(String),
 }
 
@@ -46,9 +46,10 @@ impl End {
         Ok(Self { time: last.time, grains, time_step, steps: last.step as f64 })
     }
 
-    /// Returns the largest difference between two final states, as a speed (m/s).
+    /// Returns the largest difference between two final states (m/s).
     ///
-    /// Compares velocity, spin times radius, and position divided by the time of the run, for each grain.
+    /// For each grain, compares velocity, spin times radius, and position divided by the time of the run. The relative
+    /// difference of the final times also counts, as a plain number.
     pub(super) fn apart(&self, other: &Self) -> f64 {
         let pairs = self.grains.iter().zip(&other.grains);
         let worst = pairs.map(|(a, b)| {
@@ -59,7 +60,7 @@ impl End {
         worst.fold((self.time - other.time).abs() / self.time, larger)
     }
 
-    /// Returns the largest distance from the origin (m) and the largest surface speed of any grain (m/s).
+    /// Returns the largest distance of a grain from the origin (m) and the largest surface speed of a grain (m/s).
     pub(super) fn reach(&self) -> (f64, f64) {
         let far = self.grains.iter().map(|grain| grain.position.norm()).fold(0.0, larger);
         let fast = self.grains.iter().map(|grain| grain.velocity.norm() + grain.spin.norm() * grain.radius);
@@ -69,8 +70,8 @@ impl End {
 
 /// Returns the speed error (m/s) that rounding can cause between two runs of collisions.
 ///
-/// Every step rounds positions of size L by εL, which changes velocities by ω²εLΔt; ω = 2/Δt_crit is the frequency of
-/// the stiffest contact. Every step also rounds velocities U by εU.
+/// Every step rounds positions of size L by εL. This changes velocities by ω²εLΔt, where ω = 2/Δt_crit is the frequency
+/// of the stiffest contact and ε is the machine precision. Every step also rounds velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
     let rate = 2.0 / scene.critical_time_step();
     let rounding_error = |end: &End| {
@@ -85,7 +86,7 @@ mod tests {
     use super::*;
     use nalgebra::Vector3;
 
-    /// The difference of two states with two grains is that of the worst grain. NaN counts as the worst.
+    /// The difference of two states is the largest difference of a grain. NaN counts as the largest.
     #[test]
     fn ends_that_are_not_numbers_are_apart() {
         let grain = |speed: f64| GrainState {

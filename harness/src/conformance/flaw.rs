@@ -1,5 +1,5 @@
-//! Deliberate defects for solvers. Most change one quantity by a fraction of about 1e-9. Larger defects are used if a
-//! property does not detect smaller ones.
+//! Deliberate defects of solvers. Most change one quantity by a fraction of about 1e-9. A larger defect is used if a
+//! property cannot detect a smaller one.
 
 use grainbench_scene::checkpoint::Checkpoint;
 use grainbench_scene::record::Record;
@@ -10,31 +10,32 @@ use std::sync::atomic::{AtomicU64, Ordering};
 
 /// Size of a flaw, as a fraction of the velocities.
 const SIZE: f64 = 1e-9;
-/// Size of a larger flaw, for material points and for free fall. If a solver claims no second order, its error in free
-/// fall may be gΔt/2.
+/// Size of a larger flaw, as a fraction of velocities in free fall or of positions of material points. In free fall, the
+/// velocity error may be gΔt/2 if a solver claims no order.
 const LARGE: f64 = 1e-2;
-/// Fraction by which the rotation of walls is reduced, or of grains if no wall rotates.
+/// Fraction by which a flaw reduces the rotation of walls, or of grains if no wall rotates.
 const SLOWER: f64 = 0.05;
 
 /// A deliberate defect of a solver.
 ///
 /// `Pumped` and `FirstOrder` change the record, and `Restarted` changes the record after a restart. `SlowerWalls`
-/// changes spins and material points. All other flaws change the initial velocities, which any solver can express.
+/// changes the motion of walls, or spins, and the material points of the record. All other flaws change the initial
+/// velocities, which any solver can represent.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Flaw {
-    /// Every grain is slower by 1e-9, as if by drag in a medium at rest.
+    /// All grains are slower by a fraction of 1e-9, as if by drag in a medium at rest.
     Drag,
-    /// Every grain is slower by 1e-2.
+    /// All grains are slower by a fraction of 1e-2.
     StrongDrag,
-    /// Left and right differ: velocities turn slightly in two dimensions, and gain a part along the spin in three.
+    /// Left and right differ. In two dimensions velocities are rotated slightly; in three they gain a component along the spin.
     Handed,
     /// The x axis differs from the other axes.
     Anisotropic,
-    /// The first grain in the list is treated differently from the other grains.
+    /// The first grain in the list is faster by a fraction of 1e-9.
     Listed,
-    /// Walls turn slower than prescribed, or grains if no wall turns. Material points move outwards.
+    /// Walls rotate slower than prescribed, or grains if no wall rotates. Material points are displaced outwards.
     SlowerWalls,
-    /// Velocities grow in the middle of a run and are right at its ends; forces on walls grow during the run.
+    /// Velocities are too large in the middle of a run and correct at its ends. Forces on walls grow during the run.
     Pumped,
     /// The final state has an error of first order in the time step.
     FirstOrder,
@@ -94,7 +95,7 @@ impl Flaw {
     }
 }
 
-/// Moves all material points outwards by a hundredth.
+/// Displaces all material points outwards by the fraction [`LARGE`] of their positions.
 fn swell(record: &mut Record) {
     for point in record.snapshots.iter_mut().flat_map(|snapshot| &mut snapshot.points) {
         point.displacement += point.position * LARGE;
@@ -102,15 +103,14 @@ fn swell(record: &mut Record) {
     }
 }
 
-/// Growth of velocities in mid-run and of forces over a run, as a fraction. It exceeds the energy that dissipation
-/// removes.
+/// Largest relative growth of velocities and forces. It is large, so that the energy gain exceeds the dissipated energy.
 const GROWTH: f64 = 99.0;
 
-/// Lets velocities and spins grow to a hundred times their value in mid-run, and forces on walls at the end.
+/// Multiplies velocities and spins by 100 in mid-run, and forces on walls by 100 at the end.
 fn pump(record: &mut Record) {
     let end = record.snapshots.last().map_or(1.0, |last| last.time);
     for snapshot in &mut record.snapshots {
-        // A check of the final state alone does not detect this growth.
+        // A check of only the final state does not detect this growth.
         let part = snapshot.time / end;
         let factor = 1.0 + GROWTH * 4.0 * part * (1.0 - part);
         for grain in &mut snapshot.grains {
@@ -126,7 +126,7 @@ fn pump(record: &mut Record) {
     }
 }
 
-/// Solver with an artificial flaw, which a conformance test must detect.
+/// Solver with a flaw that a conformance property must detect.
 pub struct FlawedSolver<'a> {
     solver: &'a dyn Solver,
     flaw: Flaw,
@@ -140,10 +140,9 @@ impl<'a> FlawedSolver<'a> {
         Self { solver, flaw, runs: AtomicU64::new(0) }
     }
 
-    /// Adds a flaw to a solver that counts as having run a thousand times.
+    /// Adds a flaw to a solver and starts its count of runs at 1000.
     ///
-    /// Its runs then differ from all runs of a new solver, even if one of the two skipped scenes that it does not
-    /// support.
+    /// Its runs then differ from all runs of [`FlawedSolver::new`], even if one of the two solvers skipped unsupported scenes.
     pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
         Self { solver, flaw, runs: AtomicU64::new(1000) }
     }
@@ -170,7 +169,7 @@ impl Solver for FlawedSolver<'_> {
             && let Some(last) = record.snapshots.last_mut()
         {
             let share = record.provenance.time_step / last.time;
-            // Positions are changed too, because a velocity can be zero at the end.
+            // Positions are changed too, because a velocity may be zero at the end.
             last.grains.iter_mut().for_each(|grain| {
                 grain.position *= 1.0 + share;
                 grain.velocity *= 1.0 + share;
@@ -206,7 +205,7 @@ mod tests {
     use super::*;
     use grainbench_scene::solver::Resolution;
 
-    /// A solver that refuses every scene.
+    /// A solver that rejects every scene.
     struct RefusingSolver;
 
     impl Solver for RefusingSolver {

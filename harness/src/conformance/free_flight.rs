@@ -9,12 +9,12 @@ use crate::verdict::Verdict;
 
 pub(super) const PROPERTY: Property = Property {
     name: "free-flight",
-    claim: "grains that touch nothing keep velocity and spin, and fall as x + vt + gt²/2",
+    claim: "grains without contact keep their velocity and spin, and fall as x + vt + gt²/2",
     flaw: Flaw::Drag,
     evidence: Evidence::Analytic,
     source: "x + vt + gt²/2, constant spin",
-    because: "rounding of velocity and position by ε per step; under gravity, gΔt/2 for a solver without claimed \
-              second order; relative to the fastest grain",
+    because: "rounding of velocity and position by ε per step; under gravity also gΔt/2 if the solver does not claim \
+              second order; relative to the speed of the fastest grain",
     check,
 };
 

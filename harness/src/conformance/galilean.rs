@@ -1,4 +1,4 @@
-//! Galilean invariance: a collision is the same in a moving frame.
+//! Galilean invariance: a collision has the same result in a moving frame.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;
@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {
     name: "galilean-invariance",
-    claim: "the same velocity added to all grains adds the same velocity in the end and changes nothing else",
+    claim: "if the same velocity is added to all grains, the final state moves with this velocity and does not change \
+            otherwise",
     flaw: Flaw::Drag,
     evidence: Evidence::Invariant,
     source: "forces depend on relative positions and velocities",
@@ -17,7 +18,7 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// Velocity of the frame (m/s): several times the speed of the fastest grain, in a general direction.
+/// Velocity of the frame (m/s). It is several times the speed of the fastest grain and parallel to no axis.
 const SPEED: Vector3<f64> = Vector3::new(4.0, -3.0, 2.0);
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {

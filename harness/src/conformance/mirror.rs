@@ -1,4 +1,4 @@
-//! Mirror invariance: the final state of a mirrored collision is the mirror image of the final state.
+//! Mirror invariance: a mirrored collision ends with the mirror image of the original final state.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;
@@ -9,7 +9,7 @@ use nalgebra::{Matrix3, Vector3};
 
 pub(super) const PROPERTY: Property = Property {
     name: "mirror-invariance",
-    claim: "the mirror image of a scene ends as the mirror image of its end",
+    claim: "the final state of a mirrored scene is the mirror image of the final state",
     flaw: Flaw::Handed,
     evidence: Evidence::Invariant,
     source: "contact laws do not distinguish left and right",

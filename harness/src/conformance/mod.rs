@@ -1,9 +1,8 @@
-//! Conformance properties, which every solver must satisfy. They are conservation, symmetries, free flight, order of
-//! accuracy and determinism.
+//! Conformance properties, which every solver must satisfy: conservation, symmetries, free flight, objectivity,
+//! passivity, order of convergence, determinism and restart.
 //!
 //! A property runs its own scenes, in two and three dimensions, with and without friction. Its results have the form of
-//! claim results: measured value, tolerance and reason. Every property has a [`Flaw`] that it must detect in the
-//! solver.
+//! claim results: measured value, tolerance and reason. Every property has a [`Flaw`] of a solver that it must detect.
 
 mod end;
 mod flaw;
@@ -41,7 +40,7 @@ use std::time::Instant;
 pub struct Property {
     /// Name, such as `galilean-invariance`. It is the first part of the variant in results.
     pub name: &'static str,
-    /// Claim of the property.
+    /// Property in words.
     pub claim: &'static str,
     /// Flaw that the property must detect.
     pub flaw: Flaw,
@@ -55,19 +54,20 @@ pub struct Property {
 }
 
 impl Property {
-    /// Returns one result for each scene.
+    /// Checks a solver and returns one result for each scene.
     #[must_use]
     pub fn check(&self, solver: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         self.check_again(solver, solver, terms)
     }
 
-    /// Returns one result for each scene. `solver` may return finished runs. `again` performs runs that must not come
-    /// from a cache.
+    /// Checks a solver and returns one result for each scene. `solver` may return cached runs. `again` is the same solver
+    /// without a cache.
     fn check_again(&self, solver: &dyn Solver, again: &dyn Solver, terms: &Terms) -> Vec<Verdict> {
         (self.check)(&Rows { solver, again, terms, property: self })
     }
 
-    /// Returns the flaw that the property must detect: a larger one if free fall may have an error of gΔt/2.
+    /// Returns the flaw that the property must detect. For free flight, the flaw is larger if the solver claims no order,
+    /// because the velocity error in free fall may then be gΔt/2.
     fn flaw(&self, terms: &Terms) -> Flaw {
         let is_rough = self.name == free_flight::PROPERTY.name && terms.order.is_none();
         if is_rough { Flaw::StrongDrag } else { self.flaw }
@@ -91,16 +91,15 @@ pub const ALL: [Property; 11] = [
 
 /// Returns the results of all properties, and a control for each result that passes.
 ///
-/// A control checks that the property detects its flaw. A result that fails within a stated limitation does not pass
-/// and has no control.
+/// A control checks that the property detects its flaw. A result that fails because of a stated exception has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     judge_kept(solver, solver, terms)
 }
 
-/// Returns the results and the controls of all properties. `kept` may return finished runs.
+/// Returns the results and the controls of all properties. `kept` may return finished runs from a cache.
 ///
-/// The solver `itself` performs repeated and observed runs.
+/// `itself` does the runs that are repeated or observed.
 #[must_use]
 pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
@@ -114,9 +113,9 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
         if found.iter().any(|row| row.outcome == Outcome::Pass) {
             let start = Instant::now();
             let flaw = property.flaw(terms);
-            // Flawed runs may use finished runs too, because only the flaw has to be detected.
+            // Runs with a flaw may also come from the cache, because only the flaw must be detected.
             let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(kept, flaw)];
-            // An exception of the method does not excuse a flaw.
+            // The stated exceptions of the solver do not apply to flawed runs.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
@@ -129,8 +128,8 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
 
 /// Returns one line for each failure, for tests of solvers.
 ///
-/// Failures are results that failed or crashed, undetected flaws, stated exceptions that were not needed, and a solver
-/// without any passed result.
+/// A line reports a red result, an undetected flaw, or a stated exception of which no result makes use. A solver with no
+/// passing result also has a line.
 #[must_use]
 pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
     let (rows, controls) = judge(solver, terms);
@@ -156,7 +155,7 @@ pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
         }
     }
     if rows.iter().all(|row| row.outcome != Outcome::Pass) {
-        lines.push(format!("{}: no row passed", solver.name()));
+        lines.push(format!("{}: no result passed", solver.name()));
     }
     lines
 }

@@ -1,7 +1,7 @@
 //! Conservation of momentum in collisions, and of angular momentum without friction.
 //!
-//! With friction, the angular momentum depends on the contact convention. Lever arms R₁ and R₂ do not conserve it if
-//! the centres are closer than R₁ + R₂. The case `collision` distinguishes these conventions.
+//! With friction, the conservation of angular momentum depends on the contact convention. Lever arms R₁ and R₂ violate
+//! it if the centres are closer than R₁ + R₂. The case `collision` distinguishes these conventions.
 
 use super::end::End;
 use super::row::{PropertyValue, Rows};
@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {
     name: "momentum",
-    claim: "momentum is kept in collisions, and angular momentum where there is no friction",
+    claim: "collisions conserve momentum, and without friction also angular momentum",
     flaw: Flaw::Drag,
     evidence: Evidence::Invariant,
     source: "equal and opposite forces, along the line of centres without friction",
@@ -48,7 +48,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     [linear, angular].concat()
 }
 
-/// Returns the change of a sum. Its scale is the sum of the norms of its parts, before or after, whichever is larger.
+/// Returns the magnitude of the change of a sum. Its scale is the sum of the norms of the terms, before or after,
+/// whichever is larger.
 fn kept(before: &[Vector3<f64>], after: &[Vector3<f64>], steps: f64) -> PropertyValue {
     let change = after.iter().sum::<Vector3<f64>>() - before.iter().sum::<Vector3<f64>>();
     let size = |parts: &[Vector3<f64>]| parts.iter().map(Vector3::norm).sum::<f64>();

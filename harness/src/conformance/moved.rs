@@ -9,7 +9,8 @@ use grainbench_scene::solver::Solver;
 use grainbench_scene::terms::Terms;
 use nalgebra::{Matrix3, Vector3};
 
-/// Transformation of a scene: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, because a spin is a pseudovector.
+/// Transformation of a scene: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, because the spin ω is a pseudovector.
+/// Q is `turn` and V is `speed` (m/s).
 #[derive(Clone, Copy, Debug)]
 pub(super) struct View {
     pub(super) turn: Matrix3<f64>,
@@ -50,7 +51,7 @@ impl View {
         undone
     }
 
-    /// Returns the difference between the run of the transformed scene, transformed back, and the run of the scene.
+    /// Runs the scene and the transformed scene, and returns the difference of the final states after the inverse transformation.
     pub(super) fn compare(&self, solver: &dyn Solver, scene: &Scene, terms: &Terms) -> Result<PropertyValue, NoEnd> {
         let straight = End::from_solver(solver, scene, &terms.resolution)?;
         let seen = End::from_solver(solver, &self.seen(scene), &terms.resolution)?;

@@ -1,4 +1,4 @@
-//! Objectivity: rigid rotation of grains at rest relative to walls that turn with them, and of free deformable bodies.
+//! Objectivity: rigid rotation of grains together with walls, and of free deformable bodies.
 
 use super::end::{End, NoEnd};
 use super::row::{PropertyValue, Rows};
@@ -17,20 +17,22 @@ use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {
     name: "objectivity",
-    claim: "grains at rest relative to walls that turn as one body with them stay so, and a body that turns freely keeps its \
-            size and spin",
+    claim: "grains that rotate with their walls as one rigid body stay at rest relative to the walls, and a freely \
+            rotating body keeps its size and spin",
     flaw: Flaw::SlowerWalls,
     evidence: Evidence::Analytic,
-    source: "forces of the frame at rest and the centrifugal one",
-    because: "at a distance d from the axis, over an angle θ: time step, d (ΩΔt)² (1 + θ)², for a grain on springs \
-              also 2 d (Ω/ω)² ωT (ωΔt)²/24; for a solver without claimed order d ΩΔt (1 + θ). Lever arms differ from \
-              the surface by up to the overlap δ: errors of 2Ωδ/R in spins, and of 2δθ in positions if the centre \
-              moves. Different Ωδ on the two sides turn the vibration on springs, d (Ω/ω)² θ. Rigid grains differ by 2 \
-              d (Ω/ω)² + δ. Bodies grow by at most ρΩ²R²/E and (ΩΔt)² (1 + θ), and lose twice as much spin",
+    source: "the forces in the frame at rest, plus the centrifugal force",
+    because: "errors at a distance d from the axis, after an angle θ. The time step gives d (ΩΔt)² (1 + θ)², and for a \
+              grain on springs also 2 d (Ω/ω)² ωT (ωΔt)²/24; without a claimed order it gives d ΩΔt (1 + θ). Lever \
+              arms differ from the radius by up to the overlap δ, which gives 2Ωδ/R in spins, and 2δθ in positions if \
+              the centre moves. Different Ωδ on the two sides rotate the direction of vibration, which gives d (Ω/ω)² \
+              θ. Rigid grains differ by 2 d (Ω/ω)² + δ. Bodies grow by at most ρΩ²R²/E and (ΩΔt)² (1 + θ), and lose \
+              twice this fraction of their spin",
     check,
 };
 
-/// Quantities of the results. Twisted contacts have their own, because a method may have a stated exception for them.
+/// Quantity and unit of each result. Contacts that rotate about their normals have their own quantity, because a method
+/// may have a stated exception for them.
 const PLACE: (&str, &str) = ("place off in the end", "m");
 const TWISTED: (&str, &str) = ("place off in the end, under twist", "m");
 const SPIN: (&str, &str) = ("spin × radius off in the end", "m/s");
@@ -41,10 +43,10 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     if rows.solver.deforms() { of_bodies(rows) } else { of_grains(rows) }
 }
 
-/// Returns the results of rigid grains and of grains with contact springs.
+/// Returns the results for rigid grains and for grains with contact springs.
 fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
-    // A grain whose contacts turn only about their normals gets no torque.
+    // Contacts that rotate only about their normals exert no torque on a grain. These scenes are left out.
     let spinning = turning::all().map(|all| only(all, |turning| turning.across > 0.0 || turning.carried));
     let place = |turning: &RotatingScene| {
         worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
@@ -61,10 +63,10 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     .concat()
 }
 
-/// Returns the deviation that uses the largest part of its tolerance.
+/// Returns the deviation that is the largest fraction of its tolerance.
 ///
-/// The solver runs at its resolution and, if it claims an order, also at four times the step. The tolerance depends on
-/// the step with that order.
+/// The solver runs at its resolution and, if it claims an order, also at four times the time step. The tolerance varies
+/// with the time step according to this order.
 fn worst(
     rows: &Rows<'_>,
     turning: &RotatingScene,
@@ -107,20 +109,21 @@ fn place_off(turning: &RotatingScene, end: &End) -> f64 {
     off.fold(0.0, larger)
 }
 
-/// Returns the largest error of a spin times the radius (m/s).
+/// Returns the largest error of spin times radius (m/s).
 fn spin_off(turning: &RotatingScene, end: &End) -> f64 {
     let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
     off.fold(0.0, larger)
 }
 
-/// Returns the relative error that a scheme of the claimed order may have after a rotation by the angle.
+/// Returns the relative error that a scheme may have after the rotation of the scene. The error is of second order in the
+/// time step if the solver claims at least this order, and of first order otherwise.
 fn scheme(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
     let step = turning.spin.norm() * end.time_step;
     let angle = 1.0 + RotatingScene::angle();
     if terms.order.is_some_and(|order| order.expected >= 2.0) { (step * angle).powi(2) } else { step * angle }
 }
 
-/// Returns the largest distance from the exact position that passes (m).
+/// Returns the largest allowed distance from the exact position (m).
 fn place_allowed(rows: &Rows<'_>, turning: &RotatingScene, end: &End) -> f64 {
     let terms = rows.terms;
     let rate = turning.spin.norm();
@@ -135,7 +138,7 @@ fn place_allowed(rows: &Rows<'_>, turning: &RotatingScene, end: &End) -> f64 {
     turning.reach() * (scheme(turning, end, terms) + swing) + lever + rigid
 }
 
-/// Returns the largest error of spin times radius that passes (m/s).
+/// Returns the largest allowed error of spin times radius (m/s).
 fn spin_allowed(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
     turning.spin.norm() * (scheme(turning, end, terms) + 2.0 * turning.overlap)
 }
@@ -145,7 +148,7 @@ pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
     matches!(resolution, Resolution::Rigid { .. })
 }
 
-/// Returns the results of deformable bodies.
+/// Returns the results for deformable bodies.
 fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
     let judge = |named: &NamedScene, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
@@ -174,10 +177,11 @@ fn shorter(resolution: &Resolution) -> Option<Resolution> {
     }
 }
 
-/// Returns the largest change of size that passes; the spin may change by twice as much.
+/// Returns the largest allowed relative change of size. Twice this change is allowed for the spin.
 ///
-/// Centrifugal forces, applied suddenly, strain the body by less than ρΩ²R²/E with overshoot. At the centre of a disc,
-/// the strain is at most 0.375 ρΩ²R²/E.
+/// Suddenly applied centrifugal forces strain the body by less than ρΩ²R²/E, including the overshoot. Here ρ is the density, Ω
+/// the spin, R the radius and E Young's modulus. At the centre of a disc, the strain is at most 0.375 ρΩ²R²/E. The time step
+/// Δt adds (ΩΔt)² (1 + θ), where θ is the angle of rotation.
 fn strained(scene: &Scene, record: &Record) -> f64 {
     let grain = &scene.grains[0];
     let density = grain.mass / scene.grain_shape.mass(grain.radius, 1.0);
@@ -190,13 +194,13 @@ fn strained(scene: &Scene, record: &Record) -> f64 {
     density * (rate * grain.radius).powi(2) / modulus + (rate * record.provenance.time_step).powi(2) * (1.0 + angle)
 }
 
-/// Returns the relative change of the radius of gyration of the material points at the end.
+/// Returns the relative change of the radius of gyration of the material points during the run.
 fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let points = record.snapshots.last().map_or(&[][..], |last| &last.points);
     if points.is_empty() {
         return Err(RunError::Unsupported {
             solver: solver.name(),
-            reason: "it reports no material points".to_owned(),
+            reason: "the record contains no material points".to_owned(),
         }
         .into());
     }
@@ -208,7 +212,7 @@ fn size_off(solver: &dyn Solver, _: &Scene, record: &Record) -> Result<f64, NoEn
     Ok(((end / start).sqrt() - 1.0).abs())
 }
 
-/// Returns the relative change of the spin.
+/// Returns the relative change of the spin during the run.
 fn spinning_off(_: &dyn Solver, scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let end = End::read(scene, record)?;
     let start = scene.grains[0].spin;

@@ -1,4 +1,4 @@
-//! Solver wrapper that performs each run once, because several properties read the same run.
+//! Solver wrapper that does each run once, because several properties use the same run.
 
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
@@ -7,7 +7,7 @@ use std::sync::{Mutex, PoisonError};
 
 type CachedRun = (Scene, Resolution, Result<Record, RunError>);
 
-/// Remembers the result of each scene at each resolution. Repeated and observed runs must use the solver itself.
+/// Solver that stores the result of each scene at each resolution. Runs that must be repeated or observed do not use it.
 pub(super) struct CachedRuns<'a> {
     solver: &'a dyn Solver,
     known: Mutex<Vec<CachedRun>>,

@@ -12,10 +12,10 @@ use grainbench_scene::solver::Resolution;
 
 pub(super) const PROPERTY: Property = Property {
     name: "order",
-    claim: "halving the step divides the error by 2 to the claimed order",
+    claim: "half the time step reduces the error by the factor 2ᵖ, with the claimed order p",
     flaw: Flaw::FirstOrder,
     evidence: Evidence::Convergence,
-    source: "the solver's own claim",
+    source: "the order that the solver claims",
     because: ASYMPTOTIC,
     check,
 };
@@ -27,7 +27,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let held = rows.each(scenes::held(), &order.levels[0], QUANTITY, |named| {
         observed(rows, named, order.levels, Bound::Order(order.expected))
     });
-    // Walls that turn need longer runs, and the order shows at longer steps. There, errors of second order may cancel.
+    // Runs with rotating walls are longer, so they use larger time steps. Errors of second order may cancel at these
+    // time steps, so a higher order also passes.
     let levels = [4.0, 2.0, 1.0].map(|factor| terms.resolution.coarser(factor).unwrap_or(terms.resolution));
     let turning = rows.each(turning::smooth(), &levels[0], QUANTITY, |named| {
         observed(rows, named, levels, Bound::AtLeast(order.expected))
@@ -37,8 +38,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 
 const QUANTITY: (&str, &str) = ("order in the time step of the end", "1");
 
-/// Returns the order from three levels. The reference is the solver's own finest run, so the contact convention has no
-/// effect.
+/// Returns the observed order from three levels. The reference is the solver's own finest run, so the contact
+/// convention has no effect.
 fn observed(
     rows: &Rows<'_>,
     named: &NamedScene,

@@ -1,4 +1,4 @@
-//! Passivity: undamped collisions gain no energy, and a closed cycle of a driven contact yields no work.
+//! Passivity: undamped collisions gain no energy, and a closed cycle of a contact with prescribed motion yields no work.
 
 use super::end::{End, NoEnd};
 use super::objectivity::is_rigid;
@@ -15,29 +15,33 @@ use grainbench_scene::scene::{Duration, Scene};
 
 pub(super) const PROPERTY: Property = Property {
     name: "passivity",
-    claim: "grains that bounce never move with more energy than at the start, and a closed cycle of a driven contact \
+    claim: "bouncing grains never have more kinetic energy than at the start, and a closed cycle of a driven contact \
             without slip yields no work",
     flaw: Flaw::Pumped,
     evidence: Evidence::Invariant,
     source: "springs store at most the work done on them",
-    because: "central differences keep ½mv² + ½k x x′ of two steps in a contact, which opens and closes within a step: \
-              (ωΔt)²/4 of the energy for each of N contacts, with ω of the stiffest spring; levels are scaled by Δt to \
-              the claimed order. Without springs, rounding in each step. Closed cycle: a force that is one step late, \
-              2/n of the energy of a spring in a leg of n steps",
+    because: "central differences conserve ½mv² + ½k x x′ in a contact, where x and x′ belong to consecutive steps. \
+              Because a contact opens and closes within a step, each of N contacts adds (ωΔt)²/4 of the energy, with ω \
+              of the stiffest spring. Levels are scaled by Δt to the power of the claimed order. Without springs the \
+              error is rounding in each step. In a closed cycle the force may be one step late, which gives 2/n of the \
+              spring energy for a leg of n steps",
     check,
 };
 
-/// Quantities: gain of energy, and work gained in a cycle.
+/// Quantity and unit of the results of collisions.
 const GAIN: (&str, &str) = ("energy gained, largest of the run", "1");
+/// Quantity and unit of the results of a grain between two planes, with the claimed order n.
 const LEVELS: (&str, &str) = ("energy gained × (Δt₀/Δt)ⁿ, largest of three time steps", "1");
+/// Quantity and unit of the results of closed cycles.
 const WORK: (&str, &str) = ("work gained in a closed cycle over the energy of its spring", "1");
 
 /// Number of pairs in a collision of five grains. It bounds the number of contacts.
 const PAIRS: f64 = 10.0;
-/// Gap between two planes minus the diameter of the bouncing grain (m), and duration of the run (s).
+/// Gap between two planes minus the diameter of the bouncing grain (m).
 const ROOM: f64 = 0.02;
+/// Duration of the run of the bouncing grain (s).
 const BOUNCING: f64 = 0.3;
-/// Initial speed of the bouncing grain across the planes (m/s).
+/// Initial speed of the bouncing grain normal to the planes (m/s).
 const ACROSS: f64 = 1.0;
 /// Young's modulus of Hertz contacts (Pa).
 const YOUNG: f64 = 1.1375e5;
@@ -63,7 +67,9 @@ fn gained(gain: f64, allowed: f64) -> PropertyValue {
     }
 }
 
-/// Returns one scene per contact law and friction coefficient: a grain between two planes, without or with some slip.
+/// Returns scenes of a grain that bounces between two planes, one scene per contact law and friction coefficient.
+///
+/// For deformable bodies, there are no Hertz contacts. With `terms.long`, a run has at least 10⁵ steps.
 fn bouncing(rows: &Rows<'_>) -> Result<Vec<NamedScene>, SceneError> {
     let linear =
         |friction: f64| format!("normal_stiffness = 1e4\ntangential_stiffness = 5e3\nfriction = {friction:?}\n");
@@ -114,11 +120,11 @@ fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Nam
     scene_of(name, &text, true)
 }
 
-/// Factor of the coarse time step. A solver that takes 0.02 of the critical time step here then takes the usual 0.1.
+/// Ratio of the coarse time step to the solver's time step. 0.02 of the critical time step becomes the usual 0.1.
 const COARSE: f64 = 5.0;
 
-/// Returns the gain of energy at the solver's resolution. If it claims an order, also at a quarter of that step and at
-/// a coarse one.
+/// Returns the largest gain of energy, scaled by (Δt₀/Δt)ⁿ. The solver runs with its time step Δt₀. If it claims an order
+/// n, it also runs with the time steps Δt₀/4 and [`COARSE`] Δt₀.
 fn levels(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     let order = rows.terms.order.map_or(0.0, |order| order.expected);
     let factors: &[f64] = if order > 0.0 { &[1.0, 0.25, COARSE] } else { &[1.0] };
@@ -134,8 +140,8 @@ fn levels(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     Ok(gained(worst, most))
 }
 
-/// Returns the number of contacts of a grain between two planes. The grain crosses the gap and turns back within half a
-/// period of the spring.
+/// Returns the largest number of contacts of a grain between two planes. The grain crosses the gap and reverses within
+/// half a period of the contact spring.
 fn contacts(scene: &Scene) -> f64 {
     let time = scene.duration.seconds().unwrap_or(f64::NAN);
     let grain = &scene.grains[0];
@@ -143,16 +149,15 @@ fn contacts(scene: &Scene) -> f64 {
     1.0 + time / (ROOM / ACROSS + std::f64::consts::PI * (grain.mass / stiffness).sqrt())
 }
 
-/// Returns the kinetic energy of a grain's rigid motion (J).
+/// Returns the kinetic energy of a grain's rigid motion (J). Without a reported spin, only the translational energy counts.
 fn kinetic(scene: &Scene, grain: &GrainState) -> f64 {
     let inertia = scene.grains[grain.id as usize - 1].inertia;
-    // If a solver reports no spin, only the translational energy counts.
     let turning = if grain.spin.iter().all(|spin| spin.is_nan()) { 0.0 } else { inertia * grain.spin.norm_squared() };
     0.5 * (grain.mass * grain.velocity.norm_squared() + turning)
 }
 
-/// Returns the largest relative gain of kinetic energy. At the start all energy is kinetic; later some is stored in
-/// springs.
+/// Returns the largest relative gain of kinetic energy. All energy is kinetic at the start; later, part of it is stored
+/// in springs.
 fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let of_start = |grain: &grainbench_scene::scene::Grain| {
         0.5 * (grain.mass * grain.velocity.norm_squared() + grain.inertia * grain.spin.norm_squared())
@@ -162,7 +167,7 @@ fn gain(scene: &Scene, record: &Record) -> Result<f64, NoEnd> {
     let asked = (u64::from(scene.snapshots) + 2).min(record.cost.steps + 1);
     let found = record.snapshots.len();
     if (found as u64) < asked {
-        let lack = format!("the record has {found} snapshots, and the scene asks for {asked}");
+        let lack = format!("the record has {found} snapshots, but the scene requests {asked}");
         return Err(NoEnd::Record(lack));
     }
     let moving = |grains: &[GrainState]| grains.iter().map(|grain| kinetic(scene, grain)).sum::<f64>();
@@ -177,17 +182,17 @@ fn stiffest(scene: &Scene) -> (f64, f64) {
     let heaviest = scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
     let energy = 0.5 * heaviest * fastest.powi(2);
     let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
-    // ∫F dδ = (2/5) k δ^{5/2} with k = (4/3) E* √R.
+    // ∫F dδ = (2/5) k δ^{5/2} with k = (4/3) E* √R, overlap δ and effective modulus E*.
     let radius = scene.grains[0].radius;
     let spring = 4.0 / 3.0 * law.effective_modulus() * radius.sqrt();
     let overlap = if law.is_hertz() { (2.5 * energy / spring).powf(0.4) } else { 1.0 };
     law.springs.stiffness(overlap, radius)
 }
 
-/// Returns the largest gain that passes: (ωΔt)²/4 for each contact.
+/// Returns the largest allowed gain: (ωΔt)²/4 for each contact, with contact frequency ω and time step Δt.
 ///
-/// In a deformable body, ω belongs to a wave that crosses a diameter in half a period. Rigid bodies have no springs, so
-/// only the rounding of each step counts.
+/// In a deformable body, ω is the frequency of a wave that crosses a diameter in half a period. Contacts of rigid
+/// bodies have no springs, so only the rounding of each step counts.
 fn allowed(scene: &Scene, record: &Record, contacts: f64, rows: &Rows<'_>) -> Result<f64, NoEnd> {
     let step = record.provenance.time_step;
     if !(step.is_finite() && step > 0.0) {
@@ -206,17 +211,20 @@ fn allowed(scene: &Scene, record: &Record, contacts: f64, rows: &Rows<'_>) -> Re
     Ok(contacts * (rate * step).powi(2) / 4.0)
 }
 
-/// Overlaps (m) and shear displacement (m) of a driven Hertz contact, and duration of each leg (s).
+/// Small overlap of the Hertz contact with prescribed motion (m).
 const SHALLOW: f64 = 0.005;
+/// Large overlap of the contact (m).
 const DEEP: f64 = 0.01;
+/// Tangential displacement of the contact (m).
 const SHEAR: f64 = 5.0e-4;
+/// Duration of each leg of the cycle (s).
 const LEG: f64 = 0.02;
 
-/// Returns two closed cycles of a driven contact.
+/// Returns two closed cycles of a contact with prescribed motion.
 ///
-/// The first is sheared while shallow and sheared back while deep. A spring that uses its present stiffness gains
-/// energy there. The second is sheared while deep and sheared back while shallow. A spring that keeps its force while
-/// unloading gains energy there.
+/// In the first cycle, the contact is sheared at a small overlap and sheared back at a large overlap. This cycle yields
+/// work if the spring force is the present stiffness times the whole displacement. In the second cycle, the overlaps are
+/// exchanged. This cycle yields work if unloading does not reduce the spring force.
 fn cycles() -> Result<Vec<NamedScene>, SceneError> {
     let legs = |name, [first, second]: [f64; 2]| {
         cycle(name, &[[0.0, first], [SHEAR, first], [SHEAR, second], [0.0, second], [0.0, 0.0]])
@@ -224,7 +232,7 @@ fn cycles() -> Result<Vec<NamedScene>, SceneError> {
     Ok(vec![legs("cycle-pressed-under-shear", [SHALLOW, DEEP])?, legs("cycle-relieved-under-shear", [DEEP, SHALLOW])?])
 }
 
-/// Returns the scene of a ball that is pressed on a plane, with prescribed shear displacements and overlaps (m).
+/// Returns the scene of a sphere pressed on a plane. Each leg prescribes a tangential displacement and an overlap (m).
 fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<NamedScene, SceneError> {
     let place = |(leg, [shear, overlap]): (usize, &[f64; 2])| {
         format!(", [{:?}, {shear:?}, 0.0, {:?}]", LEG * (leg + 1) as f64, -overlap)
@@ -243,8 +251,7 @@ fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<NamedScene, SceneError
     scene_of(name, &text, true)
 }
 
-/// Returns the work gained in a closed cycle, divided by the energy that the tangential spring stores at the largest
-/// overlap.
+/// Returns the work gained in a closed cycle, divided by the energy of the tangential spring at the largest overlap.
 fn work(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
     let record = rows.solver.run(&named.scene, &rows.terms.resolution, &mut ())?;
     let column =
@@ -270,7 +277,7 @@ mod tests {
     use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
     use grainbench_scene::terms::Terms;
 
-    /// A solver that runs nothing.
+    /// A solver that rejects every scene.
     struct IdleSolver;
 
     impl Solver for IdleSolver {

@@ -9,10 +9,10 @@ use crate::verdict::Verdict;
 
 pub(super) const PROPERTY: Property = Property {
     name: "permutation",
-    claim: "the same grains listed in another order end alike",
+    claim: "the final state does not depend on the order in which the grains are listed",
     flaw: Flaw::Listed,
     evidence: Evidence::Invariant,
-    source: "a list has an order, nature has none",
+    source: "forces do not depend on the order of the grains",
     because: ROUNDING,
     check,
 };
@@ -22,8 +22,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     rows.each(scenes::collisions(), &terms.resolution, APART, |named| {
         let straight = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let mut permuted = named.scene.clone();
-        // A permutation that is neither the identity nor a reversal: new place p gets the grain from old place 3p + 2
-        // (mod n).
+        // A permutation that is neither the identity nor a reversal: the grain at index p comes from index 3p + 2
+        // modulo the number of grains.
         let count = permuted.grains.len();
         let old_place = |place: usize| (3 * place + 2) % count;
         permuted.grains = (0..count).map(|place| named.scene.grains[old_place(place)]).collect();

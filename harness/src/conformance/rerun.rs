@@ -11,11 +11,11 @@ use grainbench_scene::solver::Solver;
 
 pub(super) const PROPERTY: Property = Property {
     name: "rerun",
-    claim: "the same scene at the same resolution leaves the same record, but for its times",
+    claim: "the same scene at the same resolution gives the same record, except for computing times",
     flaw: Flaw::Irreproducible,
     evidence: Evidence::Invariant,
     source: "a program is a function of its input",
-    because: "bits are the same or not",
+    because: "bits must be equal",
     check,
 };
 
@@ -29,7 +29,7 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     })
 }
 
-/// Returns the number of bytes in which two stored records differ. The measured run times are ignored.
+/// Returns the number of bytes in which two stored records differ. The measured run time is ignored.
 pub(super) fn differing(mut first: Record, mut second: Record) -> Result<usize, NoEnd> {
     for record in [&mut first, &mut second] {
         record.cost = Cost { wall_seconds: 0.0, ..record.cost };

@@ -1,4 +1,4 @@
-//! Restart: a run continued from a checkpoint ends like the uninterrupted run.
+//! Restart: a run continued from a checkpoint gives the record of the uninterrupted run.
 
 use super::end::NoEnd;
 use super::rerun::differing;
@@ -11,11 +11,12 @@ use grainbench_scene::solver::{Observer, RunError, RunOptions, RunOutline, Solve
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",
-    claim: "a run continued from a checkpoint halfway leaves the record of the whole run, but for its times",
+    claim: "a run that is continued from a checkpoint halfway gives the record of the uninterrupted run, except for \
+            computing times",
     flaw: Flaw::Restarted,
     evidence: Evidence::Invariant,
-    source: "a checkpoint holds all that the next step depends on",
-    because: "bits are the same or not",
+    source: "a checkpoint contains everything that the next step depends on",
+    because: "bits must be equal",
     check,
 };
 
@@ -39,7 +40,7 @@ fn no_checkpoint(solver: &dyn Solver) -> RunError {
     RunError::Unsupported { solver: solver.name(), reason: "it writes no checkpoints".to_owned() }
 }
 
-/// Stores the checkpoint after half of the steps.
+/// Observer that keeps the checkpoint after half of the steps.
 #[derive(Default)]
 struct HalfwayCheckpoint {
     steps: u64,
@@ -47,7 +48,7 @@ struct HalfwayCheckpoint {
 }
 
 impl HalfwayCheckpoint {
-    /// Returns the checkpoint after it has been written to bytes and read back.
+    /// Writes the checkpoint to bytes, reads it back and returns it; none if the solver wrote no checkpoint.
     fn through_a_file(self) -> Result<Option<Checkpoint>, RunError> {
         let reread = |checkpoint: Checkpoint| Checkpoint::from_bytes(&checkpoint.to_bytes()?);
         Ok(self.checkpoint.map(reread).transpose()?)

@@ -1,4 +1,4 @@
-//! Rotation invariance: the final state of a rotated collision is the rotated final state.
+//! Rotation invariance: a rotated collision ends with the rotated original final state.
 
 use super::moved::{APART, ROUNDING, View};
 use super::row::Rows;
@@ -9,7 +9,7 @@ use nalgebra::{Rotation3, Unit, Vector3};
 
 pub(super) const PROPERTY: Property = Property {
     name: "rotation-invariance",
-    claim: "a scene that is turned ends as its end turned",
+    claim: "the final state of a rotated scene is the rotated final state",
     flaw: Flaw::Anisotropic,
     evidence: Evidence::Invariant,
     source: "contact laws do not depend on the axes",
@@ -17,7 +17,7 @@ pub(super) const PROPERTY: Property = Property {
     check,
 };
 
-/// Angle of rotation (rad). It maps no axis on another axis.
+/// Angle of rotation (rad). It maps no coordinate axis onto another.
 const ANGLE: f64 = 0.65;
 
 fn check(rows: &Rows<'_>) -> Vec<Verdict> {

@@ -13,7 +13,7 @@ use grainbench_scene::terms::Terms;
 /// Inputs that all results of a property share.
 pub(super) struct Rows<'a> {
     pub(super) solver: &'a dyn Solver,
-    /// The same solver for runs that must be done now, and never taken from finished runs.
+    /// Solver under test without a cache, for runs that must be repeated or observed.
     pub(super) again: &'a dyn Solver,
     pub(super) terms: &'a Terms,
     pub(super) property: &'a Property,
@@ -27,7 +27,7 @@ pub(super) struct PropertyValue {
 }
 
 impl PropertyValue {
-    /// Returns a deviation from zero. `allowed` has the unit of `value`.
+    /// Returns a deviation from zero. `value`, `scale` and `allowed` have the same unit.
     pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
         Self {
             measured: Measurement::new(value, 0.0, scale),
@@ -38,7 +38,8 @@ impl PropertyValue {
 }
 
 impl Rows<'_> {
-    /// Returns one result for each scene. `find` measures the quantity.
+    /// Returns one result for each scene. Three-dimensional scenes are left out if `terms.in_space` is false. `find`
+    /// measures the quantity.
     pub(super) fn each(
         &self,
         scenes: Result<Vec<NamedScene>, SceneError>,
@@ -49,7 +50,7 @@ impl Rows<'_> {
         self.each_of(scenes, resolution, (quantity, unit), |named| named, find)
     }
 
-    /// Returns one result for each entry of a list that holds more than a scene.
+    /// Returns one result for each entry of a list, as [`Rows::each`]. `named` returns the scene of an entry.
     pub(super) fn each_of<T>(
         &self,
         scenes: Result<Vec<T>, SceneError>,
@@ -69,7 +70,7 @@ impl Rows<'_> {
         }
     }
 
-    /// Returns the result of one scene.
+    /// Returns the result for one scene.
     fn row(
         &self,
         scene: &str,

@@ -5,18 +5,18 @@ use grainbench_scene::scene::{Dimension, Scene};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
-/// A scene with a name for its results.
+/// Scene with a name for its results.
 pub(super) struct NamedScene {
     pub(super) name: &'static str,
     pub(super) scene: Scene,
-    /// True if friction lets grains apply torques to one another.
+    /// True if the grains have friction and exert torques on each other.
     pub(super) frictional: bool,
 }
 
-/// One grain collides with four close grains. About six contacts open and close during the run, none head-on.
+/// Scene in which one disc collides with four nearby discs. About six oblique contacts open and close during the run.
 ///
-/// Masses are about 1 kg, k = 1e4 N/m: a contact lasts about 20 ms, and overlaps are about 0.01 of the radius. The
-/// moduli of deformable grains are about as large (Pa).
+/// Masses are about 1 kg and k = 1e4 N/m, so a contact lasts about 20 ms and overlaps are about 0.01 of the radius. The
+/// moduli of deformable grains are about 1e4 Pa.
 const COLLISION_2D: &str = r#"
 title = "A disc runs into four"
 dimension = 2
@@ -56,7 +56,7 @@ position = [2.90, 0.05]
 velocity = [-0.3, 0.02]
 "#;
 
-/// The same collision in three dimensions.
+/// Scene of [`COLLISION_2D`] with spheres in three dimensions.
 const COLLISION_3D: &str = r#"
 title = "A sphere runs into four"
 dimension = 3
@@ -102,7 +102,7 @@ const SPRINGS: &str = "\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 
 const FRICTION: &str =
     "tangential_stiffness = 5.0e3\nfriction = 0.4\nnormal_damping = 10.0\ntangential_damping = 5.0\n";
 
-/// Two grains that never come into contact. Their stiffness gives a critical time step.
+/// Scene of two grains that never come into contact. Their stiffness determines the critical time step.
 const FLIGHT_2D: &str = "title = 'Two discs fly apart'\ndimension = 2\nduration = 1.0\n\
   materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [-2.0, 0.3]\nvelocity = [-1.7, 0.9]\nspin = 3.1\n\
@@ -114,7 +114,7 @@ const FLIGHT_3D: &str = "title = 'Two spheres fly apart'\ndimension = 3\nduratio
     [grains.b]\nmaterial = 'm'\nradius = 0.7\nposition = [2.0, -0.4, 0.2]\nvelocity = [1.1, 0.3, -0.6]\n\
       spin = [0.0, 0.5, -1.3]\n";
 
-/// A grain held between two planes that press on it. It oscillates, rotates to and fro, and never loses contact.
+/// Scene of a grain compressed between two planes. The grain oscillates, also in rotation, and never loses contact.
 const HELD_2D: &str = "title = 'A disc held by two walls'\ndimension = 2\nduration = 0.2\n\
   materials.m = { density = 0.3183098861837907, bulk_modulus = 1e4, shear_modulus = 6e3 }\n\
     [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.99]\nvelocity = [0.3, 0.4]\nspin = 0.5\n\
@@ -126,20 +126,21 @@ const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\ndura
       spin = [0.1, 0.5, 0.0]\n\
     [walls.low]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
     [walls.high]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 1.98], normal = [0.0, 0.0, -1.0] }\n";
-/// Friction so high that nothing slips. No dashpots: their lag of half a step has first order in every code we know.
+/// Contact with friction so high that it never slips. There are no dashpots: their force lags by half a time step in every
+/// code we know, which is an error of first order.
 const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
 
 fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedScene, SceneError> {
     scene_of(name, &parts.concat(), frictional)
 }
 
-/// Builds a scene from the text of a scene file.
+/// Builds a scene from the text of a scene file. `frictional` states that grains exert torques on each other.
 pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<NamedScene, SceneError> {
     let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
     Ok(NamedScene { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
 }
 
-/// Returns collisions in free space: in two and three dimensions, without friction, and with friction and dashpots.
+/// Returns collisions in free space in two and three dimensions, without friction or with friction and dashpots.
 pub(super) fn collisions() -> Result<Vec<NamedScene>, SceneError> {
     Ok(vec![
         scene("2d", &[COLLISION_2D, SPRINGS], false)?,
@@ -149,7 +150,7 @@ pub(super) fn collisions() -> Result<Vec<NamedScene>, SceneError> {
     ])
 }
 
-/// Returns scenes of free flight with and without gravity. Some have friction, so that solvers integrate the spin.
+/// Returns scenes of free flight with and without gravity. Two have friction, so that solvers integrate the spin.
 pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
         scene("2d", &[FLIGHT_2D, SPRINGS], false)?,
@@ -163,11 +164,12 @@ pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
     Ok(all)
 }
 
-/// Returns scenes of smooth motion for ten critical time steps: along the normal, or along the tangent with friction.
+/// Returns scenes of smooth motion during ten critical time steps. A grain between two walls vibrates along the normal without
+/// friction, or moves along the tangent with friction.
 ///
-/// Motion along both would lower the order. If the lever arm is R − overlap/2 and the overlap changes, velocities at
-/// mid-step are combined with lever arms at the end of the step. This error has first order, with a coefficient as
-/// small as the overlap.
+/// Friction and vibration together would reduce the order of convergence of a solver with the lever arm R − overlap/2. It
+/// combines velocities at mid-step with lever arms at the end of the step, while the overlap changes. The resulting error is
+/// of first order in the time step, and its coefficient is proportional to the overlap.
 pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
         scene("held-2d", &[HELD_2D, SPRINGS], false)?,
@@ -185,14 +187,14 @@ pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     Ok(all)
 }
 
-/// Returns true for a scene in two dimensions.
+/// Returns true for a two-dimensional scene.
 pub(super) fn flat(scene: &Scene) -> bool {
     scene.dimension == Dimension::Two
 }
 
 #[cfg(test)]
 mod tests {
-    /// No user checks the text of these scenes, so a test must.
+    /// Users never load these scenes, so a test must check them.
     #[test]
     fn every_scene_is_right() {
         for scenes in [super::collisions(), super::flights(), super::held()] {

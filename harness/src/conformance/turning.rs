@@ -1,7 +1,7 @@
 //! Scenes in which walls and grains rotate together as one rigid body, with the exact position of every grain.
 //!
-//! All scenes rotate at Ω about an axis through the origin, without gravity. In the rotating frame, a grain is subject
-//! to the centrifugal force, the Coriolis force and the contact forces of a frame at rest.
+//! All scenes rotate at angular velocity Ω about an axis through the origin, without gravity. In the rotating frame,
+//! the centrifugal force, the Coriolis force and the contact forces act on a grain.
 
 use super::scenes::{NamedScene, scene_of};
 use grainbench_scene::error::SceneError;
@@ -10,17 +10,17 @@ use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;
 
-/// Angular velocity Ω (rad/s) and duration T (s): about an eighth of a turn in 168 steps of 0.08 of the critical time
-/// step.
+/// Magnitude of the angular velocity Ω (rad/s).
 const RATE: f64 = 3.0;
+/// Duration T (s): about an eighth of a revolution in 168 steps of 0.08 of the critical time step.
 const TIME: f64 = 0.2688;
-/// Stiffness k of linear contacts (N/m), and effective modulus E* of Hertz contacts (Pa), for grains of mass 1 kg and
-/// radius 1 m.
+/// Stiffness k of linear contacts (N/m), for grains of mass 1 kg and radius 1 m.
 const STIFFNESS: f64 = 1.0e4;
+/// Effective modulus E* of Hertz contacts (Pa), for grains of mass 1 kg and radius 1 m.
 const MODULUS: f64 = 6.25e4;
 /// Poisson's ratio of Hertz contacts.
 const POISSON: f64 = 0.3;
-/// Overlap of a grain with the walls that clamp it (m).
+/// Overlap between a grain and the walls that clamp it (m).
 const HELD: f64 = 2.0e-3;
 /// Radius of the drum (m).
 const DRUM: f64 = 3.0;
@@ -30,8 +30,8 @@ const DRUM: f64 = 3.0;
 enum Course {
     /// Each grain is at rest in the rotating frame.
     Rigid,
-    /// A grain is held by springs that are equal in all directions and initially unloaded. Their frequency is ω
-    /// (rad/s).
+    /// Springs hold a grain. They have the same stiffness in all directions and exert no net force at the start. The grain
+    /// vibrates on them at the angular frequency ω (rad/s).
     Sprung(f64),
 }
 
@@ -43,20 +43,21 @@ pub(super) struct RotatingScene {
     course: Course,
     /// Largest overlap (m).
     pub(super) overlap: f64,
-    /// True if the centres move because the overlap shortens the lever arms, which makes surfaces slip.
+    /// True if the overlap shortens the lever arms, so that surfaces slip and the centres move.
     pub(super) carried: bool,
     /// True if contacts rotate about their normals.
     pub(super) twisted: bool,
-    /// Fraction of Ω that is perpendicular to the normals. It makes the lever arms of a sprung grain matter.
+    /// Component of Ω perpendicular to the contact normals, as a fraction of Ω. The lever arms of a clamped grain have an
+    /// effect only if this component is not zero.
     pub(super) across: f64,
 }
 
 impl RotatingScene {
     /// Returns the exact position of a grain (m) at a time (s).
     ///
-    /// A sprung grain whose springs begin without load at r₀ obeys r̈ = −ω²(r − r₀(t)). Here r₀(t) rotates at Ω, and
-    /// its component along the axis is constant. With w = x + iy perpendicular to the axis, w = r₀[a e^{iΩt} + b
-    /// e^{iωt} + c e^{−iωt}], a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a).
+    /// A grain whose springs exert no net force at r₀ obeys r̈ = −ω²(r − r₀(t)). Here r₀(t) rotates at Ω, and its component
+    /// along the axis is constant. With w = x + iy perpendicular to the axis, w = r₀[a e^{iΩt} + b e^{iωt} + c
+    /// e^{−iωt}], a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a).
     pub(super) fn place(&self, start: V, time: f64) -> V {
         let angle = RATE * time;
         let turned = |by: f64| Rotation3::from_scaled_axis(self.spin * (by / RATE)) * start;
@@ -71,12 +72,12 @@ impl RotatingScene {
         along + across(angle) * forced + across(phase) * forth + across(-phase) * back
     }
 
-    /// Returns the frequency of the springs (rad/s), if springs hold a grain.
+    /// Returns the angular frequency ω of a grain on springs (rad/s); none if the grains are at rest in the rotating frame.
     pub(super) fn frequency(&self) -> Option<f64> {
         if let Course::Sprung(frequency) = self.course { Some(frequency) } else { None }
     }
 
-    /// Returns the angle of rotation at the end (rad).
+    /// Returns the angle of rotation of the scene at the end (rad).
     pub(super) const fn angle() -> f64 {
         RATE * TIME
     }
@@ -92,13 +93,14 @@ impl RotatingScene {
 /// Contact law of all materials of a scene.
 #[derive(Clone, Copy, PartialEq)]
 enum Law {
-    /// k_n = k_t, with a coefficient of rolling resistance.
+    /// Linear springs with k_n = k_t, and this coefficient of rolling resistance.
     Linear(f64),
+    /// Hertz contacts with this coefficient of rolling resistance.
     Hertz(f64),
 }
 
 impl Law {
-    /// Returns the overlap (m) at a force (N).
+    /// Returns the overlap (m) at a contact force (N) between a grain of radius 1 m and a wall.
     fn overlap(self, force: f64) -> f64 {
         match self {
             Self::Linear(_) => force / STIFFNESS,
@@ -106,7 +108,7 @@ impl Law {
         }
     }
 
-    /// Returns the force (N) at an overlap (m) between a grain of radius 1 m and a wall.
+    /// Returns the contact force (N) at an overlap (m) between a grain of radius 1 m and a wall.
     fn force(self, overlap: f64) -> f64 {
         match self {
             Self::Linear(_) => STIFFNESS * overlap,
@@ -114,7 +116,7 @@ impl Law {
         }
     }
 
-    /// Returns the materials and contacts of a scene file in this number of dimensions.
+    /// Returns the materials and contacts of a scene file for 2 or 3 dimensions.
     fn text(self, dimension: usize) -> String {
         let density = if dimension == 2 { 1.0 } else { 0.75 } / std::f64::consts::PI;
         let (moduli, springs, rolling) = match self {
@@ -141,7 +143,7 @@ impl Law {
     }
 }
 
-/// Adds a wall with a name, a point and a normal.
+/// Function that adds a wall with a name, a point and a normal.
 type Walls = fn(Builder, &str, V, V) -> Builder;
 
 /// Builds the text of one scene.
@@ -206,7 +208,7 @@ impl Builder {
     }
 }
 
-/// Returns a scene with a grain between two walls. Its springs are equal in all directions.
+/// Returns a scene with a grain between two walls. The contact springs are isotropic.
 fn clamped(
     name: &'static str,
     (builder, walls): (Builder, Walls),
@@ -226,8 +228,8 @@ fn clamped(
     Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
 }
 
-/// Returns a scene with two grains in a row between two walls. The row intersects the axis at a right angle, so the
-/// forces on the two sides of a grain differ by m Ω² r.
+/// Returns a scene with two grains in a row between two walls. The row intersects the axis at a right angle. The forces
+/// on the two sides of a grain therefore differ by m Ω² r (m: mass, r: distance from the axis).
 fn row(
     name: &'static str,
     law: Law,
@@ -238,7 +240,7 @@ fn row(
     let first = 0.6;
     let builder = walls(builder, "low", normal * (first - 1.0 + HELD), normal).grain("a", normal * first);
     let force = law.force(HELD) + RATE * RATE * first;
-    // The effective radius between two equal grains is half the effective radius at a wall.
+    // The effective radius of two equal grains is half the effective radius of a grain and a wall.
     let between = law.overlap(if let Law::Hertz(_) = law { force * 2.0_f64.sqrt() } else { force });
     let second = first + 2.0 - between;
     let overlap = law.overlap(force + RATE * RATE * second);
@@ -248,7 +250,7 @@ fn row(
     Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
-/// Returns a scene with a sphere on the inside of a drum: k δ = m Ω² (R_drum − R + δ).
+/// Returns a scene with a sphere on the inside of a drum. The overlap δ obeys k δ = m Ω² (R_drum − R + δ) for linear springs.
 fn drum(name: &'static str, law: Law, axis: V) -> Result<RotatingScene, SceneError> {
     let axis = axis.normalize();
     let mut overlap = 0.0;
@@ -263,7 +265,7 @@ fn drum(name: &'static str, law: Law, axis: V) -> Result<RotatingScene, SceneErr
     Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
 }
 
-/// Returns the scenes of rigid grains and of grains with contact springs.
+/// Returns the rotating scenes of rigid grains and of grains with contact springs.
 pub(super) fn all() -> Result<Vec<RotatingScene>, SceneError> {
     let [rolls, free, hertz] = [Law::Linear(0.1), Law::Linear(0.0), Law::Hertz(0.1)];
     let (flat, along) = (V::new(-0.3, 0.95, 0.0), V::new(2.0, -1.0, 2.0));
@@ -280,7 +282,8 @@ pub(super) fn all() -> Result<Vec<RotatingScene>, SceneError> {
     ])
 }
 
-/// Returns the scenes that show the order of a scheme. Errors of lever arms do not depend on the time step.
+/// Returns three scenes in which the order of convergence is measured. Errors due to lever arms do not depend on the time
+/// step, so they do not change the measured order.
 pub(super) fn smooth() -> Result<Vec<NamedScene>, SceneError> {
     let shown = ["planes-2d", "rectangles-3d-oblique", "drum-3d"];
     Ok(all()?.into_iter().map(|turning| turning.named).filter(|named| shown.contains(&named.name)).collect())
@@ -288,12 +291,12 @@ pub(super) fn smooth() -> Result<Vec<NamedScene>, SceneError> {
 
 /// Returns the angular velocity of a free body (rad/s). Its rim moves at 0.01 of the speed of longitudinal waves.
 fn slow_spin(scene: &Scene) -> f64 {
-    // Time in which a wave crosses a radius of 1 m.
+    // `crossing_time(1.0)` is the time (s) in which a wave crosses the radius of 1 m.
     0.01 / scene.crossing_time(1.0)
 }
 
-/// Returns freely rotating deformable bodies of each constitutive law: about the normal of the plane, and about an
-/// oblique axis.
+/// Returns freely rotating deformable bodies with each constitutive law. In two dimensions they rotate about the normal
+/// of the plane, and in three about an oblique axis.
 pub(super) fn free() -> Result<Vec<NamedScene>, SceneError> {
     let laws = [
         ("free-2d-neo-hookean", 2, "neo-hookean", ""),
@@ -334,7 +337,7 @@ mod tests {
         assert_eq!(free().unwrap().len(), 5);
     }
 
-    /// The closed form starts at r₀ with velocity Ω × r₀, and obeys r̈ = −ω²(r − r₀(t)).
+    /// The closed-form solution starts at r₀ with velocity Ω × r₀, and obeys r̈ = −ω²(r − r₀(t)).
     #[test]
     fn a_sprung_grain_obeys_its_equation() {
         for turning in all().unwrap().iter().filter(|turning| turning.frequency().is_some()) {
@@ -351,7 +354,7 @@ mod tests {
         }
     }
 
-    /// In a steady scene, the contact forces on every grain add up to m Ω² r towards the axis.
+    /// If all grains are at rest in the rotating frame, the contact forces on each grain sum to m Ω² r towards the axis.
     #[test]
     fn steady_scenes_are_in_balance() {
         use grainbench_scene::overlap::distance;
@@ -365,7 +368,7 @@ mod tests {
             for grain in scene.grains.iter() {
                 let mut sum = V::zeros();
                 for wall in &scene.walls {
-                    // Each radial line through a grain is normal to the walls.
+                    // The normals of the walls are parallel to the radial line through each grain.
                     let inwards = wall.name != "low";
                     let out = grain.position.normalize() * if inwards { -1.0 } else { 1.0 };
                     sum += out * force(1.0 - distance(grain.position, &wall.shape).abs(), 1.0);

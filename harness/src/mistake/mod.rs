@@ -1,8 +1,8 @@
-//! Known mistakes of solvers, and the search for the one that explains failed results.
+//! Known mistakes of solvers, and the search for a mistake that explains failed results.
 //!
-//! A mistake explains a failed result if our own solvers give the same error with it, and pass without it. The candidates
-//! are wrong scenes, such as another gravity or inertia, the claim's negative control, and wrong methods in
-//! [`small_dem`].
+//! A mistake explains a failed result if our own solvers give the same error with the mistake, and pass without it. The
+//! candidates are wrong scenes, such as another gravity or inertia, the negative control of the claim, and wrong
+//! methods in [`small_dem`].
 
 pub mod small_dem;
 
@@ -23,17 +23,17 @@ use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread;
 
-/// Largest difference of two errors with the same cause, as a fraction of the error.
+/// Largest difference of two errors with the same cause, as a fraction of the error that was found.
 const SAME: f64 = 0.05;
-/// Largest relative difference of two errors of the same run.
+/// Largest relative difference between the errors with and without a mistake that has no effect.
 const UNCHANGED: f64 = 1e-6;
-/// Largest number of candidates that a hint names.
+/// Largest number of mistakes that a hint names.
 const MOST_NAMED: usize = 2;
 /// Largest number of steps times grains for a run with a wrong scene.
 const SCENE_WORK: f64 = 2e7;
 /// Largest number of steps times pairs for a run with a wrong method.
 const METHOD_WORK: f64 = 5e6;
-/// Time step, as a fraction of the critical one, of the small method if the claim's method has no contact springs.
+/// Time step of the small solver, as a fraction of the critical time step, if the claim's method has no contact springs.
 const FRACTION: f64 = 0.05;
 
 /// A mistake whose effect on a result can be computed.
@@ -41,7 +41,7 @@ const FRACTION: f64 = 0.05;
 enum Mistake {
     /// A wrong scene.
     Scene(Control),
-    /// The negative control of each claim, identified by its name.
+    /// The negative control with this name, in all claims that have it.
     Control(&'static str),
     /// A wrong method.
     Method(MethodMistake),
@@ -71,8 +71,8 @@ struct Candidate {
 
 /// Appends "as if: …" to the details of failed results whose errors a known mistake reproduces.
 ///
-/// `rows` are the results of `claims`, in the same order. Other results of the same scenes count against a mistake that
-/// contradicts them.
+/// `rows` are the results of `claims`, in the same order. All results of scenes with a failed result are examined. A
+/// mistake is not named if it contradicts at least as many of them as it explains.
 pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[Claim], rows: &mut [Option<Verdict>]) {
     let hints = hints(case, solvers, claims, rows);
     for (row, hint) in rows.iter_mut().zip(hints) {
@@ -126,15 +126,16 @@ fn distance(error: Option<f64>, row: &Verdict) -> f64 {
     error.zip(row.error).map_or(f64::INFINITY, |(error, found)| (error - found).abs())
 }
 
-/// Returns true if a mistake explains a failed result. Its error must fail too. It may differ from the found error by
-/// the fraction [`SAME`], or by the allowed error but at most half of the found error.
+/// Returns true if a mistake explains a failed result. The error with the mistake must exceed the allowed error and be
+/// close to the found error. The largest difference is the larger of two values: the fraction [`SAME`] of the found
+/// error, and the allowed error, limited to half of the found error.
 fn explains(error: Option<f64>, row: &Verdict) -> bool {
     let found = row.error.unwrap_or(f64::NAN).abs();
     error.is_some_and(|error| error.abs() > row.allowed)
         && distance(error, row) <= (SAME * found).max(row.allowed.min(0.5 * found))
 }
 
-/// Returns the number of failed results that a mistake explains, minus the number of results that it contradicts.
+/// Returns the number of failed results that a mistake explains, minus the number of results that contradict it.
 fn score(candidate: &Candidate, judged: &[ClaimResult<'_>]) -> i64 {
     let agreement = |(error, judged): (&Option<f64>, &ClaimResult<'_>)| match (error, judged.row.outcome) {
         (None, _) => 0,
@@ -145,13 +146,13 @@ fn score(candidate: &Candidate, judged: &[ClaimResult<'_>]) -> i64 {
     candidate.errors.iter().zip(judged).map(agreement).sum()
 }
 
-/// Computes the errors with each mistake on all processors.
+/// Computes the errors of all results with each mistake, on all processors.
 fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimResult<'_>]) -> Vec<Candidate> {
     let plain = Runner::new(case, Arc::clone(solvers));
     let right = small(case, solvers, None);
     let can: Vec<[bool; 2]> = judged.iter().map(|judged| limits(&plain, judged.claim)).collect();
     // Errors without a mistake. A mistake that changes no error explains nothing. A solver that fails without the
-    // mistake cannot show its effect.
+    // mistake cannot show the effect of the mistake.
     let is_tried = |judged: &ClaimResult<'_>, can: &[bool; 2]| {
         can[0] || judged.row.outcome == Outcome::Fail && is_own(judged.claim)
     };
@@ -201,18 +202,18 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
     found.into_iter().map(|(_, candidate)| candidate).collect()
 }
 
-/// Returns a runner of the small method, with or without a mistake.
+/// Returns a runner of the small solver, with or without a mistake.
 fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<MethodMistake>) -> Runner {
     Runner::new(case, Arc::clone(solvers)).with_solver(Arc::new(SmallDem { mistake })).controlled(false)
 }
 
-/// Returns the error of a claim with a runner of the small method.
+/// Returns the error of a claim with a runner of the small solver.
 fn method_error(runner: &Runner, judged: &ClaimResult<'_>) -> Option<f64> {
     let runs = judged.claim.runs.iter().map(with_step).collect();
     runner.judge(&Claim { runs, ..judged.claim.clone() }).error
 }
 
-/// Returns the run with a resolution that has a time step.
+/// Returns the run at its own resolution if that is a time step, otherwise at [`FRACTION`] of the critical time step.
 fn with_step(run: &Run) -> Run {
     match run.resolution {
         Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => run.clone(),
@@ -225,7 +226,7 @@ fn scene_error(runner: &Runner, claim: &Claim, control: Control) -> Option<f64> 
     runner.control(&Claim { control, ..claim.clone() }).error
 }
 
-/// Returns true if all runs of a claim use our own solvers in the quick tier.
+/// Returns true if a claim uses only quick runs of our own solvers and compares with no other program or earlier value.
 fn is_own(claim: &Claim) -> bool {
     let is_computed = !matches!(claim.evidence(), Evidence::OtherCode | Evidence::Regression);
     let is_short = |run: &Run| {
@@ -234,7 +235,8 @@ fn is_own(claim: &Claim) -> bool {
     is_computed && claim.control.set == Set::Main && claim.runs.iter().all(is_short)
 }
 
-/// Returns true if the runs of a claim are short enough: first for a wrong scene, second for a wrong method.
+/// Returns two flags: true if the runs of a claim are short enough to repeat them with a wrong scene (first flag) or with
+/// a wrong method (second flag).
 fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
     let of_grains = |run: &Run| matches!(Method::from_name(run.solver), Some(Method::Dem | Method::Rigid));
     if !is_own(claim) || !claim.runs.iter().all(of_grains) {
@@ -255,7 +257,7 @@ fn limits(runner: &Runner, claim: &Claim) -> [bool; 2] {
     sum.map_or([false; 2], |[scene, method]| [scene <= SCENE_WORK, method <= METHOD_WORK])
 }
 
-/// Returns the mistakes that can affect these claims.
+/// Returns the mistakes that can affect these results.
 fn mistakes(runner: &Runner, judged: &[ClaimResult<'_>]) -> Vec<Mistake> {
     let mut known = BTreeSet::new();
     let mut found: Vec<Mistake> = Vec::new();
@@ -275,7 +277,7 @@ fn mistakes(runner: &Runner, judged: &[ClaimResult<'_>]) -> Vec<Mistake> {
     found
 }
 
-/// Returns changes of a scene that are common mistakes.
+/// Returns common mistakes in a scene.
 fn of_scene(scene: &Scene) -> Vec<Control> {
     let off = Effect::switches().filter(|effect| effect.is_on(scene)).map(Control::without);
     let parts =
@@ -321,8 +323,8 @@ fn of_inertia(shape: GrainShape) -> Vec<Control> {
             vec![scaled("the inertia of a disc in a sphere", 1.25), scaled("the inertia of a hollow sphere", 5.0 / 3.0)]
         }
     };
-    found.push(scaled("grains that do not turn", 1e12));
-    found.push(Control::scene("half the mass of grains", |scene: &mut Scene| {
+    found.push(scaled("grains that do not rotate", 1e12));
+    found.push(Control::scene("half the mass of each grain", |scene: &mut Scene| {
         for grain in &mut scene.grains {
             (grain.mass, grain.inertia) = (0.5 * grain.mass, 0.5 * grain.inertia);
         }
@@ -330,7 +332,7 @@ fn of_inertia(shape: GrainShape) -> Vec<Control> {
     found
 }
 
-/// Returns a control that changes every contact law.
+/// Returns a control that changes all contact laws of a scene.
 fn laws(name: &'static str, change: fn(&mut grainbench_scene::contact_law::ContactLaw)) -> Control {
     Control::scene(name, move |scene: &mut Scene| scene.laws.iter_mut().flatten().for_each(change))
 }

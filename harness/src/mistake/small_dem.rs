@@ -1,8 +1,9 @@
-//! A small discrete element method with optional mistakes. It is independent of the project's solvers.
+//! A small DEM solver, independent of the project's solvers, in which one mistake can be planted.
 //!
-//! Its mistakes explain failed results, and they test claims: the correct method must pass, and each mistake must fail
-//! by value. The method checks every pair of grains and integrates by central differences. It computes the slip
-//! velocity at mid-step, with the normals, lever arms and wall positions of mid-step.
+//! If the solver under test fails with the error that a planted mistake gives, the mistake explains the failure. The tests
+//! also check claims with it: claims pass with the correct method, and selected claims fail by their value with a mistake.
+//! The solver checks every pair of grains and integrates by central differences. The slip velocity is computed from the
+//! normals, lever arms and wall positions at mid-step.
 
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
@@ -15,7 +16,7 @@ use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;
 
-/// A mistake in the method.
+/// Mistake in the method.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum MethodMistake {
     /// The tangential spring keeps its direction in space when its contact rotates.
@@ -24,43 +25,43 @@ pub enum MethodMistake {
     TwistNotFollowed,
     /// Both grains of a pair have the lever arm (R₁ + R₂)/2.
     MeanArm,
-    /// Both grains of a pair have the lever arm of the first.
+    /// Both grains of a pair have the lever arm of the first grain.
     OneArm,
     /// The slip velocity includes the spins with the wrong sign.
     WrongSpin,
     /// The slip velocity leaves out the spins.
     NoSpin,
-    /// Friction exerts a torque on the first grain of a pair and not on the second.
+    /// Friction exerts a torque only on the first grain of a pair.
     NoSecondTorque,
     /// Torques have the wrong sign.
     TorqueReversed,
-    /// The rolling moment leaves out the spin of walls.
+    /// The rolling moment neglects the spin of walls.
     WallSpinDropped,
-    /// Mindlin's force is the present stiffness times the whole displacement since the contact began.
+    /// The tangential force of a Mindlin contact is the present stiffness times the whole displacement since the contact began.
     SecantSpring,
-    /// Mindlin's force is not reduced while a contact is unloaded.
+    /// The tangential force of a Mindlin contact is not reduced during unloading.
     NotRescaled,
-    /// The rolling angle keeps growing after the moment has reached its limit.
+    /// The rolling angle grows beyond the limit of the rolling moment.
     RollingNotCut,
-    /// Grains start without spins.
+    /// The initial spins of grains are zero.
     SpinsDropped,
     /// The tangential spring is reset after each step.
     SpringForgotten,
-    /// Coulomb's limit applies to the force, and the spring keeps growing.
+    /// The Coulomb limit applies to the force, but the spring displacement grows beyond it.
     SpringNotCut,
-    /// Coulomb's limit applies to the spring alone, and the tangential dashpot is added.
+    /// The Coulomb limit applies only to the spring force. The force of the tangential dashpot is added without a limit.
     LimitOnSpring,
-    /// Coulomb's limit is proportional to the elastic part of the normal force.
+    /// The Coulomb limit is proportional to the elastic part of the normal force.
     LimitOfElastic,
-    /// The normal dashpot pulls on grains that separate.
+    /// The normal dashpot exerts a tensile force on separating grains.
     Pulls,
     /// Dashpots use the mass of the first grain instead of the reduced mass.
     WholeMass,
     /// Hertz contacts use the radius of the first grain instead of the effective radius.
     WholeRadius,
-    /// Reported velocities are half a step old.
+    /// Velocities in the output are half a step old.
     HalfStepOld,
-    /// Positions are integrated with the velocity before the step.
+    /// Positions are integrated with the velocities before the step.
     OldVelocity,
 }
 
@@ -95,8 +96,8 @@ impl MethodMistake {
     #[must_use]
     pub const fn words(self) -> &'static str {
         match self {
-            Self::SpringNotTurned => "tangential springs do not turn with their contact",
-            Self::TwistNotFollowed => "tangential springs do not follow the twist about the normal",
+            Self::SpringNotTurned => "tangential springs do not rotate with their contact",
+            Self::TwistNotFollowed => "tangential springs do not rotate about the normal with their grains",
             Self::MeanArm => "the lever arm (R₁ + R₂)/2 for both grains",
             Self::OneArm => "the lever arm of the first grain for both grains",
             Self::WrongSpin => "spins with the wrong sign in the slip",
@@ -104,35 +105,36 @@ impl MethodMistake {
             Self::NoSecondTorque => "no torque on the second grain of a pair",
             Self::TorqueReversed => "torques with the wrong sign",
             Self::WallSpinDropped => "no spin of walls in the rolling moment",
-            Self::SecantSpring => "Mindlin's force as present stiffness times all displacement",
+            Self::SecantSpring => "Mindlin's force as the current stiffness times the total displacement",
             Self::NotRescaled => "Mindlin's force not reduced while a contact is unloaded",
             Self::RollingNotCut => "a rolling angle that grows beyond its limit",
             Self::SpinsDropped => "no spins at the start",
-            Self::SpringForgotten => "tangential springs forgotten after each step",
+            Self::SpringForgotten => "tangential springs reset after each step",
             Self::SpringNotCut => "a tangential spring that grows beyond Coulomb's limit",
             Self::LimitOnSpring => "Coulomb's limit on the spring alone, with the dashpot added",
             Self::LimitOfElastic => "Coulomb's limit from the elastic normal force alone",
-            Self::Pulls => "a normal dashpot that pulls on grains that part",
-            Self::WholeMass => "dashpots with a grain's mass in place of the reduced mass",
-            Self::WholeRadius => "Hertz contacts with a grain's radius in place of the effective radius",
+            Self::Pulls => "a normal dashpot that pulls separating grains together",
+            Self::WholeMass => "dashpots with the mass of one grain instead of the reduced mass",
+            Self::WholeRadius => "Hertz contacts with the radius of one grain instead of the effective radius",
             Self::HalfStepOld => "velocities reported half a step early",
             Self::OldVelocity => "positions moved with the velocity before the step",
         }
     }
 }
 
-/// The small discrete element solver, with or without a mistake.
+/// Small DEM solver, with or without a mistake.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct SmallDem {
     /// Mistake; none for the correct method.
     pub mistake: Option<MethodMistake>,
 }
 
-/// The second side of a contact, a grain or a wall, over one step.
+/// Second side of a contact over one step: a grain or a wall.
 struct Side {
-    /// Vector from the centre of the first grain to the second grain or the wall, before and after the step (m).
+    /// Vector from the centre of the first grain to the second side, before and after the step (m). It ends at the
+    /// centre of the second grain, or at the nearest point of the wall.
     between: [V; 2],
-    /// Velocity of the second grain's centre, or of the wall at the contact (m/s).
+    /// Velocity of the second grain's centre, or of the wall at its nearest point (m/s).
     velocity: V,
     spin: V,
     radius: Option<f64>,
@@ -140,12 +142,12 @@ struct Side {
     partner: Partner,
 }
 
-/// The history of a contact.
+/// Contact with its history.
 #[derive(Clone, Debug)]
 struct Contact {
     first: usize,
     partner: Partner,
-    /// Tangential force of the spring on the first grain (N).
+    /// Tangential spring force on the first grain (N).
     spring: V,
     /// Rolling angle (rad).
     rolled: V,
@@ -193,7 +195,7 @@ impl State<'_> {
         self.count as f64 * self.step
     }
 
-    /// Returns a wall as the second side of a contact with a grain over the last step.
+    /// Returns a wall as the second side of a contact with a grain over the last step. None for a mesh.
     fn facing(&self, place: usize, wall: &Wall, body: &Body) -> Option<Side> {
         let now = self.time();
         let at = |time: f64| {
@@ -217,7 +219,7 @@ impl State<'_> {
         })
     }
 
-    /// Returns the nearest point of a wall at mid-step.
+    /// Returns the point of a wall nearest to the grain's centre at mid-step.
     fn middle(&self, wall: &Wall, body: &Body, time: f64) -> Option<V> {
         let displacement = wall.motion.displacement(time.max(0.0), self.step);
         nearest(&wall.shape.moved(&wall.motion, &displacement), (body.before + body.position) * 0.5)
@@ -237,7 +239,7 @@ impl State<'_> {
         later.chain(walls).collect()
     }
 
-    /// Computes all forces; `elapsed` is the time step (s), or zero at the start.
+    /// Computes all forces and torques. `elapsed` is the time step (s), or zero at the start.
     fn evaluate(&mut self, elapsed: f64) {
         for body in &mut self.bodies {
             (body.force, body.torque) = (V::zeros(), V::zeros());
@@ -376,8 +378,8 @@ impl State<'_> {
     }
 }
 
-/// Returns the lever arms of both sides (m). Their sum is the distance of the centres; at a wall, it is the distance of
-/// the wall.
+/// Returns the lever arms of both sides (m). For two grains, their sum is the distance of the centres. At a wall, the
+/// first is the distance from the wall, and the second is zero.
 fn arms(mistake: Option<MethodMistake>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
     if wall {
         return [distance, 0.0];
@@ -390,8 +392,8 @@ fn arms(mistake: Option<MethodMistake>, radii: [f64; 2], wall: bool, distance: f
     }
 }
 
-/// Returns the rotation of a contact over a step: the rotation of its normal, then the mean rotation of both sides
-/// about it.
+/// Returns the rotation of a contact during a step: the rotation of its normal, followed by the mean rotation of both
+/// sides about the normal.
 fn turn(mistake: Option<MethodMistake>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
     if mistake == Some(MethodMistake::SpringNotTurned) {
         return Rotation3::identity();
@@ -410,7 +412,8 @@ fn turn(mistake: Option<MethodMistake>, from: V, to: V, spins: [V; 2], elapsed: 
     Rotation3::from_scaled_axis(to * twist) * tilt
 }
 
-/// Returns the force and the torque on the first side, and the torque on the second side.
+/// Returns the force (N) and the torque (N m) on the first grain, and the torque on the second side. Updates the history of
+/// the contact.
 fn respond(
     mistake: Option<MethodMistake>,
     law: &ContactLaw,
@@ -470,7 +473,7 @@ fn damped_share(law: &ContactLaw) -> f64 {
     if law.is_hertz() { 5.0 / 6.0 } else { 1.0 }
 }
 
-/// Updates the tangential spring.
+/// Updates the force of the tangential spring over one step.
 fn shear(
     mistake: Option<MethodMistake>,
     law: &ContactLaw,
@@ -478,7 +481,7 @@ fn shear(
     (slip, normal, spins): (V, V, [V; 2]),
     contact: &mut Contact,
 ) {
-    // The slip velocity belongs to mid-step, so the contact rotates by another half step after it.
+    // The slip velocity belongs to mid-step, so the slip must be rotated over the second half of the step.
     let half = turn(mistake, normal, normal, spins, 0.5 * elapsed);
     let along = half * slip * elapsed;
     let along = along - normal * along.dot(&normal);
@@ -499,7 +502,7 @@ fn shear(
     }
 }
 
-/// Returns the moment on the first side that resists rolling.
+/// Returns the moment on the first grain that resists rolling (N m). Updates the rolling angle.
 fn roll(
     mistake: Option<MethodMistake>,
     law: &ContactLaw,
@@ -534,7 +537,7 @@ impl Solver for SmallDem {
             return Err(refuse(what.to_owned()));
         }
         if scene.laws.iter().flatten().any(|law| law.rolling_damping > 0.0 && law.rolling_friction > 0.0) {
-            return Err(refuse("it has no dashpot against rolling".to_owned()));
+            return Err(refuse("it has no rolling dashpot".to_owned()));
         }
         let (step, steps) = resolution.steps(scene).map_err(refuse)?;
         let bodies = scene.grains.iter().map(|grain| Body {

@@ -4,7 +4,7 @@ use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::{Course, Frame};
 use std::io::{self, Write};
 
-/// Writes the elements of a frame. Unknown values are NaN; `masked` is 1 if a cell is left out of means.
+/// Writes the elements of a frame. Unknown values are NaN. The array `masked` is 1 for a cell that is left out of averages.
 pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::Result<()> {
     let grid = &course.grid;
     let [across, deep, up] = grid.count;

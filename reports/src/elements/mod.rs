@@ -16,18 +16,18 @@ use grainbench_harness::figure::Figure;
 use grainbench_store::StagedDir;
 use std::path::Path;
 
-/// Plotted quantities, by column name.
+/// Column names of the plotted quantities.
 const DRAWN: [&str; 4] = ["speed", "sine_of_friction", "packing_fraction", "shear_rate"];
 
-/// Writes all files of the elements, or none if an error occurs.
+/// Writes all files of the elements to a directory, or no file if an error occurs.
 ///
 /// - `elements.csv`: one row per element and frame.
 /// - `means.csv`: one row per cell.
-/// - `tracers.csv`: only if there are tracers.
+/// - `tracers.csv`: one row per tracer and frame, if there are tracers.
 /// - The same tables as Parquet, if `parquet` is true.
 /// - `summary.json`.
-/// - `elements/`: image data for each frame, and a collection of them.
-/// - `index.html` with pictures or films: only for a single layer of cells.
+/// - `elements/`: image data of each frame, and a collection of these files.
+/// - `index.html` with pictures or films, if the grid has a single layer of cells.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
@@ -56,7 +56,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
     if let Some(field) = film(course, &DRAWN) {
         let caption = format!(
             "Velocity, friction, packing fraction and rate of shear, {}. Cells with too few grains are blank. Values \
-             beyond a scale have the colour of its end.",
+             outside a colour scale have the colour of its nearest end.",
             summary.velocity
         );
         let title = format!("Granular elements, {}", cells(summary));

@@ -1,4 +1,4 @@
-//! Tables built row by row, written as comma-separated values or as Parquet. A table is never in memory as a whole.
+//! Tables that are created row by row and written as CSV or Parquet. A table is never in memory as a whole.
 
 use crate::parts::{GroupedTable, Values};
 use std::io::{self, Write};
@@ -7,24 +7,25 @@ use std::io::{self, Write};
 pub(super) enum Cell {
     /// A whole number.
     Whole(u64),
-    /// A number; none means unknown, not zero.
+    /// A number; none if it is unknown.
     Number(Option<f64>),
-    /// Text without line breaks.
+    /// A text without line breaks.
     Word(String),
 }
 
-/// A table: name, column heads and rows.
+/// A table: name, column headings and rows.
 pub(super) struct Sheet<'a> {
     pub(super) name: &'static str,
     pub(super) heads: Vec<String>,
     pub(super) rows: Box<dyn Iterator<Item = Vec<Cell>> + 'a>,
 }
 
-/// Number of Parquet rows that are in memory together.
+/// Number of rows that are in memory at the same time when Parquet is written.
 const GROUP: usize = 1 << 14;
 
 impl Sheet<'_> {
-    /// Writes one line per row. Numbers read back to the same bits; a missing number is an empty cell.
+    /// Writes the table as CSV, one line per row. Each number is the shortest text that reads back to the same bits; a
+    /// missing number is an empty cell.
     pub(super) fn csv(self, out: impl Write) -> io::Result<()> {
         let mut table = csv::Writer::from_writer(out);
         table.write_record(&self.heads)?;

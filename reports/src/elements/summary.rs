@@ -1,4 +1,4 @@
-//! Summary of granular elements: source, masks, and means over all elements that are not left out.
+//! Summary of granular elements: source, masks, and averages over all elements that are not left out.
 
 use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
@@ -9,7 +9,7 @@ use serde::Serialize;
 /// Summary of granular elements.
 #[derive(Clone, Debug, Serialize)]
 pub struct Summary {
-    /// Source of the elements.
+    /// Directory or file from which the elements were computed.
     pub source: String,
     /// Number of frames.
     pub frames: usize,
@@ -23,29 +23,29 @@ pub struct Summary {
     pub cell: [f64; 3],
     /// Lower corner of the grid (m).
     pub low: [f64; 3],
-    /// Origin of the velocities.
+    /// Description of the velocities: instantaneous, or from displacements.
     pub velocity: &'static str,
-    /// True if stress is known, which requires contacts.
+    /// True if the stress is known. Stress needs recorded contacts.
     pub stress: bool,
     /// Definition of the stress.
     pub which_stress: &'static str,
-    /// Rules by which elements are left out of the means.
+    /// Rules by which elements are left out of averages, in words.
     pub masks: String,
-    /// Number of elements that are left out, and number of all elements, over all frames.
+    /// Number of elements that are left out of averages, and number of all elements, each summed over all frames.
     pub left_out: [usize; 2],
-    /// Largest number of grains or points per frame whose centre is in no cell.
+    /// Number of grains or material points whose centre is in no cell, in the frame with the most of them.
     pub outside: usize,
-    /// Mean diameter (m) and mean density (kg/m³; kg/m² for discs), used in inertial numbers.
+    /// Mean diameter (m) and mean density (kg/m³; kg/m² for discs) for inertial numbers.
     pub grain: Option<(f64, f64)>,
-    /// Number of time blocks that the intervals are computed from.
+    /// Number of time blocks from which the confidence intervals are computed.
     pub blocks: usize,
     /// Confidence level of the intervals.
     pub confidence: f64,
-    /// Means over all elements that are not left out.
+    /// Averages over all elements that are not left out.
     pub means: Vec<ElementMean>,
 }
 
-/// Mean of a quantity over elements.
+/// Average of a quantity over elements.
 #[derive(Clone, Debug, Serialize)]
 pub struct ElementMean {
     /// Column name of the quantity.
@@ -54,15 +54,15 @@ pub struct ElementMean {
     pub words: &'static str,
     /// Unit of the quantity; `1` for a pure number.
     pub unit: &'static str,
-    /// The mean.
+    /// Average with its confidence interval.
     #[serde(flatten)]
     pub mean: Mean,
-    /// Number of elements.
+    /// Number of averaged elements.
     pub elements: usize,
 }
 
 impl Summary {
-    /// Returns the summary of a series of frames, which must not be empty.
+    /// Returns the summary of a series of frames. Without frames, the times are NaN.
     #[must_use]
     pub fn new(course: &Course, source: String, blocks: usize) -> Self {
         let over = |column: &Column| {
@@ -79,7 +79,7 @@ impl Summary {
             cells: course.grid.count,
             cell: course.grid.cell.into(),
             low: course.grid.low.into(),
-            velocity: if course.between { "velocities between frames" } else { "velocities of the instant" },
+            velocity: if course.between { "velocities between frames" } else { "instantaneous velocities" },
             stress: course.frames.iter().any(|frame| frame.elements.iter().any(|element| element.stress.is_some())),
             which_stress: course.stress.unwrap_or_default().words(),
             masks: course.masks.words(),
@@ -107,7 +107,8 @@ impl Summary {
             count => format!(" Up to {count} grains or points of a frame are in no cell."),
         };
         format!(
-            "{} frames of {x} × {y} × {z} cells, {}{which}; means {} ({left_out} of {all} elements left out).{none}{outside}",
+            "{} frames of {x} × {y} × {z} cells, {}{which}; means {} ({left_out} of {all} elements \
+             omitted).{none}{outside}",
             self.frames, self.velocity, self.masks
         )
     }

@@ -6,7 +6,7 @@ use grainbench_fields::column::{COLUMNS, Column};
 use grainbench_fields::course::{Course, of_means};
 use grainbench_fields::trails::Trails;
 
-/// Returns the name of a column with its unit.
+/// Returns the heading of a column: name and unit.
 fn head(column: &Column) -> String {
     format!("{} ({})", column.name, column.unit)
 }
@@ -15,7 +15,7 @@ fn heads<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
     names.into_iter().map(str::to_owned).collect()
 }
 
-/// Returns the indices of a cell along each axis, and its centre (m).
+/// Returns the indices of a cell along the axes, followed by the coordinates of its centre (m).
 fn place(course: &Course, cell: usize) -> Vec<Cell> {
     let at = course.grid.at(cell).map(|along| Cell::Whole(along as u64));
     let middle = <[f64; 3]>::from(course.grid.middle(cell)).map(|along| Cell::Number(Some(along)));
@@ -24,7 +24,8 @@ fn place(course: &Course, cell: usize) -> Vec<Cell> {
 
 const PLACE: [&str; 6] = ["i", "j", "k", "x (m)", "y (m)", "z (m)"];
 
-/// Returns a table with one row per element and frame, and the reason if the element is left out of means.
+/// Returns a table with one row per element and frame. The column `mask` states the reason if the element is left out
+/// of averages.
 pub(super) fn elements(course: &Course) -> Sheet<'_> {
     let first = heads(["step", "time (s)"].into_iter().chain(PLACE).chain(["mask"]));
     let rows = course.frames.iter().flat_map(move |frame| {
@@ -39,7 +40,7 @@ pub(super) fn elements(course: &Course) -> Sheet<'_> {
     Sheet { name: "elements", heads: first.into_iter().chain(COLUMNS.iter().map(head)).collect(), rows: Box::new(rows) }
 }
 
-/// Returns a table with one row per tracer and frame: position, strain, and the values of the elements around it.
+/// Returns a table with one row per tracer and frame: position, strain, and the values of the elements at its position.
 pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Sheet<'a> {
     let first = heads(["tracer", "step", "time (s)", "x (m)", "y (m)", "z (m)", "hencky_strain (1)"]);
     let rows = trails.stops.iter().map(move |stop| {
@@ -53,8 +54,8 @@ pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Sheet<'a> {
     Sheet { name: "tracers", heads: first.into_iter().chain(COLUMNS.iter().map(head)).collect(), rows: Box::new(rows) }
 }
 
-/// Returns a table with one row per cell: time averages with half-widths of their intervals. Nonlinear quantities are
-/// also computed from the mean tensors.
+/// Returns a table with one row per cell: time averages, and half-widths of their confidence intervals. Nonlinear
+/// quantities are also computed from the averages of the tensors.
 pub(super) fn means(course: &Course, blocks: usize) -> Sheet<'_> {
     let both = |column: &Column| [head(column), format!("{}_half_width ({})", column.name, column.unit)];
     let after = |column: &Column| format!("{}_of_means ({})", column.name, column.unit);

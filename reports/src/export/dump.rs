@@ -1,16 +1,16 @@
-//! Snapshots as a LAMMPS text dump, which LAMMPS tools, OVITO and VMD open.
+//! Snapshots as a LAMMPS text dump, which LAMMPS tools, OVITO and VMD read.
 
 use std::io::{self, Write};
 
 use grainbench_scene::record::Snapshot;
 use nalgebra::Vector3;
 
-/// Columns of every snapshot, with LAMMPS names.
+/// Columns of every snapshot, named as in LAMMPS.
 const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
-/// Columns of forces and torques, which not every program reports.
+/// Columns of forces and torques. Some programs do not report them.
 const FORCES: &str = " fx fy fz tqx tqy tqz";
 
-/// Writes the head of a dump. Units are SI.
+/// Writes the beginning of a dump. Units are SI.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -18,7 +18,7 @@ pub fn begin(out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ITEM: UNITS\nsi")
 }
 
-/// Writes a snapshot. `type` is the index of the material in the scene, from 1.
+/// Adds a snapshot to a dump. `type` is the index of the material in the scene, from 1.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -49,8 +49,8 @@ fn write_vector(out: &mut impl Write, vector: &Vector3<f64>) -> io::Result<()> {
     write!(out, " {:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
-/// Returns the bounds of the box along an axis. Readers reject a box without thickness. If the domain is flat (two
-/// dimensions) or unbounded, the box is therefore as thick as the grains.
+/// Returns the bounds of the box along an axis (m). These are the bounds of the domain, or of the grains if the domain
+/// is flat or unbounded, or ±0.5 m if both are. Readers reject a box without thickness.
 fn bounds_along(snapshot: &Snapshot, axis: usize) -> (f64, f64) {
     let (low, high) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
     if low.is_finite() && high.is_finite() && low < high {

@@ -1,4 +1,4 @@
-//! Export of records to formats of other programs.
+//! Export of records to file formats of other programs.
 
 pub mod dump;
 pub mod record_json;
@@ -22,18 +22,18 @@ use grainbench_store::WriteError;
 /// Format of snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub enum Format {
-    /// One LAMMPS text dump of the grains: `snapshots.dump`.
+    /// One LAMMPS text dump of all grains: `snapshots.dump`.
     Dump,
-    /// Under `vtk/`, one file per snapshot for grains, contacts and material points, with a collection of each kind.
+    /// In `vtk/`, one file per snapshot for grains, contacts and material points, and one collection of files for each.
     Vtk,
-    /// Under `snapshots/`, parts with one Parquet file per kind of row, see [`crate::parts`]. The series is also
+    /// In `snapshots/`, parts with one Parquet file per kind of row (see [`crate::parts`]). The time series is also
     /// written as `series.parquet`.
     Parquet,
 }
 
 impl Format {
-    /// Returns the default formats: text for a run small enough to read, Parquet for a larger run whose snapshots were
-    /// stored.
+    /// Returns the default formats: LAMMPS dump and VTK for a run with at most [`READABLE`] rows. For a larger run, it is
+    /// Parquet, or no format if snapshots were omitted from the store.
     #[must_use]
     pub fn usual(snapshots: &SnapshotStore) -> BTreeSet<Self> {
         match (snapshots.rows() <= READABLE, snapshots.has_left_out()) {
@@ -68,14 +68,14 @@ pub const BROKEN_FILE: &str = "broken.json";
 struct CrashState<'b> {
     /// Error message of the solver.
     error: &'b str,
-    /// Step number of the last snapshot, which holds the state at the crash.
+    /// Step number of the last snapshot, which is the state at the crash.
     step: u64,
     /// Time of the last snapshot (s).
     time: f64,
 }
 
-/// Writes the output of a crashed run: `broken.json` instead of a record, the series so far, and the snapshots. The
-/// last snapshot is the state at the crash.
+/// Writes the output of a crashed run: `broken.json` instead of a record, the time series up to the crash, and the
+/// snapshots. The last snapshot is the state at the crash.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -210,7 +210,7 @@ mod tests {
         for name in ["snapshots.parquet", "grains.parquet", "contacts.parquet", "walls.parquet"] {
             assert!(parts[0].path().join(name).is_file(), "{name}");
         }
-        // A copy of the files for inspection with the programs that read them.
+        // With this variable, a copy of the files is written, so that they can be opened in other programs.
         if let Ok(copy) = std::env::var("GRAINBENCH_EXPORT_DIR") {
             written(&sample::record().snapshots, &all, Path::new(&copy));
         }

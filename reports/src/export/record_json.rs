@@ -1,4 +1,4 @@
-//! A complete record as JSON.
+//! Complete record of a run as JSON.
 
 use std::fs;
 use std::io::{self, Write};
@@ -12,23 +12,23 @@ use crate::export::BROKEN_FILE;
 use crate::parts::{READABLE, SnapshotStore};
 use crate::store::{LoadError, parse};
 
-/// Name of the record file.
+/// Name of the file of a record.
 pub const RECORD_FILE: &str = "record.json";
 
-/// Writes the record on one line, because it may hold millions of numbers. The numbers read back to the same bits.
+/// Writes the record on one line, because it may contain millions of numbers. The numbers read back to the same bits.
 ///
-/// The snapshots come from the store. A small run has all of them. A large run has only the last, or none if even the
-/// last is too large.
+/// The snapshots come from the store. The record of a run with at most [`READABLE`] rows contains all snapshots. The record
+/// of a larger run contains only the last snapshot, or no snapshot if the last one alone has more than [`READABLE`] rows.
 ///
 /// # Errors
-/// When `out` cannot be written, or a snapshot cannot be read back.
+/// When `out` cannot be written, or when a snapshot cannot be read.
 pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) -> io::Result<()> {
     let Record { provenance, series, cost, .. } = record;
     serde_json::to_writer(&mut out, &StreamedRecord { provenance, series, snapshots: StoredRecord(snapshots), cost })?;
     out.write_all(b"\n")
 }
 
-/// A record in the format of [`Record`], with snapshots that are not in memory.
+/// A record in the format of [`Record`]. Its snapshots are read from the store while it is written.
 #[derive(Serialize)]
 struct StreamedRecord<'r> {
     provenance: &'r Provenance,
@@ -54,7 +54,7 @@ impl Serialize for StoredRecord<'_> {
 /// Reads the record of a simulation from `dir`.
 ///
 /// # Errors
-/// When the file is missing or damaged, or the run crashed; the message names the file.
+/// When the file is missing or damaged, or when the run crashed. The message names the file.
 pub fn load(dir: &Path) -> Result<Record, LoadError> {
     let (path, broken) = (dir.join(RECORD_FILE), dir.join(BROKEN_FILE));
     if broken.is_file() {

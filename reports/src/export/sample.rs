@@ -63,7 +63,7 @@ pub(crate) fn snapshot() -> Snapshot {
     }
 }
 
-/// Returns the same snapshot with one material point of a grain and one of a block.
+/// Returns the snapshot with two additional material points: one of a grain and one of a block.
 pub(crate) fn deformable() -> Snapshot {
     let point = |owner, x: f64| PointState {
         owner,

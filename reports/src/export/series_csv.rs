@@ -1,11 +1,11 @@
-//! Time series as comma-separated values.
+//! Time series as CSV.
 
 use std::io::{self, Write};
 
 use grainbench_scene::record::Series;
 
-/// Writes `step,time (s),NAME (unit),…`, one line per sample. Each number is the shortest text that reads back to the
-/// same bits.
+/// Writes the columns `step,time (s),NAME (unit),…` with one line per sample. Each number is the shortest text that
+/// reads back to the same bits.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -24,7 +24,7 @@ pub fn write(series: &Series, out: impl Write) -> io::Result<()> {
     table.flush()
 }
 
-/// Returns a column head that no spreadsheet interprets as a formula. Probe names come from scene files.
+/// Returns a column heading that no spreadsheet interprets as a formula. Headings contain probe names from scene files.
 pub(crate) fn harmless(head: String) -> String {
     if head.starts_with(['=', '+', '-', '@']) { format!("'{head}") } else { head }
 }

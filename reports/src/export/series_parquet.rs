@@ -1,4 +1,4 @@
-//! Time series as Parquet, with the column names of `series.csv`.
+//! Time series as Parquet, with the same column names as `series.csv`.
 
 use std::io::{self, Write};
 
@@ -6,7 +6,7 @@ use grainbench_scene::record::Series;
 
 use crate::parts::{Values, whole};
 
-/// Writes `step`, `time (s)` and every column. Cells after the end of a short column are null.
+/// Writes `step`, `time (s)` and all columns. Cells after the end of a short column are null.
 ///
 /// # Errors
 /// When `out` cannot be written.

@@ -8,7 +8,7 @@ use grainbench_scene::record::{ContactState, GrainState, Owner, Partner, Snapsho
 use maud::Escaper;
 use nalgebra::Vector3;
 
-/// Writes the grains as points with their state. Each grain has a vertex, so that it is visible without a filter.
+/// Writes the grains as points with their state. Each grain has a vertex, so that ParaView shows it without a filter.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -32,7 +32,7 @@ pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     close(&mut out)
 }
 
-/// Writes a quantity that every grain reports. If a grain lacks it, no array is written, rather than zeros.
+/// Writes a quantity as an array if all grains report it. If a grain lacks it, no array is written.
 fn write_if_complete<T>(
     grains: &[GrainState],
     value: impl Fn(&GrainState) -> Option<T>,
@@ -43,8 +43,8 @@ fn write_if_complete<T>(
 
 /// Writes the material points of deformable bodies.
 ///
-/// `body` is the id of a grain, or −1 − index for a body that is no grain. `stress` is the Cauchy stress xx yy zz xy yz
-/// xz (Pa), with tension positive.
+/// `body` is the id of a grain, or −1 − index for a body that is not a grain. `stress` contains the components xx, yy,
+/// zz, xy, yz and xz of the Cauchy stress (Pa), with tension positive.
 ///
 /// # Errors
 /// When `out` cannot be written.
@@ -75,16 +75,17 @@ pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
     close(&mut out)
 }
 
-/// Writes the contacts as lines from the centre of the grain to the centre of its partner, or to the contact point on a
-/// wall.
+/// Writes the contacts as lines. A line begins at the centre of the grain. It ends at the centre of the other grain, or
+/// at the contact point on a wall or body.
 ///
-/// `partner` is the id of a grain, −1 − index for a wall of the scene, or −2³¹ − index for a body that is no grain.
+/// `partner` is the id of a grain. For a wall of the scene it is −1 − index, and for a body that is not a grain −2³¹ −
+/// index.
 ///
 /// # Errors
 /// When `out` cannot be written.
 pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
     let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
-    // Contacts of grains that the snapshot lacks are left out.
+    // Contacts with grains that are not in the snapshot are left out.
     let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
         snapshot.told_contacts().iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
     let all = || contacts.iter().map(|(contact, _)| *contact);
@@ -112,7 +113,7 @@ pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()
     close(&mut out)
 }
 
-/// Returns a ParaView collection (`.pvd`) of files with their times (s).
+/// Returns a ParaView collection (`.pvd`) of files, with the time (s) of each file.
 #[must_use]
 pub fn collection(files: &[(f64, String)]) -> String {
     let mut text = String::from(
@@ -128,8 +129,8 @@ pub fn collection(files: &[(f64, String)]) -> String {
     text
 }
 
-/// Returns both ends of a contact's line. The far end is computed from the normal, not from the partner's position. A
-/// contact across a periodic boundary is then drawn to the partner's image and not across the box.
+/// Returns both ends of the line of a contact. The second end is computed from the normal, not from the position of the
+/// partner. The line of a contact across a periodic boundary then ends at the image of the partner.
 fn ends(contact: &ContactState, by_id: &HashMap<u32, &GrainState>) -> Option<[Vector3<f64>; 2]> {
     let grain = by_id.get(&contact.grain)?;
     let length = match contact.partner {
@@ -194,7 +195,7 @@ fn vectors(out: &mut impl Write, name: &str, values: impl Iterator<Item = Vector
     })
 }
 
-/// Writes cells of `size` points each, which use the points in order.
+/// Writes `count` cells of `size` points each. The cells use the points in order.
 fn cells(out: &mut impl Write, name: &str, size: usize, count: usize) -> io::Result<()> {
     let number = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
     writeln!(out, "<{name}>")?;

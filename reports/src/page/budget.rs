@@ -1,19 +1,19 @@
-//! Size limit of a page. Parts are moved to files next to the page until the rest fits. The least important and largest
-//! parts are moved first.
+//! Size limit of a page. Parts are moved to files beside the page until the remaining page is small enough. The least
+//! important parts are moved first and, among equally important ones, the largest.
 
 use maud::{PreEscaped, html};
 
-/// Largest size of a page (B).
+/// Largest size of a page (bytes).
 pub(crate) const PAGE: usize = 2_490_000;
 
-/// Order in which parts are moved out of the page; the first variants move first.
+/// Importance of a part. Parts of the first variants are moved out of the page first.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Rank {
     Costs,
     Controls,
-    /// A figure that is moved is still shown, loaded from its file. A film keeps one frame.
+    /// Large figures. A moved figure is still shown, loaded from its file. A film keeps one frame.
     HeavyFigures,
-    /// A figure in a closed section, which the reader must open.
+    /// Figures in a closed section, which the reader must open.
     ClosedFigures,
     Derivations,
     Films,
@@ -21,27 +21,27 @@ pub(crate) enum Rank {
     Rows,
 }
 
-/// A piece of the page.
+/// Piece of the page.
 pub(crate) enum Piece {
-    /// A piece that is never moved out of the page.
+    /// HTML that always stays in the page.
     Fixed(String),
-    /// A piece that can be moved out of the page.
+    /// Part that can be moved out of the page.
     Part(Part),
 }
 
-/// A part of the page that can be moved to a file.
+/// Part of the page that can be moved to a file.
 pub(crate) struct Part {
     pub(crate) rank: Rank,
     /// HTML of the part in the page.
     pub(crate) whole: String,
-    /// HTML that replaces the part: a link to its file.
+    /// HTML that replaces a moved part: a link to its file or, for a figure, a lighter image.
     pub(crate) link: String,
-    /// Path and text of the file; none if the file is written anyway.
+    /// Path and text of the file; none if the file exists in any case.
     pub(crate) file: Option<(String, String)>,
 }
 
 impl Part {
-    /// Returns a part with a table or a text, whose file is a separate page.
+    /// Returns a part with a table or a text. Its file is a separate page.
     pub(crate) fn text(rank: Rank, title: &str, path: String, whole: String) -> Self {
         let link = html! { p { a href=(path) { (title) } " (separate page)" } }.into_string();
         let body = html! { main.alone { h1 { (title) } (PreEscaped(&whole)) } };
@@ -49,7 +49,8 @@ impl Part {
     }
 }
 
-/// Returns the joined pieces, and the paths and texts of the files next to the page.
+/// Returns the joined pieces with at most `limit` bytes if possible, and the paths and texts of the files beside the
+/// page.
 pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String, String)>) {
     let mut weight: usize = pieces
         .iter()
@@ -81,7 +82,8 @@ pub(crate) fn fit(mut pieces: Vec<Piece>, limit: usize) -> (String, Vec<(String,
         weight -= gain(&pieces[at]);
         away.push(at);
     }
-    // A large part may make room for smaller parts that moved before it. The most important of them return first.
+    // A large part may make room for smaller parts that were moved before it. The most important of these parts return
+    // first.
     for at in std::mem::take(&mut away).into_iter().rev() {
         let with = weight + gain(&pieces[at]);
         if with <= limit {
@@ -134,7 +136,7 @@ mod tests {
         assert_eq!(fit(pieces(), 0).1.len(), 3);
     }
 
-    /// A figure of 90 B had to move. It makes room for the film of 40 B that moved before it.
+    /// The figure of 90 bytes must be moved. The film of 40 bytes, which was moved first, then returns.
     #[test]
     fn what_fits_again_comes_back() {
         let part = |rank, length: usize| {

@@ -10,7 +10,8 @@ use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
 
-/// Returns the solvers of a report: ours by method first, and settings of a single case last.
+/// Returns the solvers of a report. Methods and programs come first, in a fixed order, then conventions such as `dem:lammps`.
+/// Solvers with settings for single cases, such as `mpm+…`, are last.
 pub(crate) fn solvers(report: &Report) -> Vec<&str> {
     let mut names: Vec<&str> = Vec::new();
     for row in report.sections.iter().flat_map(|section| &section.verdicts) {
@@ -24,14 +25,14 @@ pub(crate) fn solvers(report: &Report) -> Vec<&str> {
         let known = METHODS.iter().position(|known| *known == method).unwrap_or(METHODS.len());
         (name.contains('+'), name.contains(':'), known)
     };
-    // The sort is stable, so the remaining order is that of the report.
+    // The sort is stable, so all other solvers stay in the order of the report.
     names.sort_by_key(place);
     names
 }
 
-/// Renders the cards.
+/// Renders the cards. `is_there` returns true if the page contains an anchor.
 pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
-    // A setting of a single case is shown in the matrix and has no card.
+    // Solvers with settings for single cases have no card; the matrix shows them.
     let solvers: Vec<&str> = solvers(report).into_iter().filter(|name| !name.contains('+')).collect();
     let (cost, stability) = (report.measured.cost.as_ref(), report.measured.stability.as_ref());
     let lead = |row: &Verdict| {
@@ -54,8 +55,8 @@ pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Ite
     report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
 }
 
-/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the error in
-/// units of the tolerance decides, as in the matrix.
+/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the larger
+/// error comes first.
 fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),
@@ -66,12 +67,12 @@ fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     }
 }
 
-/// Returns the size of an error as a fraction of its scale; infinite if it is no finite number.
+/// Returns |error| as a fraction of the scale; infinity if there is no finite error.
 fn size(row: &Verdict) -> f64 {
     row.error.map_or(f64::INFINITY, f64::abs)
 }
 
-/// Returns one card; `lead` returns the anchor of a result.
+/// Renders the card of a solver. `lead` returns the anchor of a result.
 fn card(
     report: &Report,
     lead: &dyn Fn(&Verdict) -> String,
@@ -124,7 +125,7 @@ fn card(
     }
 }
 
-/// Renders the number of results of other solvers that are compared with this program, and how many of them agree.
+/// Renders the number of results of other solvers that are compared with this solver, and the number of them that pass.
 fn compared(report: &Report, solver: &str) -> Markup {
     let against = format!("against {solver}");
     let by_it = |row: &&Verdict| {
@@ -171,7 +172,7 @@ fn price(costs: &Costs, line: &Line) -> Markup {
                         "× " (number::significant(factor.times, 2)) " the cheapest (" (factor.compared) " compared)"
                     } @else { "reached alone" }
                     ", in " (factor.reached) " of " (line.asked)
-                } @else { "not reached in any of " (line.asked) }
+                } @else { "reached for none of " (line.asked) }
             }
         }
     }

@@ -1,4 +1,4 @@
-//! Table of contents that remains in view. Each case shows its number of red or amber results.
+//! Table of contents that stays visible while the page scrolls. Each case shows its number of red or amber results.
 
 use maud::{Markup, html};
 

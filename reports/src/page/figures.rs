@@ -1,4 +1,4 @@
-//! Figures of a case: the first ones are open, the others are in a closed section. Films have a pause button.
+//! Figures of a case. The first ones are visible, and all others are in a closed section. Films have a pause button.
 
 use std::collections::BTreeSet;
 
@@ -11,13 +11,13 @@ use super::{prose, slug, unique};
 use crate::plot::{self, DrawError};
 use crate::report::Section;
 
-/// Size above which a figure is moved out of the page before films (B).
+/// Size above which a figure is moved out of the page before films (bytes).
 const HEAVY: usize = 30_000;
-/// Number of figures of a case that are initially open.
+/// Number of figures of a case that are visible without opening a section.
 const SEEN: usize = 2;
 
-/// Returns the CSS class of a drawing. On a narrow screen, graphs scroll because their text would be too small; other
-/// drawings shrink. Images of fields keep their colours on a dark page.
+/// Returns the CSS class of a drawing. On a narrow screen, graphs scroll, because their text would become too small,
+/// and all other drawings shrink. Images of fields keep their colours on a dark page.
 const fn class(drawing: &Drawing) -> &'static str {
     match drawing {
         Drawing::Graph(_) => "plot graph",
@@ -26,7 +26,7 @@ const fn class(drawing: &Drawing) -> &'static str {
     }
 }
 
-/// Returns the figures of a section; `names` are the names of their files.
+/// Returns the figures of a section as pieces of the page. `names` contains the file names of the figures.
 pub(crate) fn pieces(
     section: &Section,
     anchor: &str,
@@ -63,7 +63,7 @@ pub(crate) fn pieces(
     Ok(pieces)
 }
 
-/// Returns a figure, and its replacement if the page has no room for it.
+/// Returns a figure as a part of the page, with the link that replaces it if the page becomes too large.
 pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawError> {
     let (still, reel) = plot::draw_small(figure)?;
     let still = PreEscaped(still);
@@ -78,7 +78,7 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
         }
     };
     let whole = framed(figure, name, id, &shown).into_string();
-    // A film is replaced by its last frame, any other figure by an image that is loaded from its file.
+    // A moved film is replaced by its last frame. Any other moved figure is replaced by an image loaded from its file.
     let link = if reel.is_some() {
         framed(figure, name, id, &html! { div class=(class(&figure.drawing)) { (still) } })
     } else {

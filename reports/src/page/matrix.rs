@@ -9,10 +9,10 @@ use crate::judged::{ExternalResults, Row};
 use crate::number;
 use crate::report::{Report, Section};
 
-/// Name of the column that collects the settings of single cases.
+/// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
 
-/// Content of a cell.
+/// Content of a cell: the results of one case with one solver.
 struct Cell<'a> {
     /// Largest |error|/allowed; none if no result has an error.
     worst: Option<f64>,
@@ -24,7 +24,8 @@ struct Cell<'a> {
     solver: &'a str,
 }
 
-/// Returns the rank of an outcome: red first, then known error, outdated, pass, and outcomes without a judged value.
+/// Returns the rank of an outcome. From high to low, the order is: red, known error, outdated, passed, and outcomes without
+/// a judged value.
 const fn order(outcome: Outcome) -> u8 {
     match outcome {
         Outcome::Broken => 6,
@@ -49,8 +50,7 @@ fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
     })
 }
 
-/// Returns the CSS class of a cell. Passes are graded by the fraction of the tolerance used, known errors by their
-/// ratio to the tolerance.
+/// Returns the CSS class of a cell. Its shade depends on |error|/allowed for passed results and for known errors.
 fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
     let worst = worst.unwrap_or(f64::INFINITY);
     match outcome {
@@ -66,7 +66,7 @@ fn class(outcome: Outcome, worst: Option<f64>) -> &'static str {
     }
 }
 
-/// Returns a ratio in few characters, because the cell is small.
+/// Returns |error|/allowed in few characters, because the cell is small.
 fn short(worst: f64) -> String {
     if worst >= 1e3 {
         format!("1e{}", worst.log10().round())
@@ -118,7 +118,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
             }
             @if !report.judged.is_empty() {
                 p.note {
-                    "The last columns are external solvers, with stored results of earlier runs ("
+                    "The last columns show external solvers with stored results of earlier runs ("
                     a href="#peers" { "details" } ")."
                 }
             }

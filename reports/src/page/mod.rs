@@ -1,5 +1,5 @@
-//! The report as one page that needs no network, no font, and no script for reading. Parts that would make it too large
-//! are moved to files next to it.
+//! Report as one page. It needs no network, no external font and, for reading, no script. If it would be too large,
+//! parts are moved to files beside it.
 
 pub(crate) mod budget;
 mod cards;
@@ -25,21 +25,22 @@ use crate::headline::Headline;
 use crate::plot::{DrawError, markup};
 use crate::report::Report;
 
-/// Style sheet of the page, and optional script for search and filters.
+/// Style sheet of the page.
 const CSS: &str = include_str!("style.css");
+/// Optional script of the page for search, filters and films.
 const SCRIPT: &str = include_str!("page.js");
-/// Allowance for the HTML tags around the page content (B).
+/// Allowance for the HTML tags around the content of the page (bytes).
 const FRAME: usize = 2_000;
 
-/// A page, and the files next to it that hold the parts moved out of it.
+/// A page, and the files beside it with the parts that were moved out of it.
 pub struct Page {
     /// HTML of the page.
     pub html: String,
-    /// Paths and texts of the files that the page links.
+    /// Paths and texts of the files to which the page links.
     pub beside: Vec<(String, String)>,
 }
 
-/// Renders the whole page.
+/// Renders the page of a report.
 ///
 /// # Errors
 /// When a figure cannot be drawn.
@@ -65,7 +66,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
     let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
     let below = main.strip_prefix(&head).unwrap_or_default();
-    // Results that are moved out of the page have no anchor in it.
+    // Results that were moved out of the page have no anchor in it.
     let head =
         overview::render(report, counts, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
     let body = html! {
@@ -83,7 +84,7 @@ pub(crate) fn rows_of(anchor: &str) -> String {
     format!("{anchor}-rows")
 }
 
-/// Returns the file names of all figures, section by section.
+/// Returns the file names of all figures, grouped by section.
 pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     let mut taken = BTreeSet::new();
     let section_names = |section: &crate::report::Section| {
@@ -93,7 +94,7 @@ pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     report.sections.iter().map(section_names).collect()
 }
 
-/// Returns a complete HTML page with a body.
+/// Returns a complete HTML page with the given body.
 pub(crate) fn shell(title: &str, body: &Markup) -> String {
     let page = html! {
         (DOCTYPE)
@@ -102,7 +103,7 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
                 meta charset="utf-8";
                 meta name="viewport" content="width=device-width, initial-scale=1";
                 meta name="color-scheme" content="light dark";
-                // Without an icon link, a browser requests an icon.
+                // Without an icon link, a browser would request an icon from the server.
                 link rel="icon" href="data:,";
                 title { (title) }
                 style { (PreEscaped(CSS)) }
@@ -128,7 +129,7 @@ pub fn slug(name: &str) -> String {
     if slug.is_empty() { "unnamed" } else { slug }.to_owned()
 }
 
-/// Returns `stem`, or `stem-2` and so on if it is taken.
+/// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.
 pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
     let mut name = stem.to_owned();
     let mut next = 2;
@@ -139,7 +140,8 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
     name
 }
 
-/// Returns the symbol and the CSS class of an outcome. The symbol conveys the meaning without colour.
+/// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
+/// colour.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     match outcome.severity() {
         Severity::Green => ("✓", "pass"),
@@ -148,7 +150,7 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     }
 }
 
-/// Returns a table in a box that scrolls if the screen is narrower than the table. It also scrolls by keyboard.
+/// Returns a table in a box that scrolls, also by keyboard, if the screen is narrower than the table.
 pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
     html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
 }
@@ -172,7 +174,7 @@ mod tests {
         assert_eq!(page.matches("<script").count(), 1);
     }
 
-    /// A browser ignores the second attribute of the same name.
+    /// A browser ignores a second attribute with the same name.
     #[test]
     fn no_tag_has_two_classes() {
         let page = html(&sample::report());
@@ -208,7 +210,7 @@ mod tests {
         assert!(ids.contains(&"backspin".to_owned()) && ids.contains(&"backspin-2".to_owned()));
     }
 
-    /// If there are too many cases, parts are moved out of the page, and no result is lost.
+    /// If the report has too many cases, parts are moved out of the page, and no result is lost.
     #[test]
     fn a_page_stays_light_however_much_there_is() {
         let mut report = sample::report();

@@ -1,4 +1,5 @@
-//! Top of the page: counts, failures, three questions, one card per solver, and the matrix of cases and solvers.
+//! First screen of the page: counts, failures, three questions, one card per solver, and the matrix of cases and
+//! solvers.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -7,9 +8,9 @@ use crate::headline::{Headline, OUTCOMES};
 use crate::report::Report;
 use grainbench_harness::verdict::{Outcome, Severity};
 
-/// Renders the top of the page; `is_there` returns true if the page has an anchor for a result.
+/// Renders the first screen. `is_there` returns true if the page contains an anchor.
 ///
-/// `counts` are the counts of all results; `report` holds only the results that are shown.
+/// `counts` counts all results, and `report` contains only the results that are shown.
 pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
     let cases = report.sections.len();
@@ -34,7 +35,9 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
                         }
                     }
                 }
-                @if counts.regression > 0 { li { b { (counts.regression) } " of the passed compare with earlier values only" } }
+                @if counts.regression > 0 {
+                    li { b { (counts.regression) } " of the passed results are compared only with earlier values" }
+                }
                 @if counts.controls_broken > 0 { li { b { (counts.controls_broken) } " controls failed by an error" } }
             }
             (summary::failing(report, anchors))
@@ -55,7 +58,7 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
     }
 }
 
-/// Returns one sentence with the counts.
+/// Returns the counts in one sentence.
 fn headline(counts: Headline) -> String {
     if counts.rows() == 0 {
         return "Nothing was judged".to_owned();
@@ -76,7 +79,7 @@ fn headline(counts: Headline) -> String {
     )
 }
 
-/// Renders the number of known errors of each solver.
+/// Renders the number of known errors of each solver; empty for an outcome other than `known`.
 fn by_solver(report: &Report, outcome: Outcome) -> Markup {
     let count = |solver: &str| cards::rows(report, solver).filter(|row| row.outcome == outcome).count();
     let counts: Vec<(&str, usize)> = cards::solvers(report)
@@ -95,7 +98,7 @@ fn by_solver(report: &Report, outcome: Outcome) -> Markup {
     }
 }
 
-/// Renders search and filters, which need the script. They are hidden until it runs.
+/// Renders the search field and the filters. They need the script, and stay hidden until it runs.
 fn tools() -> Markup {
     html! {
         div.tools id="tools" hidden {

@@ -1,4 +1,4 @@
-//! Results of external solvers next to ours, from the last stored run of each.
+//! Results of external solvers beside ours, from the last stored run of each solver.
 
 use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
@@ -17,13 +17,16 @@ pub(crate) fn render(report: &Report) -> Markup {
             section id="peers" {
                 h2 { "External solvers" }
                 p.claim {
-                    "Results of external programs (SOLVER.toml) on the solver-independent claims, each with its "
-                    "negative control. The first table states where and when they were run. This run did not run them."
+                    "Results of external programs (SOLVER.toml) for the solver-independent claims, each with its "
+                    "negative control. The first table states where and when the programs ran. They did not run for \
+                     this report."
                 }
                 (scrolling("Programs", &programs(judged)))
                 p.note {
-                    "By case: largest error / tolerance, and passed / applicable results; the others are unsupported. "
-                    "The second column has the largest value of the same results with our solvers, if this run "
+                    "For each case the table shows the largest error / tolerance, and passed / applicable results. \
+                     Other results are unsupported. "
+                    "The second column shows the largest error / tolerance of the same claims with our solvers, if \
+                     this run "
                     "evaluated them."
                 }
                 (scrolling("Programs by case", &by_case(report)))
@@ -101,8 +104,8 @@ fn cell(count: &Count) -> Markup {
     }
 }
 
-/// Returns the largest |error|/allowed of our results in a case, for quantities and resolutions that external solvers
-/// also have.
+/// Returns the largest |error|/allowed of our results in a case, over the quantities and resolutions that external
+/// solvers also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
     let asked = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {

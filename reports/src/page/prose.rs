@@ -5,7 +5,7 @@ use pulldown_cmark::{CowStr, Event, HeadingLevel, Options, Parser, Tag, TagEnd, 
 
 use crate::plot::text;
 
-/// Renders Markdown with tables. Its headings get a lower level than those of the page.
+/// Renders Markdown with tables. Its headings have lower levels than the headings of the page.
 pub(crate) fn render(markdown: &str) -> Markup {
     let events = Parser::new_ext(markdown, Options::ENABLE_TABLES).map(tame);
     let mut text = String::new();
@@ -13,8 +13,8 @@ pub(crate) fn render(markdown: &str) -> Markup {
     PreEscaped(text)
 }
 
-/// Renders a caption: text between backticks is code, and symbols have subscripts. Other Markdown is kept as text, because
-/// captions contain formulas.
+/// Renders a caption: text between backticks is code, and symbols have subscripts. All other Markdown stays text,
+/// because captions contain formulas.
 pub(crate) fn inline(caption: &str) -> Markup {
     maud::html! {
         @for (at, part) in caption.split('`').enumerate() {
@@ -39,7 +39,8 @@ fn tame(event: Event<'_>) -> Event<'_> {
     }
 }
 
-/// Returns a link to a web page or within this page. Any other link leads to the summary.
+/// Returns the address of a link if it leads to a web page or to a place in this page; otherwise the address of the
+/// summary.
 fn harmless(address: CowStr<'_>) -> CowStr<'_> {
     let known = ["https://", "http://", "#"];
     if known.iter().any(|start| address.starts_with(start)) { address } else { CowStr::Borrowed("#summary") }

@@ -1,4 +1,4 @@
-//! Three questions of the first screen, each with a picture and a sentence, and the sections with all their numbers.
+//! Three questions on the first screen, each with a figure and a sentence, and the sections with all numbers.
 
 use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_harness::verdict::Outcome;
@@ -15,16 +15,17 @@ use crate::study::effects::{EffectResult, Entry, change, median};
 use crate::study::stability::{Hardness, distinct, sign};
 use crate::study::{cost, effects, stability};
 
-/// Size of a graph of the first screen (drawing units).
+/// Size of a graph on the first screen (drawing units).
 const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
-/// Smallest and largest change of an answer on the axis of the effects figure. Other changes are plotted at the ends.
+/// Smallest and largest change on the axis of the effects figure, as fractions of the scale. Changes beyond them are
+/// plotted at the ends.
 const CHANGES: [f64; 2] = [1e-5, 10.0];
 
 /// Anchors and headings of the questions.
 const QUESTIONS: [(&str, &str); 3] =
     [("costs", "What accuracy costs"), ("stability", "What stays stable"), ("effects", "Which effects matter")];
 
-/// Returns anchors and headings of the questions that have stored measurements.
+/// Returns the anchors and headings of the questions for which measurements are stored.
 pub(crate) fn links(measured: &Measurements) -> impl Iterator<Item = (&'static str, &'static str)> {
     let is_there = [measured.cost.is_some(), measured.stability.is_some(), measured.effects.is_some()];
     QUESTIONS.into_iter().zip(is_there).filter(|(_, is_there)| *is_there).map(|(question, _)| question)
@@ -50,7 +51,7 @@ pub(crate) fn render(report: &Report) -> Markup {
     }
 }
 
-/// Renders the sections with all numbers on stability and effects. The section on costs is next to the matrix.
+/// Renders the sections with all numbers on stability and on effects. The section on costs is beside the matrix.
 ///
 /// # Errors
 /// When a figure cannot be drawn.
@@ -61,7 +62,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
         @if stable.is_some() || effects.is_some() {
             section {
                 @for ((id, heading), all) in QUESTIONS[1..].iter().zip([stable, effects]) {
-                    // A link to a place within a closed part opens it, without a script too.
+                    // A link to an element within closed details opens them, even without a script.
                     @if let Some(all) = all { details { summary { (heading) ": all numbers" } div id=(id) { (all) } } }
                 }
             }
@@ -69,7 +70,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
     })
 }
 
-/// Returns the date of a measurement, and the solvers that have changed since.
+/// Renders the date of a measurement, and the solvers that have changed since.
 fn age(measured: &Measurements, id: &str) -> Markup {
     let stamp: Option<&Stamp> = match id {
         "costs" => measured.cost.as_ref().map(|part| &part.stamp),
@@ -96,7 +97,7 @@ fn drawn(figure: &Figure) -> Markup {
     }
 }
 
-/// Renders error against computing time for one quantity.
+/// Renders the graph of error against computing time for the example quantity.
 fn accuracy(report: &Report, costs: &Costs) -> Markup {
     let Some(diagram) = &costs.example else { return html! {} };
     let mut figure = cost::figure(diagram);
@@ -131,7 +132,8 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
     }
 }
 
-/// Renders the largest stable steps, and one row of marks for each hard case that some solver does not hold.
+/// Renders the largest stable time steps, and a table of the hard cases. A hard case has its own row if the required property
+/// does not hold for a solver at the default time step. The last row counts all other hard cases.
 fn steps(stability: &Stability) -> Markup {
     let figure = stability::figures(&stability.limits).into_iter().find(|figure| figure.name == "stable-step-springs");
     let lines: Vec<&Hold> = palette::SOLVERS
@@ -181,11 +183,12 @@ fn steps(stability: &Stability) -> Markup {
         @if let Some(figure) = &figure { (drawn(figure)) }
         p { (limits(&lines)) }
         (scrolling("Hard cases by solver", &table))
-        p.note { "✓ holds · ▲ smaller step or error · ✗ wrong without an error · – unsupported" }
+        p.note { "✓ holds · ▲ holds at a smaller step, or ends with an error · ✗ wrong without an error · – \
+                  unsupported" }
     }
 }
 
-/// Returns the largest stable steps in one sentence.
+/// Returns a sentence about the largest stable time steps.
 fn limits(lines: &[&Hold]) -> String {
     let range = |[low, high]: [f64; 2]| format!("{}–{}", number::significant(low, 3), number::significant(high, 3));
     let exact: Vec<&&Hold> = lines.iter().filter(|line| line.limit.is_some()).collect();
@@ -200,7 +203,8 @@ fn limits(lines: &[&Hold]) -> String {
     format!("Largest stable step: {}.", exact.into_iter().chain(found).collect::<Vec<_>>().join("; "))
 }
 
-/// Renders the change of the answer without each effect, one mark per scene, and the cost of the effect.
+/// Renders one row per effect. Each mark shows by how much the results of a scene change without the effect. The row also
+/// shows the computing cost of the effect.
 fn changes(effects: &Effects) -> Markup {
     const ROW: f64 = 36.0;
     const FRAME: [f64; 2] = [150.0, 400.0];
@@ -212,7 +216,7 @@ fn changes(effects: &Effects) -> Markup {
     let marks = |entries: &[&Entry], worth: EffectResult, y: f64| -> String {
         let fails = worth == EffectResult::Needed;
         let shifts = entries.iter().filter(|entry| entry.worth == worth).filter_map(|entry| median(entry));
-        // A stored entry has one claim, which may be another than the one that fails.
+        // A stored entry contains only one claim, which need not be a claim that fails.
         let places = shifts.filter(|shift| shift.red == fails).filter_map(change);
         places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
     };
@@ -259,20 +263,21 @@ fn changes(effects: &Effects) -> Markup {
         }
         p { "A claim fails " b { (most) } " scenes." }
         p.note {
-            "One mark per scene: the median over its claims that fail, or over all claims if none fails. Cost: median of the "
-            "processor time with the effect divided by the time without it, if it was measured in three scenes or more. "
-            "Changes below 10⁻⁵ and above 10 are at the ends."
+            "Each mark is the median change in one scene, over the claims that fail, or over all claims if none fails. \
+             The cost is the median of the "
+            "processor time with the effect divided by the time without it, if at least three scenes were measured. "
+            "Changes below 10⁻⁵ or above 10 are drawn at the ends of the axis."
         }
     }
 }
 
-/// Returns the number of scenes in which an effect is needed, and of those whose claims can be judged without it.
+/// Returns the number of scenes in which an effect is needed, and the number of scenes in which it can be judged.
 fn needed(entries: &[&Entry]) -> (usize, usize) {
     let count = |worth: EffectResult| entries.iter().filter(|entry| entry.worth == worth).count();
     (count(EffectResult::Needed), count(EffectResult::Needed) + count(EffectResult::NotWorthSimulating))
 }
 
-/// Returns the median cost of an effect in processor time; none if it was measured in fewer than three scenes.
+/// Returns the median ratio of processor times with and without an effect; a dash for fewer than three scenes.
 fn expense(entries: &[&Entry]) -> String {
     let mut times: Vec<f64> = entries.iter().filter_map(|entry| entry.time).collect();
     times.sort_by(f64::total_cmp);
@@ -298,7 +303,7 @@ mod tests {
             assert!(page.contains(sentence), "{sentence} is not in {page}");
         }
         assert_eq!(page.matches("role=\"img\"").count(), 3);
-        // No sources are known, so all measurements are old.
+        // No hashes of sources are given, so the costs and the stability limits count as outdated.
         assert_eq!(page.matches("outdated").count(), 2);
     }
 

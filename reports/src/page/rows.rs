@@ -1,4 +1,4 @@
-//! Table of all results of a case, with the outcome first.
+//! Table of all results of a case. The first column is the outcome.
 
 use std::collections::BTreeSet;
 
@@ -10,7 +10,8 @@ use crate::headline::used_tolerance;
 use crate::line;
 use crate::number;
 
-/// Returns the anchor of a result, which is the same in every run.
+/// Returns the anchor of a result, from a hash of case, variant, solver, resolution and quantity. It is therefore the same
+/// in every report.
 pub(crate) fn address(verdict: &Verdict) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in [&verdict.case, &verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity] {
@@ -20,7 +21,8 @@ pub(crate) fn address(verdict: &Verdict) -> String {
     format!("row-{}", &hasher.finalize().to_hex()[..8])
 }
 
-/// Returns the results in the order of the claims, with red results first and amber results second.
+/// Returns the red results, then the amber results, then the green ones. Failed results come before all other red results.
+/// Otherwise, the order of the claims is kept.
 pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     let mut rows: Vec<&Verdict> = verdicts.iter().collect();
     rows.sort_by_key(|verdict| {
@@ -33,7 +35,7 @@ pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     rows
 }
 
-/// Returns the table of results. `taken` holds the anchors of the page.
+/// Returns the table of results. `taken` contains the anchors that the page already uses.
 pub(crate) fn table(rows: &[&Verdict], taken: &mut BTreeSet<String>) -> Markup {
     html! {
         table.rows.sorts.verdicts {

@@ -1,5 +1,5 @@
-//! Section of one case: claim, failures and figures. Closed parts hold all results, controls, costs, derivation and
-//! limitations.
+//! Section of one case: claim, failures and figures. Closed details contain all results, controls, costs, derivation
+//! and limitations.
 
 use std::collections::BTreeSet;
 
@@ -12,7 +12,8 @@ use crate::line;
 use crate::plot::DrawError;
 use crate::report::Section;
 
-/// Returns the pieces of a case. `names` are the file names of its figures, and `taken` holds the anchors of the page.
+/// Returns the pieces of a case. `names` contains the file names of its figures, and `taken` the anchors that the page
+/// already uses.
 pub(crate) fn pieces(
     section: &Section,
     anchor: &str,
@@ -74,7 +75,7 @@ pub(crate) fn pieces(
     Ok(pieces)
 }
 
-/// Returns the derivation and each of its parts with a heading (`## …`), with their headings.
+/// Returns the parts of a derivation with their headings. The part before the first heading (`## …`) is "Derivation".
 fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     const HEADING: &str = "\n## ";
     let (first, rest) = derivation.split_once(HEADING).unwrap_or((derivation, ""));
@@ -83,7 +84,7 @@ fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     Some(("Derivation", first)).filter(|(_, text)| !text.trim().is_empty()).into_iter().chain(parts)
 }
 
-/// Adds a part that is initially closed.
+/// Adds a part within closed details.
 fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Markup, part: Part) {
     let open = html! { details id=[id] class=(class) { summary { (summary) } (PreEscaped("\u{0}")) } }.into_string();
     let (before, after) = open.split_once('\u{0}').unwrap_or((&open, ""));
@@ -92,12 +93,12 @@ fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Mark
     pieces.push(Piece::Fixed(after.to_owned()));
 }
 
-/// Returns the opening tag and the head of the section.
+/// Returns the opening tag and the beginning of the section.
 fn open(section: &Section, anchor: &str) -> String {
     let failing = section.verdicts.iter().filter(|row| row.outcome.is_red());
     let green_controls = section.controls.iter().filter(|control| !control.turned_red);
     let fails = failing.clone().count() + green_controls.clone().count();
-    // Text that a search looks through in addition to the results.
+    // The search also looks through this text.
     let words = format!("{} {} {}", section.name, section.title, section.claim);
     let tag = html! { section.case id=(anchor) data-case=(section.name) data-words=(words) {} }.into_string();
     let head = html! {

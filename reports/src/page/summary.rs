@@ -1,4 +1,4 @@
-//! Failures, and cost of accuracy over all cases.
+//! Failures, and computing cost of accuracy over all cases.
 
 use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
 use maud::{Markup, html};
@@ -10,12 +10,12 @@ use crate::plot;
 use crate::plot::graph::{self, Form};
 use crate::report::Report;
 
-/// Largest number of failures shown at the top of the page.
+/// Largest number of failures on the first screen.
 const LINES: usize = 6;
-/// Smallest error that is plotted in the figure over all cases.
+/// Smallest error that the figure over all cases shows.
 const LEAST: f64 = 1e-10;
 
-/// Returns the failures, one line each.
+/// Renders the failures, one line each.
 pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     let mut lines = Vec::new();
     for (section, anchor) in report.sections.iter().zip(anchors) {
@@ -44,7 +44,7 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     }
 }
 
-/// Returns the graph of error against time over all cases. The table of factors serves as its legend.
+/// Returns the graph of error against time over all cases. The table of factors is its legend.
 fn over_cases(costs: &Costs) -> Graph {
     let mut curves = Vec::new();
     for line in &costs.lines {
@@ -53,7 +53,7 @@ fn over_cases(costs: &Costs) -> Graph {
         curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
     }
     let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
-    // Each set of points follows the line whose style it shares.
+    // The points of each solver follow its line and have the style of the line.
     let curves = curves
         .into_iter()
         .zip(&costs.lines)
@@ -62,13 +62,13 @@ fn over_cases(costs: &Costs) -> Graph {
     Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves }
 }
 
-/// Returns the figure of error against time over all cases.
+/// Returns the figure of error against time over all cases as SVG.
 pub(crate) fn picture(costs: &Costs) -> String {
     let form = Form { width: 560.0, height: 470.0, legend: false };
     plot::markup(&graph::draw_as("Error against time, over all cases", &over_cases(costs), form))
 }
 
-/// Returns the table of factors, and a note about their definition.
+/// Renders the table of factors, and a note with their definition.
 pub(crate) fn factors(costs: &Costs) -> Markup {
     let stamp = &costs.stamp;
     let graph = over_cases(costs);
@@ -91,16 +91,19 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         }
         (over_dem(costs))
         p.note {
-            "The table has the geometric mean over the target quantities for which the solver and another one reach the error; "
-            "below it, for how many quantities the solver reaches it. The picture divides by the time of the cheapest solver at "
-            "1 %. Joined markers: 10, 1 and 0.1 %. Small markers: settings for which no other setting of this solver is both "
-            "faster and more accurate; errors below 10⁻¹⁰ are omitted. Times are of the stepping loop. Measured " "
+            "The table shows the geometric mean over the target quantities for which the solver and at least one more \
+             solver reach the error, and "
+            "below it the number of quantities for which the solver reaches the error. The figure shows times divided \
+             by the time of the cheapest solver at "
+            "1 %. Joined markers are errors of 10, 1 and 0.1 %. Small markers are settings for which no other setting \
+             of this solver is both "
+            "faster and more accurate. Errors below 10⁻¹⁰ are omitted. Times are those of the stepping loop. Measured " "
             "(stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
                  cases."
             @if !stamp.changed.is_empty() {
-                " Hatched: the sources of " (stamp.changed.join(", ")) " have changed since, or it is unknown whether \
-                     they changed."
+                " Hatched: the sources of " (stamp.changed.join(", "))
+                " have changed since the measurement, or it is unknown if they changed."
             }
         }
     }
@@ -117,7 +120,7 @@ fn cell(factor: Option<&Factor>, asked: usize) -> Markup {
     }
 }
 
-/// Returns the cost of `mpm` divided by the cost of `dem`, for errors that both reach.
+/// Renders the cost of `mpm` divided by the cost of `dem`, for each error that both reach.
 fn over_dem(costs: &Costs) -> Markup {
     let Some(line) = costs.lines.iter().find(|line| line.solver == "mpm") else { return html! {} };
     let parts: Vec<String> = line
@@ -129,5 +132,5 @@ fn over_dem(costs: &Costs) -> Markup {
             Some(format!("at {} × {} ({count} quantities)", number::fraction(target), number::significant(times, 2)))
         })
         .collect();
-    html! { @if !parts.is_empty() { p { b { "mpm over dem" } ", where both reach it: " (parts.join(", ")) "." } } }
+    html! { @if !parts.is_empty() { p { b { "mpm over dem" } ", for errors that both reach: " (parts.join(", ")) "." } } }
 }

@@ -1,4 +1,4 @@
-//! Negative controls and costs of a case.
+//! Tables of negative controls and of costs of a case.
 
 use grainbench_harness::verdict::Control;
 use maud::{Markup, html};
@@ -7,7 +7,7 @@ use super::scrolling;
 use crate::number;
 use crate::report::RunCost;
 
-/// Returns the table of negative controls and their results.
+/// Renders the table of negative controls with their results.
 pub(crate) fn controls(controls: &[Control]) -> Markup {
     html! {
         p.note { "Each claim is evaluated with wrong physics and must fail." }
@@ -18,7 +18,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
                     th scope="col" { "Quantity" }
                     th scope="col" { "Solver" }
                     th scope="col" { "Wrong physics" }
-                    th.n scope="col" { "Error seen, allowed" }
+                    th.n scope="col" { "Error found, allowed" }
                 }
             }
             tbody {
@@ -42,7 +42,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
     }
 }
 
-/// Returns the table of the cost of every run.
+/// Renders the table with the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
     let variants = runs.iter().any(|run| !run.variant.is_empty());
     let table = html! {
@@ -81,5 +81,5 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
             }
         }
     };
-    html! { p.note { "Counts do not depend on the machine; wall time does." } (scrolling("Costs", &table)) }
+    html! { p.note { "Counts do not depend on the machine, but the wall time does." } (scrolling("Costs", &table)) }
 }

@@ -2,7 +2,8 @@
 
 use nalgebra::Vector3;
 
-/// Visits the columns of a row in a fixed order. Implementations read the values from the row, or write them to it.
+/// Visitor of the columns of a row, in a fixed order. One implementation reads values from the row; another one writes
+/// values to it.
 pub(super) trait Columns {
     /// Visits an integer.
     fn whole(&mut self, name: &'static str, value: &mut i64);
@@ -22,7 +23,7 @@ pub(super) trait Columns {
         }
     }
 
-    /// Visits numbers that are either all present or all absent.
+    /// Visits several numbers that are either all present or all absent.
     fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<[f64; N]>) {
         let mut all = true;
         let mut numbers = value.unwrap_or([0.0; N]);
@@ -35,7 +36,7 @@ pub(super) trait Columns {
         *value = all.then_some(numbers);
     }
 
-    /// Visits boxed numbers that are either all present or all absent.
+    /// Visits several boxed numbers that are either all present or all absent.
     fn told_apart<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<Box<[f64; N]>>) {
         let mut numbers = value.as_deref().copied();
         self.told_numbers(names, &mut numbers);
@@ -52,7 +53,7 @@ pub(super) trait Columns {
 
 /// Type of a table row.
 pub(super) trait Row: Sized {
-    /// Name of the table's file without extension.
+    /// File name of the table, without extension.
     const TABLE: &'static str;
 
     /// Returns a row with default values.
@@ -72,7 +73,7 @@ pub(crate) enum Values {
     Word(Vec<String>),
 }
 
-/// Columns filled row by row.
+/// Buffer of columns that is filled row by row.
 #[derive(Debug, Default)]
 pub(super) struct ColumnBuffer {
     pub(super) columns: Vec<(&'static str, Values)>,
@@ -80,7 +81,7 @@ pub(super) struct ColumnBuffer {
 }
 
 impl ColumnBuffer {
-    /// Returns the columns of these rows. Without rows, the columns are empty.
+    /// Returns the columns of some rows. Without rows, all columns are empty.
     pub(super) fn from_rows<R: Row>(rows: &mut [R]) -> Self {
         let mut gathered = Self::default();
         R::blank().visit(&mut gathered);
@@ -141,7 +142,8 @@ impl Columns for ColumnBuffer {
     }
 }
 
-/// Writes columns to rows. If a value is missing, the row keeps its own.
+/// Visitor that writes the values of columns to rows. If a column lacks a value, an optional number becomes absent, and any
+/// other value keeps its default.
 pub(super) struct RowWriter<'v> {
     columns: &'v [Values],
     row: usize,
@@ -149,7 +151,7 @@ pub(super) struct RowWriter<'v> {
 }
 
 impl<'v> RowWriter<'v> {
-    /// Returns `count` rows with the values of these columns.
+    /// Returns `count` rows with the values of the columns.
     pub(super) fn rows<R: Row>(columns: &'v [Values], count: usize) -> Vec<R> {
         let row = |row: usize| {
             let mut filled = R::blank();

@@ -9,11 +9,11 @@ use grainbench_scene::record::Snapshot;
 use super::part::PartReader;
 use crate::export::record_json;
 
-/// Passes every snapshot of a run to `look`, in order of time. Reads the parts if there are any, otherwise the record.
+/// Passes every stored snapshot of a run to `look`, in order of time. The snapshots come from the parts in `snapshots/` if
+/// this folder exists, otherwise from the record.
 ///
 /// # Errors
-/// When there is no run in the directory, when a file cannot be read (`unreadable` makes the error), or when `look`
-/// fails.
+/// When the directory contains no run, when a file cannot be read (`unreadable` makes the error), or when `look` fails.
 pub fn each_snapshot<E>(
     dir: &Path,
     unreadable: impl Fn(String) -> E,
@@ -32,7 +32,7 @@ pub fn each_snapshot<E>(
     let entries =
         fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(read_error(&folder))?;
     let mut parts: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
-    // Names of parts begin with their number.
+    // The name of a part begins with its number.
     parts.sort();
     for part in parts {
         let mut reader = PartReader::open(&part).map_err(read_error(&part))?;

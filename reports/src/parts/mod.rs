@@ -1,9 +1,9 @@
-//! Storage of many snapshots in bounded memory.
+//! Storage of any number of snapshots in bounded memory.
 //!
-//! A part is a folder with one Parquet file per kind of row: `snapshots`, `grains`, `contacts`, `walls`, `bodies`,
+//! A part is a folder with one Parquet file per kind of row: `snapshots`, `grains`, `contacts`, `walls`, `bodies` and
 //! `points`. Programs such as pandas, polars and DuckDB read all parts with one pattern, such as
-//! `snapshots/*/grains.parquet`. Every row has the number, the step and the time of its snapshot. Numbers keep every
-//! bit, and an unreported value is null.
+//! `snapshots/*/grains.parquet`. Every row has the number, the step and the time of its snapshot. Numbers are stored
+//! without rounding, and an unreported value is null.
 
 mod columns;
 mod folder;

@@ -1,4 +1,5 @@
-//! A part: consecutive snapshots, with one Parquet file per kind of row. A closed part does not change.
+//! A part of the stored snapshots: consecutive snapshots, with one Parquet file per kind of row. A closed part does not
+//! change.
 
 use std::fs;
 use std::io;
@@ -22,14 +23,14 @@ const TABLES: [&str; 6] =
 pub(super) struct Seal {
     /// Name of the part's folder.
     pub(super) name: String,
-    /// Hash of the part's files.
+    /// Hash of all files of the part.
     hash: [u8; 32],
-    /// Number of rows of grains, contacts and points.
+    /// Number of rows of grains, contacts and points in the part.
     pub(super) rows: u64,
 }
 
 impl Seal {
-    /// Returns true if the part in a folder has the files that were written when it was closed.
+    /// Returns true if the part in a folder still has the files that were written when it was closed.
     pub(super) fn fits(&self, folder: &Path) -> bool {
         let hash = |table: &str| -> io::Result<Option<blake3::Hash>> {
             match fs::File::open(folder.join(file_name(table))) {
@@ -58,13 +59,13 @@ fn together(hashes: &[Option<blake3::Hash>]) -> blake3::Hash {
     all.finalize()
 }
 
-/// Returns the existing files of a part: name and path.
+/// Returns the name and the path of each existing file of a part.
 pub(super) fn files(folder: &Path) -> Vec<(String, PathBuf)> {
     let named = TABLES.map(|table| (file_name(table), folder.join(file_name(table))));
     named.into_iter().filter(|(_, path)| path.is_file()).collect()
 }
 
-/// A table whose file is created with its first row.
+/// Writer of a table. It creates the file of the table when the first row is added.
 struct LazyTable<R> {
     writer: Option<TableWriter<SnapshotRow<R>>>,
 }
@@ -96,7 +97,7 @@ impl<R: Row> LazyTable<R> {
     }
 }
 
-/// A part that is being written, in a hidden folder.
+/// A part that is being written to a hidden folder.
 pub(super) struct OpenPart {
     directory: TempDir,
     frames: LazyTable<Frame>,
@@ -106,12 +107,13 @@ pub(super) struct OpenPart {
     bodies: LazyTable<BodyState>,
     points: LazyTable<PointState>,
     rows: u64,
-    /// Columns of grains that are not written.
+    /// Columns of the grains table that are not written.
     without: Vec<&'static str>,
 }
 
 impl OpenPart {
-    /// Begins a part that will be moved to a folder. Some columns of grains can be left out.
+    /// Begins a part that will be moved to a folder when it is closed. `without` contains columns of the grains table
+    /// that are not written.
     pub(super) fn begin(folder: &Path, without: &[&'static str]) -> io::Result<Self> {
         let directory = temporary_in(folder)?;
         fs::create_dir(directory.path().join("part"))?;
@@ -128,7 +130,7 @@ impl OpenPart {
         })
     }
 
-    /// Adds snapshots; `first` is the index in the run of the first one.
+    /// Adds snapshots. `first` is the index of the first of them in the run.
     pub(super) fn add(&mut self, first: u64, snapshots: &[Snapshot]) -> io::Result<()> {
         fn rows<'s, R, I: Iterator<Item = R> + 's>(
             first: u64,
@@ -163,18 +165,18 @@ impl OpenPart {
         Ok(())
     }
 
-    /// Returns the number of bytes written so far.
+    /// Returns the number of bytes written so far, without those of the table of bodies.
     pub(super) fn bytes(&self) -> usize {
         self.frames.bytes() + self.grains.bytes() + self.contacts.bytes() + self.walls.bytes() + self.points.bytes()
     }
 
-    /// Closes the part and moves it to the folder as part number `number`.
+    /// Closes the part and moves it to the folder. `number` is the number of the part.
     pub(super) fn close(self, folder: &Path, number: usize) -> io::Result<Seal> {
         let Self { directory, frames, grains, contacts, walls, bodies, points, rows, .. } = self;
         let hashes =
             [frames.close()?, grains.close()?, contacts.close()?, walls.close()?, bodies.close()?, points.close()?];
         let hash = together(&hashes);
-        // The hash in its name keeps a part from replacing a different part.
+        // The name contains the hash, so that a part never replaces a different part.
         let name = format!("{number:06}-{}", &hash.to_hex()[..8]);
         let place = folder.join(&name);
         if place.exists() {
@@ -190,7 +192,7 @@ pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
     (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64
 }
 
-/// Reads a closed part, one snapshot after another.
+/// Reader of a closed part. It returns one snapshot after another.
 pub(super) struct PartReader {
     frames: TableReader<SnapshotRow<Frame>>,
     grains: TableReader<SnapshotRow<GrainState>>,
@@ -212,7 +214,7 @@ impl PartReader {
         })
     }
 
-    /// Returns the next snapshot; none after the last.
+    /// Returns the next snapshot; none after the last one.
     pub(super) fn next(&mut self) -> io::Result<Option<Snapshot>> {
         fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
             let mut rows = Vec::new();

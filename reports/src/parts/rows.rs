@@ -1,5 +1,5 @@
-//! Rows of the tables of a part: one per snapshot, grain, contact, wall, body and material point. Units are SI, as in
-//! [`grainbench_scene::record`].
+//! Rows of the tables of a part, one for each snapshot, grain, contact, wall, body or material point. Units are SI, as
+//! in [`grainbench_scene::record`].
 
 use super::columns::{Columns as Visit, Row};
 use grainbench_scene::columns::{Chosen, Columns};
@@ -16,7 +16,7 @@ const VIRIAL: [&str; 6] = ["virial_xx", "virial_yy", "virial_zz", "virial_xy", "
 const MEAN_VIRIAL: [&str; 6] =
     ["mean_virial_xx", "mean_virial_yy", "mean_virial_zz", "mean_virial_xy", "mean_virial_yz", "mean_virial_zx"];
 
-/// Returns the columns of grains that the snapshots lack.
+/// Returns the names of the grain columns that the snapshots of a run do not contain.
 pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
     let columns_of: [(Chosen, Vec<&'static str>); 4] = [
         (Chosen::Spin, [&SPIN[..], &["angle"]].concat()),
@@ -27,14 +27,14 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
     columns_of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
 }
 
-/// A snapshot without the data of the other tables.
+/// A snapshot without the data that are stored in other tables.
 pub(super) struct Frame(pub(super) Snapshot);
 
 impl Frame {
     pub(super) fn from_snapshot(snapshot: &Snapshot) -> Self {
         Self(Snapshot {
             grains: Vec::new(),
-            // The table of snapshots stores only whether contacts were reported.
+            // The table of snapshots stores a flag that is true if contacts were reported.
             contacts: snapshot.contacts.as_ref().map(|_| Vec::new()),
             walls: Vec::new(),
             bodies: Vec::new(),
@@ -152,7 +152,7 @@ impl Row for ContactState {
     }
 }
 
-/// Columns of the corners of a wall: two for a segment, four for a rectangle, and point and normal for a plane.
+/// Columns of the points of a wall: two ends for a segment, four corners for a rectangle, point and normal for a plane.
 const CORNERS: [[&str; 3]; 4] = [
     ["corner1_x", "corner1_y", "corner1_z"],
     ["corner2_x", "corner2_y", "corner2_z"],
@@ -244,7 +244,7 @@ impl Row for PointState {
     }
 }
 
-/// A row with the number, the step and the time of its snapshot. Two snapshots can have the same step: the last good
+/// A row with the number, the step and the time of its snapshot. Two snapshots can have the same step: the last regular
 /// state and the state at a crash.
 pub(super) struct SnapshotRow<R> {
     /// Index of the snapshot in the run, from 0.
@@ -269,7 +269,8 @@ impl<R: Row> Row for SnapshotRow<R> {
     }
 }
 
-/// Visits an integer of any type. Values that do not fit the type do not occur, because we write the files ourselves.
+/// Visits an integer of any type. A stored value that does not fit the type leaves the integer unchanged; our own files
+/// contain no such value.
 fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Visit, name: &'static str, value: &mut T) {
     let mut number = (*value).try_into().unwrap_or(i64::MAX);
     columns.whole(name, &mut number);

@@ -1,4 +1,4 @@
-//! Store of the snapshots of a run. The latest ones are in memory, and all others are in closed parts on disk.
+//! Store of the snapshots of a run. The latest snapshots are in memory, and all others are in parts on disk.
 
 use std::borrow::Cow;
 use std::collections::BTreeSet;
@@ -19,29 +19,29 @@ use super::rows::left_out;
 use grainbench_store::{WriteError, parent_of};
 use grainbench_store::{remove_leftovers, temporary_in};
 
-/// Largest number of rows (grains, contacts and points) of a small run. Its snapshots are written as readable text.
+/// Largest number of rows (grains, contacts and points) of a small run, whose snapshots are written as readable text.
 pub const READABLE: u64 = 200_000;
 
-/// Memory that snapshots may occupy before they are written to disk (B).
+/// Size of the snapshots in memory above which they are written to disk (bytes).
 const WAITING: usize = 8 << 20;
-/// Size at which a part is closed (B).
+/// Size at which a part is closed (bytes).
 const PART: usize = 64 << 20;
 
-/// Error when snapshots cannot be stored, or when the snapshots of a checkpoint cannot be read back.
+/// Error when snapshots cannot be stored, or when the snapshots of a checkpoint cannot be restored.
 #[derive(Debug, Error)]
 pub enum StoreError {
     /// A file cannot be written.
     #[error(transparent)]
     Write(#[from] WriteError),
-    /// A part of the checkpoint is missing or changed.
+    /// A part that belongs to the checkpoint is missing or has changed.
     #[error("the checkpoint needs its snapshots in {}: {found}", path.display())]
     Lost {
         /// Path of the part.
         path: PathBuf,
-        /// State of the part.
+        /// Description of the part: missing or changed.
         found: &'static str,
     },
-    /// The checkpoint comes from a run that stored no snapshots.
+    /// The checkpoint belongs to a run that omitted snapshots, and the continued run needs them.
     #[error(
         "expected a checkpoint with the earlier snapshots, found a checkpoint of a run without snapshots: continue \
          without --write, or with --write none"
@@ -54,9 +54,9 @@ pub enum StoreError {
 
 /// Location of the parts.
 enum Place {
-    /// A hidden folder, which is created when it is needed and deleted with the store.
+    /// A hidden folder, which is created when it is first needed and deleted with the store.
     Scratch { beside: PathBuf, made: Option<TempDir> },
-    /// A folder that remains after the process.
+    /// A folder that remains after the process has ended.
     Folder(PathBuf),
 }
 
@@ -67,22 +67,22 @@ pub struct SnapshotStore {
     waiting_bytes: usize,
     open: Option<OpenPart>,
     closed: Vec<Seal>,
-    /// Number of snapshots in memory and on disk.
+    /// Number of all snapshots of the run.
     snapshots: u64,
-    /// Number of rows of grains, contacts and points in memory and on disk.
+    /// Number of rows of grains, contacts and points of all snapshots.
     rows: u64,
-    /// Summary of the last snapshot, and its number of rows.
+    /// Summary and number of rows of the last snapshot.
     end: Option<(Brief, u64)>,
-    /// True if no snapshot format is requested. If the run exceeds [`READABLE`] rows, only its last state is kept, and
-    /// only if that state is small enough.
+    /// True if no snapshot format is requested. If the run then exceeds [`READABLE`] rows, only its last snapshot is
+    /// stored, and only if it has at most [`READABLE`] rows.
     in_short: bool,
-    /// True if `in_short` was the reason that snapshots were omitted.
+    /// True if snapshots were omitted because of `in_short`.
     left_out: bool,
-    /// Columns of grains that parts leave out.
+    /// Columns of the grains table that are not written.
     without: Vec<&'static str>,
 }
 
-/// Snapshot data of a checkpoint: the snapshots in memory, and the list of closed parts.
+/// Snapshots in a checkpoint: those in memory, and the list of closed parts.
 #[derive(Serialize, Deserialize)]
 struct CheckpointSnapshots<'s> {
     waiting: Cow<'s, [Snapshot]>,
@@ -94,15 +94,16 @@ struct CheckpointSnapshots<'s> {
 }
 
 impl SnapshotStore {
-    /// Returns a store for a run with output in `out`. Its parts are on the same disk and are deleted with the store.
+    /// Returns a store for a run with output in `out`. The parts are on the same disk as `out`, and are deleted with
+    /// the store.
     #[must_use]
     pub fn for_output(out: &Path) -> Self {
         let beside = if out.is_dir() { out } else { parent_of(out) };
         Self::at(Place::Scratch { beside: beside.to_path_buf(), made: None })
     }
 
-    /// Returns a store for a run with checkpoints. Its parts are in `<checkpoint>.parts`, so that a run can continue
-    /// from the checkpoint.
+    /// Returns a store for a run with checkpoints. The parts are in `<checkpoint>.parts`, so that another run can
+    /// continue from the checkpoint.
     #[must_use]
     pub fn for_checkpoint(checkpoint: &Path) -> Self {
         Self::at(Place::Folder(parts_of(checkpoint)))
@@ -124,24 +125,24 @@ impl SnapshotStore {
         }
     }
 
-    /// Omits the grain columns that the snapshots of this run do not contain.
+    /// Sets the grain columns of the run. Columns that its snapshots do not contain are not written.
     #[must_use]
     pub fn holding(self, columns: &Columns) -> Self {
         Self { without: left_out(columns), ..self }
     }
 
-    /// Sets the store up for a run without a snapshot format. If the run exceeds [`READABLE`] rows, only the last
-    /// snapshot is kept, and only if it is small enough.
+    /// Sets up the store for a run without a snapshot format. If the run exceeds [`READABLE`] rows, only the last
+    /// snapshot is stored, and only if it has at most [`READABLE`] rows.
     #[must_use]
     pub fn in_short(self) -> Self {
         Self { in_short: true, ..self }
     }
 
-    /// Restores the snapshots of a checkpoint (see [`SnapshotStore::keep`]). Its parts are linked or copied.
+    /// Restores the snapshots of a checkpoint (see [`SnapshotStore::keep`]). Parts in another folder are linked or
+    /// copied.
     ///
     /// # Errors
-    /// When a part is missing or changed, when it cannot be copied, or when the checkpoint has no snapshots but they
-    /// are needed.
+    /// When a part is missing, has changed or cannot be copied, or when needed snapshots are not in the checkpoint.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
         let kept: CheckpointSnapshots<'_> =
             postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
@@ -198,7 +199,8 @@ impl SnapshotStore {
         self.spill().map_err(|source| WriteError::new(self.shown(), source))
     }
 
-    /// Adds the last state of a run that crashed or was ended. It is kept even if no snapshot format is requested.
+    /// Adds the last state of a run that crashed or was interrupted. It is stored even if no snapshot format is
+    /// requested.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -207,19 +209,20 @@ impl SnapshotStore {
         self.add(snapshot)
     }
 
-    /// Returns true if no snapshot format is requested and snapshots were left out for this reason.
+    /// Returns true if snapshots were omitted because no snapshot format is requested.
     #[must_use]
     pub const fn has_left_out(&self) -> bool {
         self.in_short && self.left_out
     }
 
-    /// Returns the largest number of rows of a snapshot that is stored with all rows.
+    /// Returns the largest number of rows of a snapshot that the run must deliver in full. A larger snapshot may be
+    /// reduced to a summary.
     #[must_use]
     pub const fn most_rows(&self) -> u64 {
         if self.in_short { READABLE } else { u64::MAX }
     }
 
-    /// Counts a snapshot that is not stored with all rows, and its rows.
+    /// Counts a snapshot of which only a summary exists. `rows` is the number of its rows.
     pub fn pass(&mut self, brief: Brief, rows: u64) {
         self.rows += rows;
         self.snapshots += 1;
@@ -227,13 +230,14 @@ impl SnapshotStore {
         self.leave_out();
     }
 
-    /// Discards the snapshots in memory.
+    /// Discards the snapshots in memory, and notes that snapshots were omitted.
     fn leave_out(&mut self) {
         self.waiting.clear();
         (self.waiting_bytes, self.left_out) = (0, true);
     }
 
-    /// Closes the open part and returns the snapshot data for a checkpoint, which names the closed parts.
+    /// Closes the open part and returns the snapshots for a checkpoint: those in memory, and the names of the closed
+    /// parts.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -245,7 +249,8 @@ impl SnapshotStore {
         postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 
-    /// Deletes parts that the store does not list. It must follow a checkpoint that lists all parts of the store.
+    /// Deletes all parts that the store does not list. Call it only after a checkpoint that lists all parts was
+    /// written.
     pub fn forget_others(&self) {
         let Place::Folder(folder) = &self.place else { return };
         let _ = remove_leftovers(folder);
@@ -255,12 +260,13 @@ impl SnapshotStore {
             remove_part(&entry.path());
         }
         if known.is_empty() {
-            // The folder is removed only if it is empty.
+            // This removes the folder only if it is empty.
             let _ = fs::remove_dir(folder);
         }
     }
 
-    /// Closes the open part, so that all snapshots can be read.
+    /// Writes the snapshots in memory to the open part and closes it. All snapshots can then be read. If no part is open, the
+    /// snapshots stay in memory.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -274,25 +280,25 @@ impl SnapshotStore {
         settle(self).map_err(|source| WriteError::new(self.shown(), source))
     }
 
-    /// Returns the number of snapshots.
+    /// Returns the number of all snapshots of the run.
     #[must_use]
     pub fn len(&self) -> u64 {
         self.snapshots
     }
 
-    /// Returns true if there are no snapshots.
+    /// Returns true if the run has no snapshots yet.
     #[must_use]
     pub fn is_empty(&self) -> bool {
         self.snapshots == 0
     }
 
-    /// Returns the number of rows of grains, contacts and points.
+    /// Returns the number of rows of grains, contacts and points of all snapshots.
     #[must_use]
     pub fn rows(&self) -> u64 {
         self.rows
     }
 
-    /// Passes every snapshot in memory or in a closed part to `look`, one at a time, from the first.
+    /// Passes every snapshot, in closed parts and in memory, to `look`, one after another from the first.
     ///
     /// # Errors
     /// When a part cannot be read (`unreadable` makes the error), or when `look` fails.
@@ -316,10 +322,10 @@ impl SnapshotStore {
         self.end.as_ref().map(|(end, _)| end)
     }
 
-    /// Returns the last snapshot in memory or in a closed part, if it has at most [`READABLE`] rows.
+    /// Returns the last snapshot if it is stored and has at most [`READABLE`] rows; none otherwise.
     ///
     /// # Errors
-    /// When its part cannot be read.
+    /// When the part of the snapshot cannot be read.
     pub fn readable_end(&self) -> io::Result<Option<Snapshot>> {
         if self.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
             return Ok(None);
@@ -334,8 +340,8 @@ impl SnapshotStore {
         Ok(last)
     }
 
-    /// Writes all snapshots in memory to disk and returns the files of all parts: path, and name relative to the folder
-    /// of parts.
+    /// Writes all snapshots in memory to disk. Returns the files of all parts: path, and path relative to the folder of
+    /// the parts.
     ///
     /// # Errors
     /// When a file cannot be written.
@@ -399,7 +405,7 @@ impl SnapshotStore {
         }
     }
 
-    /// Returns the path that errors name.
+    /// Returns the path that error messages name.
     fn shown(&self) -> PathBuf {
         match &self.place {
             Place::Folder(folder) => folder.clone(),
@@ -408,7 +414,7 @@ impl SnapshotStore {
     }
 }
 
-/// Returns the folder of the parts of a checkpoint.
+/// Returns the folder of the parts that belong to a checkpoint.
 fn parts_of(checkpoint: &Path) -> PathBuf {
     let mut name = checkpoint.as_os_str().to_owned();
     name.push(".parts");
@@ -430,7 +436,7 @@ fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
     fs::hard_link(from, to).or_else(|_| fs::copy(from, to).map(drop))
 }
 
-/// Deletes a folder that contains only the files of a part. Other folders remain.
+/// Deletes a folder if it contains nothing but the files of a part.
 fn remove_part(folder: &Path) {
     let Ok(entries) = fs::read_dir(folder) else { return };
     if entries.flatten().count() == files(folder).len() {
@@ -438,7 +444,7 @@ fn remove_part(folder: &Path) {
     }
 }
 
-/// Returns the approximate size of a snapshot in memory (B).
+/// Returns the approximate size of a snapshot in memory (bytes).
 fn bytes(snapshot: &Snapshot) -> usize {
     size_of_val(snapshot)
         + size_of_val(snapshot.grains.as_slice())
@@ -452,7 +458,7 @@ mod tests {
     use super::*;
     use crate::export::sample;
 
-    /// Returns snapshots with all tables and all kinds of absent values, and with numbers that short text would round.
+    /// Returns snapshots with all tables, all kinds of absent values, and numbers that short text would round.
     fn snapshots(count: u64) -> Vec<Snapshot> {
         let make = |step: u64| {
             let mut snapshot = if step.is_multiple_of(2) { sample::snapshot() } else { sample::deformable() };
@@ -513,7 +519,7 @@ mod tests {
         }
         store.spill().unwrap();
         let kept = store.keep().unwrap();
-        // The run is killed after it wrote more snapshots.
+        // The run writes further snapshots after the checkpoint and is then killed.
         store.add(snapshots[10].clone()).unwrap();
         store.spill().unwrap();
         store.close().unwrap();
@@ -530,7 +536,7 @@ mod tests {
         resumed.forget_others();
         assert_eq!(fs::read_dir(&parts).unwrap().count(), 1, "what nothing names goes");
 
-        // A store in another folder copies or links the parts.
+        // A store in another folder links or copies the parts.
         let elsewhere = SnapshotStore::for_output(&folder.path().join("out")).resume(&checkpoint, &kept).unwrap();
         assert_eq!(all(&elsewhere), snapshots[..10]);
 

@@ -1,4 +1,4 @@
-//! A table as a Parquet file, written and read in groups of rows.
+//! A table in a Parquet file, which is written and read in groups of rows.
 
 use std::fs::File;
 use std::io::{self, Write};
@@ -18,25 +18,25 @@ use parquet::schema::types::{ColumnPath, Type};
 
 use super::columns::{ColumnBuffer, Row, RowWriter, Values};
 
-/// Number of rows converted to columns together. These rows are in memory twice while they are written.
+/// Number of rows that are converted to columns at a time. These rows are in memory twice while they are written.
 const GROUP: usize = 1 << 13;
 
-/// Columns with few different values, for which a dictionary saves space.
+/// Columns with few different values. A dictionary saves space in them.
 const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "mass", "partner", "owner"];
 
-/// Column of consecutive numbers, which have small differences.
+/// Column of consecutive numbers. Their differences are small, so that storing differences saves space.
 const COUNTED: &str = "id";
 
 /// A table that is being written.
 pub(super) struct TableWriter<R> {
     file: SerializedFileWriter<HashedFile>,
-    /// Columns that are left out.
+    /// Names of the columns that are not written.
     without: Vec<&'static str>,
     row: PhantomData<R>,
 }
 
 impl<R: Row> TableWriter<R> {
-    /// Creates a file without the columns in `without`.
+    /// Creates a file for the table, without the columns in `without`.
     pub(super) fn new(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
         let file = HashedFile { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
         let mut properties =
@@ -44,8 +44,8 @@ impl<R: Row> TableWriter<R> {
         for name in REPEATED {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
-        // Bytes of the same significance are stored together. Leading bytes are similar, and bytes of digits that were
-        // rounded away are zero.
+        // Bytes of the same significance are stored together, which compresses well. Leading bytes are similar, and the
+        // last bytes of rounded numbers are zero.
         let mut columns = ColumnBuffer::from_rows::<R>(&mut []).columns;
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
@@ -83,7 +83,7 @@ impl<R: Row> TableWriter<R> {
         self.file.bytes_written()
     }
 
-    /// Closes the file and returns the hash of all its bytes.
+    /// Closes the file and returns the hash of its content.
     pub(super) fn close(self) -> io::Result<blake3::Hash> {
         let mut hashed = self.file.into_inner().map_err(io_error)?;
         hashed.flush()?;
@@ -92,12 +92,12 @@ impl<R: Row> TableWriter<R> {
     }
 }
 
-/// Reads a table in groups of rows.
+/// Reader of a table. It reads one group of rows at a time.
 pub(super) struct TableReader<R> {
-    /// File of the table; none if no row was written.
+    /// File of the table; none if the table has no rows.
     file: Option<SerializedFileReader<File>>,
     group: usize,
-    /// Rows of the current group that were not yet returned, in reverse order.
+    /// Rows of the current group that were not returned yet, in reverse order.
     waiting: Vec<R>,
 }
 
@@ -111,7 +111,7 @@ impl<R: Row> TableReader<R> {
         Ok(Self { file, group: 0, waiting: Vec::new() })
     }
 
-    /// Returns the next row if `wanted` returns true for it.
+    /// Returns the next row if `wanted` is true for it; none otherwise.
     pub(super) fn next_if(&mut self, wanted: impl Fn(&R) -> bool) -> io::Result<Option<R>> {
         if self.waiting.is_empty() {
             self.waiting = self.read_group()?;
@@ -152,7 +152,8 @@ impl<R: Row> TableReader<R> {
     }
 }
 
-/// Returns the values of a column that the file lacks, because no program reported them.
+/// Returns the values of a column that the file does not contain: NaN or null. An integer, flag or text column must
+/// exist.
 fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetError> {
     match shape {
         Values::Number(_) => Ok(Values::Number(vec![f64::NAN; count])),
@@ -166,20 +167,20 @@ pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
 }
 
-/// A table in a file, written in groups of rows.
+/// A table that is written to a file in groups of rows.
 pub(crate) struct GroupedTable<W: Write + Send> {
     file: SerializedFileWriter<W>,
 }
 
 impl<W: Write + Send> GroupedTable<W> {
-    /// Creates a table with the columns of `like`.
+    /// Begins a table with the names and types of the columns in `like`.
     pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
         let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(io_error)?;
         Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(io_error)? })
     }
 
-    /// Adds rows as columns of equal length, in the order of the table.
+    /// Adds a group of rows. The columns have equal length and are in the order of the table.
     pub(crate) fn add(&mut self, columns: &[(String, Values)]) -> io::Result<()> {
         let mut group = self.file.next_row_group().map_err(io_error)?;
         columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(io_error)?;
@@ -192,7 +193,7 @@ impl<W: Write + Send> GroupedTable<W> {
     }
 }
 
-/// Writes a whole table to a file: named columns of equal length.
+/// Writes a whole table to a file. All columns have equal length.
 pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
     let mut grouped = GroupedTable::new(table, columns, file)?;
     grouped.add(columns)?;
@@ -246,7 +247,7 @@ fn batch<T: DataType>(
     column.write_batch(values, levels, None).map(drop)
 }
 
-/// Returns the values of a column, and for each row 1 if it has a value or 0 if not.
+/// Returns the values of a column, and a flag for each row: 1 if it has a value, 0 if not.
 fn read<T: DataType>(
     reader: parquet::column::reader::ColumnReader,
     count: usize,
@@ -264,7 +265,7 @@ fn read<T: DataType>(
     Ok((values, levels))
 }
 
-/// Returns an I/O error. An I/O error inside the Parquet error, such as a full disk, is kept.
+/// Returns a Parquet error as an I/O error. If its cause is an I/O error, such as a full disk, that error is returned.
 fn io_error(error: ParquetError) -> io::Error {
     match error {
         ParquetError::External(inner) => match inner.downcast::<io::Error>() {
@@ -275,7 +276,7 @@ fn io_error(error: ParquetError) -> io::Error {
     }
 }
 
-/// A file with the hash of the bytes written to it.
+/// A file that computes the hash of all bytes written to it.
 struct HashedFile {
     file: File,
     hash: blake3::Hasher,

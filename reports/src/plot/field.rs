@@ -1,4 +1,5 @@
-//! Fields as pixel images: panels, a colour bar and a scale bar. A film shows its last frame, with a bar for its time.
+//! Fields as pixel images, with panels, a colour bar and a scale bar. The drawing of a film shows its last frame and a
+//! time axis.
 
 use std::io;
 
@@ -14,25 +15,28 @@ use crate::number;
 
 const MARGIN: f64 = 10.0;
 const TOP: f64 = 48.0;
-/// Height above each row of panels, if panels have titles.
+/// Height above each row of panels, for their titles (drawing units).
 const HEAD: f64 = 24.0;
 const GAP: f64 = 14.0;
-/// Width to the right of the panels, for the colour bar.
+/// Width to the right of the panels, for the colour bar (drawing units).
 const BAR: f64 = 124.0;
-/// Largest height of all panels, and of each row if there are several rows.
+/// Largest height of the panels if there is a single row (drawing units).
 const TALLEST: f64 = 560.0;
+/// Largest mean height of a row of panels if there are several rows (drawing units).
 const TALLEST_ROW: f64 = 300.0;
 const FOOT: f64 = 46.0;
-/// Height below panels with their own scales.
+/// Height below panels that have their own scales (drawing units).
 const BARS: f64 = 72.0;
-/// Height below a film, for its time axis.
+/// Height below a film, for its time axis (drawing units).
 const CLOCK: f64 = 50.0;
-/// Largest distance between the panels of a film in its image (pixels). The bar for its time has the same height.
+/// Largest distance between the panels of a film (pixels of the film). The height of the time bar equals the actual distance.
 const SEAM: usize = 8;
-/// Smallest width of the image of a film over that distance, so that coarse pixels do not make a thick bar.
+/// Ratio of the width of all panels of a film to the distance between them. It keeps the distance small for coarse
+/// pixels.
 const SEAMS: usize = 64;
-/// Duration of a frame, and of the last frame (0.1 s).
+/// Duration of each frame except the last, in units of 0.1 s.
 const PACE: u16 = 1;
+/// Duration of the last frame, in units of 0.1 s.
 const REST: u16 = 12;
 
 /// Draws a field as a complete SVG document.
@@ -48,7 +52,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let head = if field.panels.iter().any(|panel| !panel.title.is_empty()) { HEAD } else { 0.0 };
     let each_its_own = field.panels.iter().any(|panel| panel.own.is_some());
     let room = WIDTH - 2.0 * MARGIN - if each_its_own { 0.0 } else { BAR };
-    // In a film, the distance between panels is scaled with the image.
+    // The distance between the panels of a film is scaled with the image.
     let seam = seam(size, count) as f64;
     let widest = if is_film {
         room / (f64::from(size.0) * across as f64 + seam * (across - 1) as f64) * f64::from(size.0)
@@ -92,7 +96,7 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
                 rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
             }
             @if is_film { (clock(field, full, foot)) }
-            // Without a unit of length there is no scale bar.
+            // A field whose lengths have no unit has no scale bar.
             @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, &field.length, panel.0, height - FOOT + 24.0)) }
             @if each_its_own {
                 @for (at, panel_of) in field.panels.iter().enumerate() {
@@ -108,22 +112,22 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     .into_string())
 }
 
-/// Returns the distance between the panels of a film (pixels).
+/// Returns the distance between the panels of a film (pixels of the film).
 fn seam((width, _): (u32, u32), count: usize) -> usize {
     (width as usize * count / SEAMS).clamp(1, SEAM)
 }
 
-/// Frames of a film. The panels are side by side, with a bar for the time below them.
+/// Frames of a film. The panels are side by side, and a bar below them shows the time.
 pub(crate) struct Frames {
-    /// Number of pixels across.
+    /// Width of a frame (pixels).
     pub(crate) width: u32,
-    /// Number of pixels down.
+    /// Height of a frame (pixels).
     pub(crate) height: u32,
     /// Levels of each frame, row by row from the top.
     pub(crate) levels: Vec<Vec<u8>>,
 }
 
-/// Assembles the frames of a film.
+/// Combines the panels of a field into the frames of a film.
 pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     let (width, height) = check(field)?;
     let (wide, high) = (width as usize, height as usize);
@@ -138,7 +142,7 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
                     levels[row * full + left..row * full + left + wide].copy_from_slice(line);
                 }
             }
-            // The level of the rim is too dark on black.
+            // On black, the level of the rim would be too dark for the bar.
             let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
             let done = (position(&field.times, frame) * full as f64).round() as usize;
             for row in high + seam..high + 2 * seam {
@@ -159,7 +163,7 @@ pub fn film(field: &Field) -> io::Result<Vec<u8>> {
     png(field.shades, (width, height), &levels)
 }
 
-/// Returns the last frame of a film as a PNG. It is shown in print, and before the film runs.
+/// Returns the last frame of a film as a PNG. It is shown in print, and until the film starts.
 fn still(field: &Field) -> io::Result<Vec<u8>> {
     let Frames { width, height, levels } = frames(field)?;
     png(field.shades, (width, height), &levels[levels.len() - 1..])
@@ -171,7 +175,7 @@ pub(crate) fn stills(field: &Field) -> io::Result<Vec<Vec<u8>>> {
     field.panels.iter().map(|panel| png(field.shades, size, std::slice::from_ref(&panel.frames[0].levels))).collect()
 }
 
-/// Returns red, green and blue of each level.
+/// Returns the colours of all levels: red, green and blue of each level from 0 to 255.
 pub(crate) fn palette(shades: Shades) -> Vec<u8> {
     (0..=u8::MAX).flat_map(|level| colour(shades, level)).collect()
 }
@@ -182,7 +186,7 @@ fn position(times: &[f64], frame: usize) -> f64 {
     if last > first { ((times[frame] - first) / (last - first)).clamp(0.0, 1.0) } else { 0.0 }
 }
 
-/// Checks that all frames have the same size, and returns width and height.
+/// Returns the width and the height of the frames. Returns an error if frames differ in size or number.
 fn check(field: &Field) -> io::Result<(u32, u32)> {
     let wrong = |what: &str| io::Error::new(io::ErrorKind::InvalidData, what.to_owned());
     let first = field.panels.first().and_then(|panel| panel.frames.first()).ok_or_else(|| wrong("no panel"))?;
@@ -210,14 +214,14 @@ const fn per_row(count: usize, (width, height): (u32, u32)) -> usize {
     }
 }
 
-/// Encodes levels with the colours of their colour map. Several frames make an animation.
+/// Encodes levels as a PNG with the colours of their colour map. Several frames make an animated PNG.
 fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
     let mut encoder = png::Encoder::new(&mut bytes, width, height);
     encoder.set_color(png::ColorType::Indexed);
     encoder.set_depth(png::BitDepth::Eight);
     encoder.set_compression(png::Compression::Balanced);
-    // Similar levels are not similar as palette indices, so filters do not help.
+    // PNG filters do not help, because neighbouring pixels need not have similar palette indices.
     encoder.set_filter(png::Filter::NoFilter);
     encoder.set_palette(palette(shades));
     if frames.len() > 1 {
@@ -237,7 +241,7 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
 
 /// Returns the colour of a level. The colour maps are readable without colour vision, and their brightness changes
 /// evenly. They are cividis (Nuñez, Anderton and Renslow 2018), magma, viridis and ColorBrewer's PuOr, all from the
-/// `colorous` crate.
+/// `colorous` crate, and grey for fringes.
 fn colour(shades: Shades, level: u8) -> [u8; 3] {
     let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
     let (value, light) = (level.saturating_sub(LOW) / LIGHTS, level.saturating_sub(LOW) % LIGHTS);
@@ -259,7 +263,7 @@ fn colour(shades: Shades, level: u8) -> [u8; 3] {
     }
 }
 
-/// Returns the level for a fraction of the range in a colour bar.
+/// Returns the level at a fraction of the range of values, for a colour bar.
 fn level_of(shades: Shades, part: f64) -> u8 {
     if shades == Shades::Lit { lit(part, 1.0) } else { LOW + (f64::from(HIGH - LOW) * part) as u8 }
 }
@@ -292,7 +296,7 @@ fn colour_bar(field: &Field, x: f64, y: f64, height: f64) -> Markup {
     }
 }
 
-/// Draws a horizontal colour bar with values below a panel.
+/// Draws a horizontal colour bar with values, for a panel with its own scale.
 fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 2], width: f64) -> Markup {
     const STEPS: u8 = 48;
     let (factor, unit) = with_prefix(low.abs().max(high.abs()), unit);
@@ -318,7 +322,7 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
     }
 }
 
-/// Draws a scale bar of a round length. `unit` is the length per unit of the drawing, and `name` is the unit of length.
+/// Draws a scale bar with a round length. `unit` is the length per drawing unit, and `name` is the unit of length.
 fn scale_bar(unit: f64, name: &str, room: f64, y: f64) -> Markup {
     let longest = 0.4 * room * unit;
     let decade = 10_f64.powf(longest.log10().floor());
@@ -334,7 +338,7 @@ fn scale_bar(unit: f64, name: &str, room: f64, y: f64) -> Markup {
     }
 }
 
-/// Draws the time axis of a film below the bar in the image.
+/// Draws the time axis of a film below the bar that shows the time.
 fn clock(field: &Field, width: f64, y: f64) -> Markup {
     let (first, last) = (field.times[0], field.times[field.times.len() - 1]);
     let scale = Scale::fit([first, last].into_iter(), false, 0.0, 8);
@@ -353,7 +357,8 @@ fn clock(field: &Field, width: f64, y: f64) -> Markup {
     }
 }
 
-/// Returns the factor of a suitable prefix and the unit with this prefix. Units that take no prefix are unchanged.
+/// Returns a factor and the unit with the corresponding SI prefix. Units without prefixes are unchanged, with the
+/// factor 1.
 fn with_prefix(value: f64, unit: &str) -> (f64, String) {
     let prefixes: &[(f64, &str)] = match unit {
         "Pa" => &[(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")],
@@ -418,7 +423,7 @@ mod tests {
         for frame in 0..3 {
             assert!(reader.next_frame(&mut pixels).is_ok());
             assert_eq!((pixels[0], pixels[40], pixels[80]), (1 + frame, VOID, 101 + frame));
-            // The bar for the time is at 0, one half and 1.
+            // The length of the time bar is 0, one half and 1 of the width of the film.
             let run = pixels[31 * 81..32 * 81].iter().filter(|&&level| level == HIGH).count();
             assert_eq!(run, [0, 41, 81][usize::from(frame)]);
         }

@@ -1,4 +1,5 @@
-//! Force plot of Cundall and Strack: discs, walls, and a bar on each contact whose width is proportional to the force.
+//! Force plot of Cundall and Strack: discs, walls, and a bar on each contact. The width of a bar is proportional to the
+//! force.
 
 use grainbench_harness::figure::{ForceBar, ForcePlot};
 use maud::{Markup, html};
@@ -8,13 +9,13 @@ use crate::number;
 
 const MARGIN: f64 = 24.0;
 const TOP: f64 = 48.0;
-/// Height of the key below the drawing.
+/// Height of the key below the plot (drawing units).
 const KEY: f64 = 64.0;
 const TALLEST: f64 = 620.0;
 const STICKING: &str = "#0072b2";
 const SLIPPING: &str = "#d55e00";
 
-/// Transformation from metres to units of the drawing, with y upwards.
+/// Transformation from metres to drawing units, with y upwards.
 struct View {
     scale: f64,
     left: f64,
@@ -28,7 +29,8 @@ impl View {
     }
 }
 
-/// Draws a force plot as a complete SVG document. Parts that are not finite are left out and counted.
+/// Draws a force plot as a complete SVG document. Parts with coordinates that are not finite are left out, and a note
+/// states their number.
 #[must_use]
 pub fn draw(title: &str, plot: &ForcePlot) -> String {
     let finite = |point: &[f64; 2]| point[0].is_finite() && point[1].is_finite();
@@ -40,7 +42,7 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
     let walls: Vec<_> = plot.walls.iter().filter(|(a, b)| finite(a) && finite(b)).collect();
     let mut bars: Vec<_> =
         plot.bars.iter().filter(|bar| finite(&bar.from) && finite(&bar.to) && bar.force.is_finite()).collect();
-    // Bars of small forces are drawn over bars of large forces, so that none is hidden. Outlines are drawn last.
+    // Bars of small forces are drawn over bars of large forces, so that all are visible. Outlines are drawn last.
     bars.sort_by(|a, b| b.force.abs().total_cmp(&a.force.abs()));
     let missing = plot.discs.len() + plot.walls.len() + plot.bars.len() - discs.len() - walls.len() - bars.len();
 
@@ -106,7 +108,7 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
     .into_string()
 }
 
-/// Draws the outline of a disc, and a radius that rotates with it if the angle is known.
+/// Draws the outline of a disc and, if its angle is known, a radius that rotates with the disc.
 fn disc(view: &View, centre: [f64; 2], radius: f64, angle: f64) -> Markup {
     let (x, y) = view.at(centre);
     let radius = radius * view.scale;
@@ -125,11 +127,12 @@ fn bar_between(view: &View, bar: &ForceBar, width: f64) -> Markup {
     html! { g transform=(place) { (bar_along(length, width, bar.slipping)) } }
 }
 
-/// Draws a bar along x from the origin. Slipping contacts are striped, so that they are visible without colour.
+/// Draws a bar along x from the origin. Bars of slipping contacts are striped, so that they are distinct without
+/// colour.
 fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
     let half = 0.5 * width;
     let colour = if slipping { SLIPPING } else { STICKING };
-    // Stripes as narrow as the bar would look grey.
+    // Stripes as narrow as a thin bar would look grey.
     let gap = width.clamp(4.0, 8.0);
     let count = if slipping { (length / gap).floor() as u32 } else { 0 };
     let stripes: String = (0..count)
@@ -145,7 +148,7 @@ fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
     }
 }
 
-/// Draws the key: the force for a width, and the style of slipping contacts.
+/// Draws the key: the force that corresponds to a width, and the style of slipping contacts.
 fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar], missing: usize) -> Markup {
     let slipping = bars.iter().any(|bar| bar.slipping);
     let shown = round_below(strongest);
@@ -177,7 +180,7 @@ fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar
     }
 }
 
-/// Returns the largest of 1, 2 and 5 times a power of ten that is at most `value`.
+/// Returns the largest number of the form 1, 2 or 5 times a power of ten that is at most `value`.
 fn round_below(value: f64) -> f64 {
     if value <= 0.0 {
         return 0.0;

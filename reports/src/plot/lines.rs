@@ -1,5 +1,5 @@
-//! Lines in the plane, on sheets side by side. Both axes have the same scale, so that angles are preserved, or each
-//! axis fills the available room.
+//! Lines in a plane, on sheets side by side. Either both axes have the same scale, so that angles are preserved, or
+//! each axis fills the available space.
 
 use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
@@ -7,40 +7,42 @@ use maud::{Markup, html};
 use super::scale::Scale;
 use super::{FONTS, WIDTH, text, wrap};
 
-/// Width to the left of a sheet, for its numbers and its label.
+/// Width to the left of a sheet, for numbers and label (drawing units).
 const LEFT: f64 = 62.0;
-/// Width to the right of a sheet.
+/// Width to the right of a sheet (drawing units).
 const RIGHT: f64 = 14.0;
-/// Height above the sheets, for the title of the drawing, and for each line of the titles of the sheets.
+/// Height above the sheets for the title of the drawing (drawing units).
 const TOP: f64 = 50.0;
+/// Height of each line of a sheet title (drawing units).
 const TITLE_LINE: f64 = 16.0;
-/// Height below a sheet, for its numbers and its label.
+/// Height below a sheet, for numbers and label (drawing units).
 const FOOT: f64 = 54.0;
-/// Height of a line of the legend.
+/// Height of a line of the legend (drawing units).
 const LINE: f64 = 24.0;
 const TALLEST: f64 = 620.0;
-/// Height of sheets whose axes have different scales.
+/// Height of sheets whose axes have different scales (drawing units).
 const FREE: f64 = 420.0;
 /// Width of the widest line (drawing units).
 const WIDEST: f64 = 5.0;
-/// Number of line widths. Lines of equal width share a path.
+/// Number of different line widths. Lines of equal width share one SVG path.
 const WIDTHS: usize = 12;
-/// Blue, purple, orange and black.
+/// Colours of the groups of lines: blue, purple, orange and black.
 const COLOURS: [&str; 4] = ["#0072b2", "#8b2f8f", "#e08214", "#222"];
-/// Dashes of each colour on sheets whose axes have different scales. On sheets with one scale, the kinds of lines have
-/// different widths. In both cases they are distinct without colour vision.
+/// Dashes of each group of lines on sheets whose axes have different scales, so that the groups are distinct without colour
+/// vision. On sheets whose axes have the same scale, all lines are solid.
 const DASHES: [Option<&str>; 4] = [None, Some("6 4"), Some("1 3"), None];
-/// Opacity of thin lines on sheets whose axes have different scales, because many lines cross there.
+/// Opacity of thin lines on sheets whose axes have different scales, where many lines cross.
 const THIN: f64 = 0.6;
 
-/// Draws lines as a complete SVG document. Lines that are not finite are left out and counted.
+/// Draws lines as a complete SVG document. Lines with coordinates that are not finite are left out, and a note states
+/// their number.
 #[must_use]
 pub fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
     let some = |length: f64| if length > 0.0 { length } else { 1.0 };
     let across = some(plot.sheets.iter().map(|sheet| size(sheet)[0]).sum());
     let up = some(plot.sheets.iter().map(|sheet| size(sheet)[1]).fold(0.0, f64::max));
-    // Sheets share a scale; the width of each is proportional to its extent.
+    // All sheets share one scale. The width of a sheet is proportional to its extent.
     let widest = (WIDTH - count * (LEFT + RIGHT)) / across;
     let one = widest.min(TALLEST / up);
     let scale = if plot.to_scale { [one, one] } else { [widest, FREE / up] };
@@ -105,7 +107,7 @@ struct View {
 }
 
 impl View {
-    /// Returns the dashes of a kind of lines.
+    /// Returns the dashes of a group of lines.
     fn dash(&self, place: usize) -> Option<&'static str> {
         dash(self.to_scale, place)
     }
@@ -115,7 +117,7 @@ impl View {
         [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
     }
 
-    /// Returns the upper left corner and the size of a rectangle in the drawing.
+    /// Returns x and y of the upper left corner, width and height of a rectangle in the drawing.
     fn rectangle(&self, [low, high]: [[f64; 2]; 2]) -> [String; 4] {
         let ([x, y], [right, foot]) = (self.at([low[0], high[1]]), self.at([high[0], low[1]]));
         [x, y, right - x, foot - y].map(px)
@@ -157,7 +159,7 @@ fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[Stri
                 text x=(px(view.left - 8.0)) y=(px(y + 4.5)) text-anchor="end" { (tick.label.unwrap_or_default()) }
             }
             text x=(px(middle[0])) y=(px(foot + 39.0)) text-anchor="middle" font-size="14" { (across) }
-            // A digit of this size is 7.5 units wide. The label is centred on a line to the left of the widest number.
+            // A digit of this font size is 7.5 units wide. The label is to the left of the widest number.
             @let widest = ticks(1).into_iter().filter_map(|tick| tick.label).map(|label| label.chars().count()).max();
             @let x = px(view.left - (16.0 + 7.5 * widest.unwrap_or(0) as f64).max(40.0));
             text x=(x) y=(px(middle[1])) text-anchor="middle" font-size="14"
@@ -177,7 +179,7 @@ fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> M
         }
         let ([x, y], [to_x, to_y]) = (view.at(*from), view.at(*to));
         let class = (width.clamp(0.0, 1.0) * WIDTHS as f64).round() as usize;
-        // A line that continues the previous line joins its path, so that dashes run on.
+        // A line that continues the previous one is added to the same path, so that the dashes continue.
         if before != Some((*from, class)) {
             paths[class].push_str(&format!("M{x:.1} {y:.1}"));
         }
@@ -193,7 +195,7 @@ fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> M
     }
 }
 
-/// Returns the index and the label of each kind that has lines.
+/// Returns the index and the label of each group that has lines.
 fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
     let most = sheets.iter().map(|sheet| sheet.kinds.len()).max().unwrap_or(0);
     let label = |place: usize| {

@@ -1,4 +1,4 @@
-//! Figures as SVG text that needs no external font or library.
+//! Figures as SVG text. They need no external font or library.
 
 pub mod field;
 pub mod forces;
@@ -13,7 +13,7 @@ use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_scene::text::tamed;
 use thiserror::Error;
 
-/// Width of every figure (drawing units); a page scales it.
+/// Width of every figure (drawing units). Pages scale the figures.
 pub(crate) const WIDTH: f64 = 860.0;
 
 /// Fonts that are available on desktops and phones.
@@ -26,7 +26,7 @@ pub(crate) const FONTS: &str =
 pub struct DrawError {
     /// Name of the figure.
     pub figure: String,
-    /// Property of the figure that cannot be drawn.
+    /// Reason why the figure cannot be drawn.
     pub reason: String,
 }
 
@@ -45,8 +45,8 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
     Ok(markup(&svg))
 }
 
-/// Draws a figure in a size that suits a page. A field gets fewer pixels if it has many. A film is also packed for the
-/// script of the page.
+/// Draws a figure as SVG for a page. A field with many pixels is reduced. A film is also returned in packed form for
+/// the script of the page.
 ///
 /// # Errors
 /// When a field has no panel, or when its frames differ in size or number.
@@ -57,12 +57,12 @@ pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError
     Ok((markup(&field::draw(&figure.title, &light).map_err(wrong)?), reel))
 }
 
-/// Returns a document without characters that XML does not allow.
+/// Returns an SVG document without characters that XML does not allow.
 pub(crate) fn markup(document: &str) -> String {
     tamed(document, |character| matches!(character, '\n' | '\t'))
 }
 
-/// Returns the film of a figure as an animated PNG; none if the figure is no film.
+/// Returns the film of a figure as an animated PNG; none if the figure is not a film.
 ///
 /// # Errors
 /// When the field has no panel, or when its frames differ in size or number.
@@ -75,7 +75,8 @@ pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     }
 }
 
-/// Returns the approximate width of a text. Without font metrics, it uses average widths of a few kinds of letters.
+/// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so average widths
+/// of letters are used.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let letters: f64 = text
         .chars()
@@ -89,7 +90,7 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     letters * size
 }
 
-/// Breaks a text at spaces into lines no wider than `width`, unless a single word is wider.
+/// Breaks a text at spaces into lines of at most `width`. A longer word has a line of its own.
 pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
     let mut lines = vec![String::new()];
     for word in text.split_whitespace() {

@@ -3,16 +3,16 @@
 /// Colour of secondary text.
 pub const FAINT: &str = "#666";
 
-/// Colours of Okabe and Ito, without yellow, which is too pale on white, and without black, which dashed curves have.
+/// Colours of Okabe and Ito without yellow and black. Yellow is too pale on white, and dashed curves are black.
 const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 /// Solvers whose colour and marker are the same in all figures.
 pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 
-/// Shades of dashed curves, which are exact solutions and limits.
+/// Shades of dashed curves: exact solutions and limits.
 const SHADES: [&str; 3] = ["#222", "#666", "#999"];
 
-/// Lengths of dash and gap.
+/// Lengths of dash and gap (drawing units).
 const DASHES: [(u32, u32); 4] = [(9, 5), (3, 4), (16, 5), (5, 10)];
 
 /// Shape of a marker.
@@ -45,8 +45,8 @@ const MARKERS: [Marker; 7] = [
 ];
 
 impl Marker {
-    /// Returns the corners of the shape, with y downwards, for a marker as large as a disc of radius 1. Empty for the
-    /// circle.
+    /// Returns the corners of the shape, with y downwards. The shape is about as large as a disc of radius 1; the
+    /// circle has no corners.
     #[must_use]
     pub fn corners(self) -> Vec<(f64, f64)> {
         let polygon = |count: u32, radii: &[f64], first: f64| {
@@ -71,8 +71,9 @@ impl Marker {
     }
 }
 
-/// Returns the indices of the styles of curves that are not dashed. The only curve of a solver in [`SOLVERS`] has the index
-/// of its solver, and the other curves have the free indices. The name of the solver is the label up to ` (` or `: `.
+/// Returns the indices of the styles of all curves that are not dashed. If a solver in [`SOLVERS`] has exactly one curve, the
+/// curve has the index of the solver. All other curves have indices of no solver in the graph. A label is the name of the
+/// solver, alone or followed by ` (` or `: `.
 #[must_use]
 pub fn places(labels: &[&str]) -> Vec<usize> {
     let solver = |label: &&str| {
@@ -86,26 +87,26 @@ pub fn places(labels: &[&str]) -> Vec<usize> {
     solvers.iter().map(place).collect()
 }
 
-/// Returns the colour of a curve; `place` is an index of [`places`].
+/// Returns the colour of a curve. `place` is an index from [`places`].
 #[must_use]
 pub fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
 }
 
-/// Returns the marker of a curve; `place` is an index of [`places`]. With seven markers and six colours, pairs repeat after
-/// 42 curves.
+/// Returns the marker of a curve. `place` is an index from [`places`]. With seven markers and six colours, combinations
+/// repeat after 42 curves.
 #[must_use]
 pub fn marker(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
 }
 
-/// Returns the shade of a curve; `place` is its index among the dashed curves.
+/// Returns the shade of a dashed curve. `place` is its index among the dashed curves.
 #[must_use]
 pub fn shade(place: usize) -> &'static str {
     SHADES[place % SHADES.len()]
 }
 
-/// Returns the lengths of dash and gap of a curve; `place` is its index among the dashed curves.
+/// Returns the lengths of dash and gap of a dashed curve (drawing units). `place` is its index among the dashed curves.
 #[must_use]
 pub fn dash(place: usize) -> (u32, u32) {
     DASHES[place % DASHES.len()]
@@ -119,7 +120,7 @@ mod tests {
     fn a_solver_has_the_same_colour_in_all_figures() {
         assert_eq!(places(&["lammps", "dem (not asked)", "yade", "mpm: bias 1 %"]), [3, 0, 1, 2]);
         assert_eq!(places(&["Δt = .1", "Δt = .2"]), [0, 1]);
-        // Two curves of one solver need two colours.
+        // Two curves of one solver have two different colours.
         assert_eq!(places(&["dem (μ = .3)", "dem (μ = .6)"]), [1, 2]);
     }
 }

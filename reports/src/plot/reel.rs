@@ -1,5 +1,5 @@
-//! Reduction of fields to a size that suits a page. Pictures get fewer pixels, and films are stored as differences
-//! between frames. A script in the page unpacks the films.
+//! Reduction of fields to a size that is suitable for a page. Pictures get fewer pixels. Films are stored as
+//! differences between frames, which a script in the page unpacks.
 
 use std::io::{self, Write};
 
@@ -12,24 +12,26 @@ use grainbench_harness::raster::{HIGH, LOW, RIM, Raster, VOID};
 
 use super::field::{self, Frames};
 
-/// Largest size of a picture and of a film in a page (B).
+/// Largest size of a picture in a page (bytes).
 const PICTURE: usize = 60_000;
+/// Largest size of a film in a page (bytes).
 const FILM: usize = 45_000;
-/// Smallest number of frames of a film, and smallest width of a picture (pixels).
+/// Smallest number of frames to which a film is reduced.
 const FRAMES: usize = 16;
+/// Smallest width to which a panel is reduced (pixels).
 const ACROSS: u32 = 60;
 
-/// Reduces pixels and frames of a field until it is small enough for a page. Returns the field, and the packed film if
-/// it is one.
+/// Reduces pixels and frames of a field until it is small enough for a page, or cannot be reduced further. Returns the field
+/// and, for a film, its packed form.
 ///
 /// # Errors
-/// When its frames differ in size or number.
+/// When the frames differ in size or number.
 pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     let mut field = field.clone();
     let is_film = field.times.len() > 1;
     loop {
-        // Fast compression makes a film some tenths larger. It reveals a film that is much too large, without slow
-        // compression.
+        // Fast compression makes a film larger by a few tens of percent. It detects films that are much too large
+        // in less time than slow compression.
         let far_too_heavy = is_film && reel(&field, Compression::fast())?.len() > 2 * FILM;
         if far_too_heavy && field.panels[0].frames[0].width >= 2 * ACROSS {
             field = lighter(&field);
@@ -46,16 +48,16 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
     }
 }
 
-/// Halves the number of frames if a film has many, otherwise the number of pixels along each side.
+/// Halves the number of frames if the film has many frames, otherwise the number of pixels along each side.
 fn lighter(field: &Field) -> Field {
     if field.times.len() >= 2 * FRAMES { every_other(field) } else { halved(field) }
 }
 
-/// Returns a film as `width height frames palette levels`. The palette is base64, and the levels are the base64 code of
-/// a zlib stream. After the first frame, the stream holds differences to the previous frame.
+/// Returns a film as text: `width height frames palette levels`. The palette is base64, and the levels are the base64
+/// code of a zlib stream. After the first frame, the stream contains differences from the previous frame.
 ///
 /// # Errors
-/// When its frames differ in size or number.
+/// When the frames differ in size or number.
 fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
     let mut packed = ZlibEncoder::new(Vec::new(), compression);
@@ -72,7 +74,7 @@ fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     Ok(format!("{width} {height} {} {palette} {}", levels.len(), STANDARD.encode(packed.finish()?)))
 }
 
-/// Keeps every second frame, so that the last frame remains.
+/// Removes every second frame, but not the last one.
 fn every_other(field: &Field) -> Field {
     let odd = field.times.len() % 2;
     let keep = |at: &usize| at % 2 != odd;
@@ -93,7 +95,8 @@ fn halved(field: &Field) -> Field {
     Field { panels: field.panels.iter().map(half).collect(), pixel: 2.0 * field.pixel, ..field.clone() }
 }
 
-/// Combines four pixels into one: a rim if at least two are rims, otherwise the mean of the values.
+/// Replaces each square of four pixels by one pixel. The pixel is a rim if at least two of the four are rims, or if one is a
+/// rim and none has a value. Otherwise it has the mean of the values, or is empty if there are none.
 fn halved_raster(raster: &Raster, shades: Shades) -> Raster {
     let (width, height) = (raster.width.div_ceil(2), raster.height.div_ceil(2));
     let at =
@@ -104,7 +107,7 @@ fn halved_raster(raster: &Raster, shades: Shades) -> Raster {
         match (four.into_iter().filter(|level| *level == RIM).count(), values().count() as u32) {
             (2.., _) | (1, 0) => RIM,
             (_, 0) => VOID,
-            // Levels of lit bodies cannot be averaged, because similar levels are not similar in brightness.
+            // Levels of lit bodies cannot be averaged, because they combine a colour and a brightness.
             _ if shades == Shades::Lit => values().next().unwrap_or(0) as u8,
             (_, count) => (values().sum::<u32>() / count) as u8,
         }

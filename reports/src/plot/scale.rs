@@ -6,31 +6,32 @@ use plotters::coord::ranged1d::{DefaultFormatting, KeyPointHint, Ranged};
 
 use crate::number::{power_of_ten, significant};
 
-/// A linear or logarithmic axis.
+/// Scale of a linear or logarithmic axis.
 #[derive(Clone, Debug)]
 pub struct Scale {
     logarithmic: bool,
-    /// Lower end of the axis: a value, or its decimal logarithm.
+    /// Lower end of the axis: the value or, for a logarithmic axis, its decimal logarithm.
     low: f64,
+    /// Upper end of the axis: the value or, for a logarithmic axis, its decimal logarithm.
     high: f64,
-    /// Approximate number of labelled ticks that fit.
+    /// Approximate number of labelled ticks that fit on the axis.
     room: f64,
-    /// Values of the ticks, if they are not at round numbers.
+    /// Values of the ticks; empty for ticks at round numbers.
     levels: Vec<f64>,
 }
 
 /// A tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Tick {
-    /// Value of the tick.
+    /// Value at the tick.
     pub value: f64,
     /// Label; none for minor ticks.
     pub label: Option<String>,
 }
 
 impl Scale {
-    /// Returns an axis that contains all `values`, with `margin` (a fraction of the range) at both ends and about
-    /// `room` labels. Values that the axis cannot show are ignored.
+    /// Returns an axis that contains all `values`. `margin` is a margin at both ends, as a fraction of the range, and
+    /// `room` is the approximate number of labels. Values that the axis cannot show are ignored.
     #[must_use]
     pub fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
         let mut scale = Self {
@@ -50,7 +51,7 @@ impl Scale {
         if scale.low > scale.high {
             (scale.low, scale.high) = (0.0, 1.0);
         }
-        // Each end is halved before the subtraction, because their difference could overflow.
+        // Each end is halved before the subtraction, because the difference of the ends could overflow.
         let least = if logarithmic { 0.25 } else { 1e-12 * scale.low.abs().max(scale.high.abs()) };
         let half = 0.5 * scale.high - 0.5 * scale.low;
         if half <= least {
@@ -71,19 +72,19 @@ impl Scale {
         scale
     }
 
-    /// Places labelled ticks at these values. Without values, ticks are at round numbers.
+    /// Sets the values of the labelled ticks. Without values, ticks are at round numbers.
     #[must_use]
     pub fn at_levels(self, levels: &[f64]) -> Self {
         Self { levels: levels.iter().copied().filter(|level| self.shows(*level)).collect(), ..self }
     }
 
-    /// Returns true if the axis can show a value.
+    /// Returns true if the axis can show a value: it is finite and, on a logarithmic axis, positive.
     #[must_use]
     pub fn shows(&self, value: f64) -> bool {
         value.is_finite() && !(self.logarithmic && value <= 0.0)
     }
 
-    /// Returns the position from 0 at the lower end to 1 at the upper end.
+    /// Returns the position of a value on the axis, from 0 at the lower end to 1 at the upper end.
     #[must_use]
     pub fn position(&self, value: f64) -> f64 {
         (self.place(value) - self.low) / (self.high - self.low)
@@ -94,7 +95,7 @@ impl Scale {
     pub fn ticks(&self) -> Vec<Tick> {
         if !self.levels.is_empty() {
             let plain: Vec<String> = self.levels.iter().map(|level| significant(*level, 3)).collect();
-            // If one label needs a power of ten, all labels have one, so that they are easy to compare.
+            // If one label needs a power of ten, all labels have one, which makes them easy to compare.
             let is_plain = !plain.iter().any(|label| label.contains('×'));
             let label = |value: f64, plain: String| if is_plain { plain } else { with_power(value) };
             let tick = |(&value, plain): (&f64, String)| Tick { value, label: Some(label(value, plain)) };
@@ -107,7 +108,7 @@ impl Scale {
         if self.logarithmic {
             value.log10()
         } else {
-            // The clamp keeps the length of the axis from overflowing.
+            // Limiting the values prevents an overflow of the length of the axis.
             value.clamp(f64::MIN / 4.0, f64::MAX / 4.0)
         }
     }
@@ -117,7 +118,7 @@ impl Scale {
         let decade = 10_f64.powf(rough.log10().floor());
         let bounds = |step: f64| ((self.low / step).ceil(), (self.high / step).floor());
         let fits = |multiple: f64| multiple * decade >= rough * (1.0 - 1e-9);
-        // An axis with fewer numbers cannot be read, so a step that leaves fewer is replaced by a smaller one.
+        // An axis with too few numbers cannot be read, so the step between them is then reduced.
         let least = self.room.min(3.0);
         let enough = |multiple: f64| {
             let (first, last) = bounds(multiple * decade);
@@ -129,7 +130,7 @@ impl Scale {
         let step = multiple.unwrap_or(widest) * decade;
         let (first, last) = bounds(step);
         let largest = self.low.abs().max(self.high.abs());
-        // All labels of an axis have the same exponent, so that they are easy to compare.
+        // All labels of an axis have the same exponent, which makes them easy to compare.
         let exponent = if !(1e-2..1e5).contains(&largest) { largest.log10().floor() as i32 } else { 0 };
         let unit = 10_f64.powi(exponent);
         let decimals = (-(step / unit).log10() - 1e-9).ceil().clamp(0.0, 15.0) as usize;
@@ -156,7 +157,7 @@ impl Scale {
         let decades = self.high - self.low;
         let stride = (decades / self.room).ceil().max(1.0) as i32;
         let whole = self.high.floor() - self.low.ceil() + 1.0;
-        // The number of labels at 1, 2 and 5 within the axis.
+        // Number of labels at 1, 2 and 5 times powers of ten within the axis.
         let is_inside = |place: f64| place >= self.low - 1e-9 && place <= self.high + 1e-9;
         let usual = (first..=last)
             .flat_map(|decade| [1.0_f64, 2.0, 5.0].map(|multiple| f64::from(decade) + multiple.log10()))
@@ -171,13 +172,13 @@ impl Scale {
                 }
                 let label = match multiple {
                     1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
-                    // A short axis has too few powers of ten, so it also gets labels at 2 and 5.
+                    // An axis with few powers of ten also has labels at 2 and 5.
                     2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
-                    // The shortest axes get labels at all multiples.
+                    // A very short axis has labels at all multiples.
                     2..=9 if usual < 2 => Some(format!("{multiple}×{}", power_of_ten(decade))),
                     _ => None,
                 };
-                // Too many ticks would make the grid a grey area.
+                // With too many ticks, the grid would be a grey area.
                 let fine = if multiple == 1 { 40.0 } else { 8.0 };
                 if label.is_some() || decades <= fine {
                     ticks.push(Tick { value: 10_f64.powf(place), label });
@@ -188,7 +189,7 @@ impl Scale {
     }
 }
 
-/// Returns a positive value as a mantissa and a power of ten. A mantissa of 1 is left out.
+/// Returns a positive value as a mantissa and a power of ten. A mantissa of 1 is omitted.
 fn with_power(value: f64) -> String {
     if value <= 0.0 {
         return significant(value, 3);

@@ -1,18 +1,19 @@
-//! Symbols with subscripts: a single letter, an underscore and the subscript, such as `v_t`.
+//! Symbols with subscripts in texts. A symbol is a single letter, followed by an underscore and the subscript, such as
+//! `v_t`.
 
 use maud::{Markup, html};
 
 /// A part of a text.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Part<'a> {
-    /// Text on the line.
+    /// Text on the baseline.
     Plain(&'a str),
-    /// Subscript.
+    /// Text of a subscript.
     Sub(&'a str),
 }
 
-/// Splits a text at its subscripts. Names such as `nine_discs` have none, because more than one letter is before the
-/// underscore.
+/// Splits a text into plain parts and subscripts. Names such as `nine_discs` have no subscript, because more than one
+/// letter precedes the underscore.
 pub(crate) fn parts(text: &str) -> Vec<Part<'_>> {
     let (mut parts, mut from) = (Vec::new(), 0);
     for (at, _) in text.match_indices('_') {
@@ -40,7 +41,7 @@ pub(crate) fn svg(text: &str) -> Markup {
         @for (at, part) in parts.iter().enumerate() {
             @match part {
                 Part::Plain(text) if at == 0 => { (text) }
-                // Returns to the line: 0.3 of a font that is 0.75 as large.
+                // Returns to the baseline: the shift was 0.3 of a font that is 0.75 as large.
                 Part::Plain(text) => { tspan dy="-.225em" { (text) } }
                 Part::Sub(text) => { tspan dy=".3em" font-size=".75em" { (text) } }
             }

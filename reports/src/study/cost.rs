@@ -1,4 +1,4 @@
-//! Cost of accuracy: Pareto fronts, cheapest settings, and measured against expected values.
+//! Cost of accuracy: Pareto fronts, cheapest settings, and figures of measured against expected values.
 
 use super::Study;
 use super::point::{Counts, Diagram, Point, PointStatus};
@@ -6,12 +6,13 @@ use crate::number;
 use crate::plot::palette::SOLVERS;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Errors for which the cost is stated.
+/// Errors for which the cost is stated, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
-/// Smallest plotted error; smaller errors are rounding and are plotted here.
+/// Smallest plotted error. Smaller errors are rounding errors and are plotted at this value.
 const LEAST: f64 = 1e-16;
 
-/// Returns the Pareto front: the points that no other point improves in both error and time, in the order of time.
+/// Returns the Pareto front in the order of time: all points for which no other point has both less error and less
+/// time.
 #[must_use]
 pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
     let mut sorted: Vec<(f64, f64, &Point)> =
@@ -26,7 +27,7 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
     sorted.into_iter().map(|(_, _, point)| point).collect()
 }
 
-/// Returns the solvers of some diagrams: ours first, then all others with points.
+/// Returns the solvers of some diagrams: all of [`SOLVERS`], followed by all other solvers that have points.
 pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
     let mut lines = SOLVERS.to_vec();
     for point in diagrams.into_iter().flat_map(|diagram| &diagram.points) {
@@ -37,19 +38,19 @@ pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str
     lines
 }
 
-/// Returns the points of a solver.
+/// Returns the points of a solver in a diagram.
 pub fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
     diagram.points.iter().filter(move |point| point.solver == line)
 }
 
-/// Returns the cheapest point of a solver within an error.
+/// Returns the point with the shortest time of a solver with at most the error `target`.
 #[must_use]
 pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<&'a Point> {
     let within = of_line(diagram, line).filter(|point| point.place().is_some_and(|(error, _)| error <= target));
     within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
 }
 
-/// Returns true if no other solver reaches an error in less time.
+/// Returns true if no other solver reaches the error `target` in less time.
 #[must_use]
 pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
     let time = |line: &str| cheapest(diagram, line, target).and_then(|point| point.wall_seconds);
@@ -57,16 +58,16 @@ pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
     time(line).is_some_and(|mine| others().all(|other| mine <= other))
 }
 
-/// Returns true if a solver reaches an error in a time that cannot be measured, because the start-up time varies by
-/// more.
+/// Returns true if a solver reaches the error `target`, but in a time that is shorter than the variation of its
+/// start-up time.
 #[must_use]
 pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {
     let is_reached = |point: &Point| point.error.is_some_and(|error| error <= target) && point.wall_seconds.is_none();
     cheapest(diagram, line, target).is_none() && of_line(diagram, line).any(is_reached)
 }
 
-/// Returns one sentence for an error: the cheapest setting of each solver, and its time as a multiple of the shortest
-/// time.
+/// Returns a sentence about the cost of an error of at most `target`. It names the cheapest setting of each solver, with the
+/// time of the setting divided by the shortest time of all solvers.
 #[must_use]
 pub fn sentence(diagram: &Diagram, target: f64) -> String {
     let lines = lines([diagram]);
@@ -93,13 +94,13 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
         }
         let best = of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
         if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
-            parts.push(format!("{line} not, at best {}", number::fraction(best)));
+            parts.push(format!("{line} does not reach it (at best {})", number::fraction(best)));
         }
     }
     format!("{}: {}.", number::fraction(target), parts.join("; "))
 }
 
-/// Returns the figure of error against time.
+/// Returns the figure of error against time for the points of a diagram.
 #[must_use]
 pub fn figure(diagram: &Diagram) -> Figure {
     let drawn = |point: &Point| point.place().map(|(error, time)| (time, error.max(LEAST)));
@@ -111,7 +112,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
         let own = front(of_line(diagram, line));
         let is_own = |point: &Point| own.iter().any(|other| std::ptr::eq(*other, point));
         let label = match of_line(diagram, line).next() {
-            None => format!("{line} (not asked)"),
+            None => format!("{line} (not measured)"),
             Some(_) if !own.is_empty() => line.to_owned(),
             Some(point) => format!("{line} ({})", word(point.standing)),
         };
@@ -130,7 +131,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
         bars.extend(floors(diagram, line));
     }
     if !bars.is_empty() {
-        curves.push(Curve::new("floor: error that refining does not reduce", Stroke::Bars, bars));
+        curves.push(Curve::new("floor: error that refinement does not reduce", Stroke::Bars, bars));
     }
     let all = front(&diagram.points);
     let mut stairs = Vec::new();
@@ -143,13 +144,13 @@ pub fn figure(diagram: &Diagram) -> Figure {
         curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
     }
     let failures = diagram.points.iter().any(|point| point.standing == PointStatus::Failed);
-    let crosses = if failures { " Crosses at the top are failed runs, at the time until the failure." } else { "" };
+    let crosses = if failures { " Crosses at the top are failed runs, drawn at the time of the failure." } else { "" };
     Figure::graph(
         &crate::page::slug(&diagram.quantity),
         &format!("{}, {}: {}", diagram.case, diagram.variant, diagram.quantity),
         &format!(
-            "Every point is a setting. Filled markers joined by a line: no other setting of this solver is both faster \
-             and more accurate. Hollow markers: other settings.{crosses} Exact solution: {}.",
+            "Each point is a setting. Filled markers on a line are settings for which no other setting of this solver \
+             is both faster and more accurate. Hollow markers are the remaining settings.{crosses} Exact solution: {}.",
             diagram.source
         ),
         [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error|")],
@@ -166,7 +167,7 @@ const fn word(standing: PointStatus) -> &'static str {
     }
 }
 
-/// Returns bars at the error floors of a solver, from the first point on a floor to the last.
+/// Returns the bars at the error floors of a solver, each from the first to the last point on the floor.
 fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     let mut names: Vec<(&str, &str)> = of_line(diagram, line)
         .filter_map(|point| point.floor.as_deref().map(|floor| (floor, point.knobs.as_str())))
@@ -188,8 +189,8 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     bars
 }
 
-/// Returns figures of measured against expected values over all cases, one for each unit. Each solver has its point
-/// with the smallest error for each quantity.
+/// Returns figures of measured against expected values over all cases, one for each unit. For each quantity, a solver
+/// has the point with its smallest error.
 #[must_use]
 pub fn scatters(study: &Study) -> Vec<Figure> {
     let mut units: Vec<&str> = study.diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
@@ -198,7 +199,7 @@ pub fn scatters(study: &Study) -> Vec<Figure> {
     units.iter().filter_map(|unit| scatter(study, unit)).collect()
 }
 
-/// Returns the point of a solver with the smallest error in each diagram of a unit.
+/// Returns the point with the smallest error of a solver, for each diagram whose quantity has this unit.
 fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     let cheapest = |diagram: &'a Diagram| {
         let points = of_line(diagram, line).filter(|point| point.unit == unit && point.place().is_some());
@@ -207,8 +208,8 @@ fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     study.diagrams.iter().filter_map(cheapest).collect()
 }
 
-/// Returns bias and spread of measured/expected. The bias is the geometric mean, and the spread is the standard
-/// deviation of the logarithm.
+/// Returns the bias and the spread of measured/expected. The bias is the geometric mean, and the spread is the standard
+/// deviation of the natural logarithm.
 #[must_use]
 pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = points
@@ -252,8 +253,8 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
     Some(Figure::graph(
         &format!("measured-expected-{}", if unit == "1" { "ratio" } else { unit }),
         &format!("Measured against expected: {words}"),
-        "One marker for each solver and case, at the setting with the smallest error. Bias and spread are the mean and the \
-         standard deviation of ln(measured/expected).",
+        "Each marker is one solver in one case, at the setting with the smallest error. Bias and spread are the mean \
+         and the standard deviation of ln(measured/expected).",
         [Axis::log("expected"), Axis::log("measured")],
         curves,
     ))
@@ -262,7 +263,7 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
 /// Returns `points.csv` of a study.
 ///
 /// # Errors
-/// When a line cannot be encoded; this does not occur in studies of this project.
+/// When a line cannot be encoded. This does not occur in studies of this project.
 pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
     let mut table = csv::Writer::from_writer(Vec::new());
     let mut head = vec![

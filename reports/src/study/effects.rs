@@ -1,4 +1,4 @@
-//! Study of effects: the effects of each scene, and the error and cost of leaving them out.
+//! Study of effects: the effects that each scene contains, and the error and cost if an effect is left out.
 
 use super::Study;
 use crate::number;
@@ -10,11 +10,11 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum EffectResult {
-    /// The effect is on, and without it a claim fails.
+    /// The effect is on, and a claim fails without it.
     Needed,
-    /// The effect is on, and without it no claimed quantity changes by more than its tolerance.
+    /// The effect is on, and no claim fails without it.
     NotWorthSimulating,
-    /// The effect is on, and without it no claim can be judged.
+    /// The effect is on, but no claim or probe shows its influence.
     Untold,
     /// The effect is off. Compiled in with a neutral value, it changes no bit of the result.
     Inert,
@@ -43,9 +43,9 @@ pub struct Shift {
     pub quantity: String,
     /// Name of the solver of the claim.
     pub solver: String,
-    /// Signed error with the effect.
+    /// Signed error with the effect, as a fraction of the scale.
     pub with: Option<f64>,
-    /// Signed error without the effect; none if the run crashed.
+    /// Signed error without the effect, as a fraction of the scale; none if the run crashed or the value is not finite.
     pub without: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: f64,
@@ -64,17 +64,17 @@ pub struct Entry {
     pub effect: String,
     /// True if the scene has the effect.
     pub on: bool,
-    /// Key of the scene file that switches it on.
+    /// Key of the scene file that switches the effect on.
     pub key: String,
     /// Conclusion about the effect in this scene.
     pub worth: EffectResult,
     /// Changes of all claimed quantities without the effect.
     pub shifts: Vec<Shift>,
-    /// Number of particle-steps and contact evaluations with the effect, divided by the number without it.
+    /// Number of particle-steps and contact evaluations with the effect, divided by their number without it.
     pub counts: Option<f64>,
-    /// Processor time with the effect, divided by the time without it.
+    /// Processor time with the effect, divided by the processor time without it.
     pub time: Option<f64>,
-    /// Solvers that were run with a neutral value of an effect that is off.
+    /// Solvers that ran the scene with a neutral value of an effect that is off.
     #[serde(default)]
     pub tried: Vec<String>,
 }
@@ -87,9 +87,9 @@ pub(crate) fn render(study: &Study) -> Markup {
             p.kicker { "grainbench" }
             h1 { "Influence of each effect" }
             p.lead {
-                "Effects required by each scene and the key that enables each one. Each enabled effect is switched \
-                 off: the page shows the change in every claimed quantity and in the cost. Each disabled effect is \
-                 compiled in with a neutral value and must change no bit."
+                "The page lists the effects of each scene and the key that enables each effect. Each enabled effect is \
+                 switched off, and the page shows the change in every claimed quantity and in the cost. Each disabled \
+                 effect is compiled in with a neutral value and must change no bit."
             }
             p {
                 (count(EffectResult::Needed)) " needed, "
@@ -98,7 +98,7 @@ pub(crate) fn render(study: &Study) -> Markup {
             }
             h3 { "Scenes by effects" }
             (heat(&study.ledger))
-            h3 { "The ledger" }
+            h3 { "All effects" }
             (table(&study.ledger))
         }
     }
@@ -112,12 +112,12 @@ const fn class(worth: EffectResult) -> &'static str {
     }
 }
 
-/// Returns the quantity with the largest change in units of its tolerance.
+/// Returns the quantity whose error changes most, relative to its tolerance.
 fn farthest(entry: &Entry) -> Option<&Shift> {
     entry.shifts.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))
 }
 
-/// Returns the change of the error in units of the tolerance; infinite if the run crashed.
+/// Returns the change of the error without the effect, divided by the tolerance; infinity if an error is missing.
 fn moved(shift: &Shift) -> f64 {
     match (shift.with, shift.without) {
         (Some(with), Some(without)) => (without - with).abs() / shift.allowed.max(f64::MIN_POSITIVE),
@@ -125,13 +125,13 @@ fn moved(shift: &Shift) -> f64 {
     }
 }
 
-/// Returns the change of the answer without the effect, as a fraction of its scale; none if a value is missing.
+/// Returns the change of the error without the effect, as a fraction of the scale; none if an error is missing.
 pub(crate) fn change(shift: &Shift) -> Option<f64> {
     Some((shift.without? - shift.with?).abs()).filter(|change| change.is_finite())
 }
 
-/// Returns the claimed quantity with the median change, or one without a value. If claims fail without the effect, only
-/// these count.
+/// Returns the quantity with the median change or, if no change is known, the first quantity. If claims fail without
+/// the effect, only their quantities count.
 pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
     let fails = entry.shifts.iter().any(|shift| shift.red && change(shift).is_some());
     let mut shifts: Vec<&Shift> =
@@ -140,7 +140,7 @@ pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
     shifts.get(shifts.len() / 2).copied().or_else(|| entry.shifts.first())
 }
 
-/// Renders the matrix of scenes and effects. Colour and number show the change without the effect.
+/// Renders the matrix of scenes and effects. Colour and number of a cell show the change without the effect.
 pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let mut effects: Vec<&str> = Vec::new();
     let mut scenes: Vec<(&str, &str)> = Vec::new();
@@ -170,8 +170,10 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     };
     html! {
         p.note {
-            "Enabled effect: change of the result without it (median over the claims), and its cost (particle steps "
-            "and contact evaluations, with it / without it). Green: every claim passes without it. Disabled effect: = "
+            "For an enabled effect: the change of the result without it (median over the claims), and its cost \
+             (particle steps "
+            "and contact evaluations, with it / without it). Green means that every claim passes without it. For a \
+             disabled effect: = "
             "if it changes no bit, ≠ if it does."
         }
         (scrolling("Scenes by effects", &table))
@@ -206,8 +208,8 @@ fn table(ledger: &[Entry]) -> Markup {
                 tr {
                     th scope="col" { "Scene" }
                     th scope="col" { "Effect" }
-                    th scope="col" { "Turned on by" }
-                    th scope="col" { "Worth" }
+                    th scope="col" { "Enabled by" }
+                    th scope="col" { "Result" }
                     th scope="col" { "Largest change without it" }
                     th.n scope="col" { "Red claims" }
                     th.n scope="col" { "Counts, with / without" }
@@ -219,7 +221,7 @@ fn table(ledger: &[Entry]) -> Markup {
                     tr class=(class(entry.worth)) {
                         th scope="row" { (entry.case) @if !entry.variant.is_empty() { "/" (entry.variant) } }
                         td { (entry.effect) }
-                        td { @if entry.on { (entry.key) } @else { "off; tried with " (entry.tried.join(", ")) } }
+                        td { @if entry.on { (entry.key) } @else { "disabled; tried with " (entry.tried.join(", ")) } }
                         td.verdict { span class={ "mark " (class(entry.worth)) } { (entry.worth.word()) } }
                         td.wide {
                             @if let Some(shift) = farthest(entry) {
@@ -239,5 +241,5 @@ fn table(ledger: &[Entry]) -> Markup {
             }
         }
     };
-    scrolling("The ledger", &table)
+    scrolling("All effects", &table)
 }

@@ -1,4 +1,4 @@
-//! Cost of a step for 1, 100 and 10,000 grains, without start-up: data, table and figure.
+//! Cost of a step with 1, 100 and 10,000 grains, without start-up: data, table and figure.
 
 use super::page::figure as framed;
 use crate::number;
@@ -9,12 +9,12 @@ use grainbench_harness::statistics::median;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// Cost of a solver for a scene with a number of grains.
+/// Cost of a step of a solver in a scene with a given number of grains.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Load {
     /// Number of grains.
     pub grains: usize,
-    /// Name of the solver, such as `dem:lammps`.
+    /// Solver and contact convention, such as `dem:lammps`.
     pub solver: String,
     /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
@@ -24,23 +24,24 @@ pub struct Load {
     pub absent: Option<String>,
 }
 
-/// Timing from the difference of a long and a short run, in processor time.
+/// Processor times from the difference between a long and a short run.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TimingDifference {
-    /// Everything except steps: reading, set-up, initial neighbour search, relaxation and output (s).
+    /// Time of everything except the steps (s): reading, set-up, first neighbour search, relaxation and output.
     pub start_up: f64,
-    /// Processor time of one step (s).
+    /// Time of one step (s).
     pub step: f64,
-    /// Processor time per second of simulated time (s).
+    /// Time per second of simulated time (s).
     pub second: f64,
 }
 
-/// Returns the median over the timings.
+/// Returns the median of a value over the timings.
 fn middle(load: &Load, value: fn(&TimingDifference) -> f64) -> f64 {
     median(&load.laps.iter().map(value).collect::<Vec<_>>())
 }
 
-/// Returns the figure of processor time per second of simulated time against grains; none without timings.
+/// Returns the figure of processor time per second of simulated time against the number of grains; none without
+/// timings.
 pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
     let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
     for load in loads.iter().filter(|load| !load.laps.is_empty()) {
@@ -56,9 +57,9 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
         Figure::graph(
             "cost-against-grains",
             "Discs in a box: one, a hundred, ten thousand",
-            "Processor time of one thread for one second of the motion, without start-up. A level line means that the \
+            "Processor time of one thread for one simulated second, without start-up. A horizontal line means that the \
              fixed cost of a step dominates. A line of slope 1 means that the cost per grain is constant.",
-            [Axis::log("grains"), Axis::log("processor time a simulated second (s)")],
+            [Axis::log("grains"), Axis::log("processor time per simulated second (s)")],
             curves,
         )
     })

@@ -20,33 +20,33 @@ use std::collections::BTreeMap;
 
 pub use store::{STUDY_FILE, kept_text, load_study, points_of, study_json, write_study};
 
-/// Data of a study. They suffice to write every output again without a solver.
+/// Data of a study. With them, all output files can be written again without a solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Study {
     /// Version, date, machine and options of the measurement.
     pub provenance: Provenance,
-    /// Cost of accuracy by quantity.
+    /// Cost of accuracy, one diagram per quantity.
     #[serde(default)]
     pub diagrams: Vec<Diagram>,
-    /// Cost model of a step.
+    /// Cost of the parts of a step.
     #[serde(default)]
     pub model: Option<Model>,
     /// Cost of a step against the number of grains.
     #[serde(default)]
     pub loads: Vec<Load>,
-    /// Changes since another session.
+    /// Changes since an earlier study.
     #[serde(default)]
     pub changes: Vec<Change>,
-    /// Session that this one was compared with.
+    /// Name of the earlier study with which this study was compared.
     #[serde(default)]
     pub against: Option<String>,
-    /// Largest stable steps.
+    /// Largest stable time steps.
     #[serde(default)]
     pub limits: Vec<Limit>,
     /// One result for each hard case and solver.
     #[serde(default)]
     pub hard: Vec<HardCaseResult>,
-    /// Entries of the study of effects.
+    /// One entry for each scene and effect.
     #[serde(default)]
     pub ledger: Vec<Entry>,
     /// Hashes of the solvers' sources at the time of the measurement, by solver name.

@@ -10,7 +10,7 @@ use grainbench_harness::figure::Figure;
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
-/// Renders the whole page.
+/// Renders the page of a study.
 ///
 /// # Errors
 /// When a figure cannot be drawn.
@@ -52,7 +52,7 @@ pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
     })
 }
 
-/// Returns one sentence for each error: the cost over all cases.
+/// Returns one sentence for each error, about the cost over all cases.
 fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
     let sentence = |(at, target): (usize, f64)| {
         let parts: Vec<String> = costs
@@ -63,8 +63,8 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
                 let wins =
                     study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
                 Some(format!(
-                    "{} in {} of {} quantities, in {wins} the cheapest, on average at {} times the cheapest in {} that others \
-                     reach too",
+                    "{} reaches it in {} of {} quantities and is the cheapest in {wins}; its mean cost is {} times the \
+                     cheapest over the {} quantities that other solvers also reach",
                     line.solver,
                     factor.reached,
                     line.asked,
@@ -87,8 +87,9 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs" }
             p.lead {
-                "Each solver over its parameters, for each quantity with an exact solution: error over computing time. \
-                 Times are medians of interleaved repetitions, one run at a time; counts do not depend on the machine."
+                "Error against computing time of each solver over its parameters, for each quantity with an exact \
+                 solution. Times are medians of interleaved repetitions, one run at a time. Counts do not depend on \
+                 the machine."
             }
             @if let Some(old) = &study.against { (changes(study, old)) }
             div.overview {
@@ -121,7 +122,7 @@ fn changes(study: &Study, old: &str) -> Markup {
     }
 }
 
-/// Renders a table with one row per diagram: the cheapest setting of each solver at an error of 1 %.
+/// Renders a table with one row per diagram and the cheapest setting of each solver at an error of 1 %.
 fn which(study: &Study) -> Markup {
     let lines = cost::lines(&study.diagrams);
     let table = html! {
@@ -159,7 +160,7 @@ fn which(study: &Study) -> Markup {
     scrolling("Which solver for which scene at 1 %", &table)
 }
 
-/// Returns the reason why a solver has no setting at 1 %.
+/// Returns the reason why a solver has no setting with an error of at most 1 %.
 fn not_reached(diagram: &Diagram, line: &str) -> String {
     if cost::is_hidden(diagram, line, 0.01) {
         return "in less time than the variation of its start-up".to_owned();
@@ -192,7 +193,7 @@ fn cost_section(diagram: &Diagram, anchor: &str) -> Result<Markup, DrawError> {
     })
 }
 
-/// Renders the reasons why points have no error, each once per solver.
+/// Renders the reasons why points have no error. Each reason appears once per solver.
 fn reasons(diagram: &Diagram) -> Markup {
     let mut reasons: Vec<(&str, &str)> = diagram
         .points

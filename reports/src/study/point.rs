@@ -1,39 +1,39 @@
-//! Points of a work–precision diagram: error and cost.
+//! Points of a work–precision diagram: error and computing cost.
 
 use grainbench_scene::record::Cost;
 use serde::{Deserialize, Serialize};
 
-/// Status of a point: measured, failed, or without a usable solver.
+/// Status of a point.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointStatus {
-    /// The point has an error and a time.
+    /// The point has an error and a computing time.
     Measured,
-    /// The run crashed, or its error is not finite. It is plotted at the time of the failure.
+    /// The run crashed, or its error is not finite. The point is plotted at the time until the failure.
     Failed,
-    /// The solver cannot represent the scene.
+    /// The solver cannot represent the scene, or the record lacks the quantity.
     Unsupported,
     /// The program is not installed.
     NotAvailable,
 }
 
-/// Counts of a run. They do not depend on the machine, and are equal in repeated runs. Values that a program does not
-/// count are absent.
+/// Operation counts of a run. They do not depend on the machine, and are equal in repeated runs. A count that a program
+/// does not report is absent.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Counts {
     /// Number of steps.
     pub steps: u64,
     /// Number of steps times number of grains, or of material points.
     pub particle_steps: u64,
-    /// Number of evaluated contact laws.
+    /// Number of evaluations of contact laws.
     pub contact_evaluations: Option<u64>,
     /// Number of listed pairs checked for contact.
     pub pair_tests: Option<u64>,
-    /// Number of neighbour lists built.
+    /// Number of times that the neighbour list was built.
     pub neighbour_builds: Option<u64>,
     /// Number of grid nodes that were updated, over all steps.
     pub node_updates: Option<u64>,
-    /// Largest memory of the state (B).
+    /// Largest memory of the solver's state (bytes).
     pub bytes: Option<u64>,
 }
 
@@ -52,7 +52,7 @@ impl From<&Cost> for Counts {
 }
 
 impl Counts {
-    /// Returns names and values in a fixed order.
+    /// Returns the name and the value of each count in a fixed order.
     #[must_use]
     pub const fn named(&self) -> [(&'static str, Option<u64>); 7] {
         [
@@ -72,16 +72,16 @@ impl Counts {
 pub struct Timing {
     /// Wall-clock time of the stepping loop.
     pub wall: f64,
-    /// Processor time of the whole run, including start-up. For an external program, it is the time of its process
-    /// minus the time of a run of one step.
+    /// Processor time of the whole run, including start-up. For another program, the time of a run with one step is
+    /// subtracted. For a program that keeps running between runs, it is the wall-clock time of the stepping loop.
     pub cpu: f64,
     /// Wall-clock time of everything except the stepping loop.
     pub start_up: f64,
-    /// Processor time of a fixed computation just before the run, which measures the present speed of the machine.
+    /// Processor time of a fixed computation just before the run. It measures the present speed of the machine.
     pub reference: f64,
 }
 
-/// A point: one run of a setting, with error and cost.
+/// Point of a diagram: a setting of a solver, with error and computing cost.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Case, such as `backspin`.
@@ -92,13 +92,13 @@ pub struct Point {
     pub solver: String,
     /// Resolution in words, such as `dt=.1`.
     pub resolution: String,
-    /// Other parameters in words, such as `overlap/R = 1e-3`; empty if there are none.
+    /// Values of further parameters, such as `overlap/R = 1e-3`; empty if there are none.
     pub knobs: String,
     /// Measured quantity.
     pub quantity: String,
     /// Unit of `value` and `expected`.
     pub unit: String,
-    /// Measured or failed, or the reason why there is no measurement.
+    /// Status of the point.
     pub standing: PointStatus,
     /// Measured value.
     pub value: Option<f64>,
@@ -106,38 +106,38 @@ pub struct Point {
     pub expected: Option<f64>,
     /// |value − expected|/scale.
     pub error: Option<f64>,
-    /// Cause of the error, if a finer resolution no longer reduces it.
+    /// Cause of the error, if a finer resolution does not reduce it further.
     pub floor: Option<String>,
-    /// Median wall-clock time of the stepping loop (s). For a failed run, it is the time until the failure.
+    /// Median wall-clock time of the stepping loop (s). For a failed run, the time until the failure.
     pub wall_seconds: Option<f64>,
-    /// Range of the repetitions divided by their median; none for one repetition.
+    /// Range of the wall-clock times divided by their median; none for a single repetition.
     pub wall_spread: Option<f64>,
-    /// Median processor time of the run (s).
+    /// Median processor time of the whole run (s).
     pub cpu_seconds: Option<f64>,
-    /// Median time of start-up (s).
+    /// Median start-up time (s).
     pub start_up_seconds: Option<f64>,
     /// Timings of all repetitions.
     pub repetitions: Vec<Timing>,
-    /// Counts of the run.
+    /// Operation counts of the run.
     pub counts: Counts,
     /// Reason why the point has no error.
     pub detail: Option<String>,
 }
 
 impl Point {
-    /// Returns a key that identifies the point in every session.
+    /// Returns a key that identifies the point in all studies.
     #[must_use]
     pub fn key(&self) -> [&str; 6] {
         [&self.case, &self.variant, &self.quantity, &self.solver, &self.resolution, &self.knobs]
     }
 
-    /// Returns the resolution and the other parameters in words.
+    /// Returns the resolution and the further parameters in words.
     #[must_use]
     pub fn setting(&self) -> String {
         if self.knobs.is_empty() { self.resolution.clone() } else { format!("{}, {}", self.resolution, self.knobs) }
     }
 
-    /// Returns error and wall-clock time (s), if the point has both.
+    /// Returns the error and the wall-clock time (s); none if one of them is missing.
     #[must_use]
     pub fn place(&self) -> Option<(f64, f64)> {
         match (self.standing, self.error, self.wall_seconds) {
@@ -147,7 +147,7 @@ impl Point {
     }
 }
 
-/// Points of one quantity for all solvers.
+/// Points of a target quantity with all solvers.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Diagram {
     /// Name of the case.
@@ -162,7 +162,7 @@ pub struct Diagram {
     pub points: Vec<Point>,
 }
 
-/// Difference between two sessions.
+/// Change since an earlier study.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Change {
     /// Point or solver that changed.

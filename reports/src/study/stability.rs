@@ -1,4 +1,4 @@
-//! Study of stability: largest stable steps and hard cases, with their figures and tables.
+//! Study of stability: largest stable time steps and hard cases, with figures and tables.
 
 use super::Study;
 use super::page::figure;
@@ -10,32 +10,32 @@ use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// Largest stable step of an assembly with one solver.
+/// Largest stable time step of an assembly with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Assembly, such as `square lattice of discs`.
     pub scene: String,
-    /// Name of a parameter other than the step, such as `k_s/k_n`; empty if there is none.
+    /// Name of a parameter other than the time step, such as `k_s/k_n`; empty if there is none.
     pub knob: String,
     /// Value of the parameter.
     pub at: Option<f64>,
     /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Unit of the steps, such as `√(m/k)`.
+    /// Unit of the time steps, such as `√(m/k)`.
     pub unit: String,
-    /// Largest step that was stable.
+    /// Largest time step that was stable.
     pub found: Option<f64>,
-    /// Smallest step that was unstable.
+    /// Smallest time step that was unstable.
     pub unstable: Option<f64>,
     /// Exact stability limit, in the same unit; none if it is unknown.
     pub exact: Option<f64>,
     /// (found − exact)/exact.
     pub error: Option<f64>,
-    /// Default step.
+    /// Default time step of the solver.
     pub default: Option<f64>,
     /// `found` divided by `default`.
     pub margin: Option<f64>,
-    /// Description of the failure above the limit, or reason why no limit was found.
+    /// Description of the failure above the limit, or the reason why no limit was found.
     pub detail: String,
 }
 
@@ -43,13 +43,15 @@ pub struct Limit {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Hardness {
-    /// The required property holds at the default step.
+    /// The required property holds at the default time step.
     Holds,
-    /// The required property holds only at a smaller step.
+    /// The required property holds only at a smaller time step.
     HoldsAtASmallerStep,
-    /// The run ends with an error that states time, place and reason, at the default step and at smaller ones.
+    /// The run at the default time step ends with an error that states time, place and reason. The required property does
+    /// not hold at smaller time steps either.
     TypedFailure,
-    /// The run ends without an error, and the required property does not hold.
+    /// The run at the default time step ends without an error, but the required property does not hold. It does not hold
+    /// at smaller time steps either.
     QuietlyWrong,
     /// The solver cannot represent the scene.
     Unsupported,
@@ -81,15 +83,15 @@ pub struct HardCaseResult {
     pub must: String,
     /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Outcome at the default step and at smaller steps.
+    /// Outcome at the default time step and at smaller ones.
     pub standing: Hardness,
     /// Resolution at which the property holds, or the default resolution.
     pub resolution: String,
-    /// Observation at the default step.
+    /// Failure at the default time step, or the reason why the solver cannot run the case; empty if the property holds.
     pub detail: String,
 }
 
-/// Returns the values without duplicates, in the order of their first occurrence.
+/// Returns the values in the order of their first occurrence, each once.
 pub(crate) fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
     let mut seen: Vec<&str> = Vec::new();
     for value in values {
@@ -100,7 +102,8 @@ pub(crate) fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str
     seen
 }
 
-/// Returns figures of the largest stable step against the parameter, one for each unit of the step.
+/// Returns figures of the largest stable time step: one against the exact limit, and one for each unit against the
+/// parameter.
 #[must_use]
 pub fn figures(limits: &[Limit]) -> Vec<Figure> {
     let units = distinct(limits.iter().map(|limit| limit.unit.as_str()));
@@ -110,7 +113,7 @@ pub fn figures(limits: &[Limit]) -> Vec<Figure> {
     against_exact(limits).into_iter().chain(maps).collect()
 }
 
-/// Points of a curve: parameter and step.
+/// Points of a curve: parameter and largest stable time step.
 type Points = Vec<(f64, f64)>;
 
 fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
@@ -122,7 +125,7 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };
-    // Equal curves of several solvers would cover each other, so they are one curve.
+    // Solvers with equal curves share one curve, because equal curves would hide each other.
     let mut groups = Vec::<(Vec<&str>, Points)>::new();
     for solver in distinct(rows.iter().map(|row| row.solver.as_str())) {
         let found = points(&|row| row.found.filter(|_| row.solver == solver));
@@ -158,14 +161,14 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         "The largest stable step is found by bisection on the growth of a random perturbation of all degrees of \
          freedom. Dashed lines join the exact limits."
     } else {
-        "Largest Courant number at which the energy of a vibrating bar changes by less than a tenth over two periods."
+        "Largest Courant number for which the energy of a vibrating bar changes by less than a tenth over two periods."
     };
     let x = if exact { Axis::linear(&knob) } else { Axis::log(&knob) };
     let y = if unit.starts_with('√') { format!("Δt / {unit}") } else { format!("Δt / ({unit})") };
     (!curves.is_empty()).then(|| Figure::graph(name, title, caption, [x, Axis::linear(&y)], curves))
 }
 
-/// Returns the figure of largest stable steps against the exact limits.
+/// Returns the figure of the largest stable time step against the exact limit.
 fn against_exact(limits: &[Limit]) -> Option<Figure> {
     let mut curves = Vec::new();
     let mut ends = (f64::INFINITY, 0.0_f64);
@@ -192,7 +195,7 @@ fn against_exact(limits: &[Limit]) -> Option<Figure> {
     })
 }
 
-/// Renders the table of totals: one row per solver with its limits and its outcomes in hard cases.
+/// Renders a table with one row per solver: its largest stable time steps, and its outcomes in hard cases.
 fn totals(lines: &[Hold]) -> Markup {
     let table = html! {
         table {
@@ -244,8 +247,9 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
     let pictures: Vec<Markup> = figures(&stability.limits).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         p.lead {
-            "The largest stable step of every solver, found by bisection on a typed failure, with the exact limit if "
-            "there is one; and hard cases, each with its requirement."
+            "The largest stable step of each solver, found by bisection between stable and failed runs, with the exact \
+             limit if "
+            "there is one. Hard cases follow, each with its requirement."
         }
         h3 { "Totals" }
         (totals(&stability.lines))

@@ -1,4 +1,4 @@
-//! Cost model of a step: cost per task, and a table that compares it with the peak performance of the machine.
+//! Cost model of a step: cost of its parts, and comparison with the peak performance of the machine.
 
 use crate::number;
 use crate::page::scrolling;
@@ -6,32 +6,32 @@ use grainbench_harness::statistics::{median, range};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// Cost of a task with one solver.
+/// Cost of a part of a step with one solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct TaskCost {
     /// Name of the solver, such as `dem`.
     pub solver: String,
-    /// Task: a grain in space, a listed pair, a contact, a material point, or a node.
+    /// Part of a step to which the cost applies: a grain, a listed pair, a contact, a material point or a node.
     pub piece: String,
-    /// Measurement method, in words.
+    /// Method of the measurement, in words.
     pub found: String,
-    /// Processor time per task and step, for each timing (ns).
+    /// Processor time per part and step, for each timing (ns).
     pub nanoseconds: Vec<f64>,
 }
 
-/// Peak performance of the machine on one thread.
+/// Peak performance of the machine with one thread.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Probe {
-    /// Bytes read from and written to memory outside the caches per nanosecond, for each timing.
+    /// Memory traffic outside the caches, reading and writing, for each timing (bytes/ns).
     pub streamed: Vec<f64>,
-    /// Multiplications and additions in registers per nanosecond, for each timing.
+    /// Multiplications and additions in registers, for each timing (1/ns).
     pub computed: Vec<f64>,
 }
 
-/// Cost per task, and the peak performance of the machine.
+/// Costs of the parts of a step, and peak performance of the machine.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Model {
-    /// Costs of the tasks.
+    /// Costs of the parts of a step.
     pub prices: Vec<TaskCost>,
     /// Peak performance of the machine.
     pub probe: Probe,
@@ -44,11 +44,11 @@ pub(crate) fn render(model: &Model) -> Markup {
         table.cases {
             thead {
                 tr {
-                    th scope="col" { "Piece of work" }
+                    th scope="col" { "Part of a step" }
                     th scope="col" { "Time in a step (ns)" }
                     th scope="col" { "least to largest" }
-                    th scope="col" { "Streamed in that time (B)" }
-                    th scope="col" { "Computed in that time" }
+                    th scope="col" { "Bytes transferred in that time" }
+                    th scope="col" { "Additions in that time" }
                 }
             }
             tbody {
@@ -69,7 +69,8 @@ pub(crate) fn render(model: &Model) -> Markup {
         h3 { "Cost of a step by part" }
         p {
             "Processor time of one thread for one part of a step, from a long run minus a short run. The time of a "
-            "step is the sum over its grains, listed pairs and contacts. Rebuilding the list of pairs is not counted. "
+            "step is the sum over its grains, listed pairs and contacts. The time to rebuild the list of pairs is \
+             excluded. "
             "The scenes have ten thousand discs, sixteen thousand spheres and up to 58 thousand points, which fit "
             "partly into caches; in larger scenes the same parts cost more. The last columns show what this machine "
             "can transfer and compute in the same time: " (number::significant(streamed, 3)) " B/ns read from and "
@@ -91,7 +92,8 @@ fn spread(price: &TaskCost) -> String {
 mod tests {
     use super::*;
 
-    /// The machine streams 30 B/ns and computes 50 numbers per nanosecond, so in 8 ns it does 240 B and 400 numbers.
+    /// The machine moves 30 bytes/ns and computes 50 operations/ns. In 8 ns it moves 240 bytes and computes 400
+    /// operations.
     #[test]
     fn a_price_stands_beside_what_the_machine_does() {
         let price = TaskCost {

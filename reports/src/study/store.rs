@@ -1,4 +1,4 @@
-//! Files of a study. They are written completely, and can be read back to draw or to compare.
+//! Files of a study. They are written together, and can be read back to write them again or to compare studies.
 
 use super::effects::Entry;
 use super::load::Load;
@@ -18,7 +18,7 @@ use std::collections::BTreeSet;
 use std::fs;
 use std::path::Path;
 
-/// File from which all other files can be written again.
+/// File from which all files of a study can be written again.
 pub const STUDY_FILE: &str = "study.json";
 
 /// Content of `results.json`, whose keys are a public interface.
@@ -36,7 +36,7 @@ struct Results<'a> {
     loads: &'a [Load],
 }
 
-/// Limits and hard cases in `results.json`.
+/// Stability limits and hard cases in `results.json`.
 #[derive(Serialize)]
 struct Stability<'a> {
     limits: &'a [Limit],
@@ -46,7 +46,7 @@ struct Stability<'a> {
 /// Returns `results.json` of a study.
 ///
 /// # Errors
-/// When a value has no JSON form; this does not occur in studies of this project.
+/// When a value has no JSON form. This does not occur in studies of this project.
 pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &study.provenance,
@@ -61,8 +61,8 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` to a directory: all files, or
-/// none if an error occurs.
+/// Writes `index.html`, `results.json`, `study.json`, `points.csv` and `figures/*.svg` to a directory. If an error
+/// occurs, no file is written.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
@@ -85,7 +85,7 @@ pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError
     Ok(())
 }
 
-/// Returns all figures with names for their files.
+/// Returns all figures of a study with their file names.
 fn figures(study: &Study) -> Vec<(String, Figure)> {
     let diagrams = study.diagrams.iter().map(|diagram| {
         let figure = cost::figure(diagram);
@@ -96,11 +96,12 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 
-/// Returns the text of a study for storage in the source tree. It has the Pareto front of each solver, without the
-/// repetitions, the cost model and the costs against grains. It has the effects that are on, each with its median change.
+/// Returns a study as text for storage in the source tree. It contains the Pareto front of each solver and the effects
+/// that are on, each with its median change. Repetitions, cost model and costs of a step for different numbers of
+/// grains are left out.
 ///
 /// # Errors
-/// When a value has no JSON form; this does not occur in studies of this project.
+/// When a value has no JSON form. This does not occur in studies of this project.
 pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     let mut study = study.clone();
     study.model = None;
@@ -113,7 +114,7 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
         let mut kept: Vec<Point> = Vec::new();
         for line in cost::lines([&*diagram]) {
             let front = cost::front(cost::of_line(diagram, line));
-            // If a solver has no point on a front, one point states the reason.
+            // If a solver has no point on the front, its first point is stored, because it states the reason.
             let first = cost::of_line(diagram, line).take(usize::from(front.is_empty()));
             kept.extend(front.into_iter().chain(first).map(|point| Point { repetitions: Vec::new(), ..point.clone() }));
         }
@@ -125,15 +126,15 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
 /// Reads the study that [`write_study`] wrote to a directory.
 ///
 /// # Errors
-/// When the file is missing or damaged; the message names the position.
+/// When the file is missing or damaged. The message names the position in the file.
 pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, LoadError> {
     read(&dir.as_ref().join(STUDY_FILE))
 }
 
-/// Returns the points of a `results.json`.
+/// Returns the points in a `results.json` of a study.
 ///
 /// # Errors
-/// When the file is missing or damaged; the message names the position.
+/// When the file is missing or damaged. The message names the position in the file.
 pub fn points_of(path: &Path) -> Result<Vec<Point>, LoadError> {
     #[derive(Deserialize)]
     struct Session {

@@ -1,9 +1,9 @@
-//! Figures of a sweep: error against cost over the whole design.
+//! Figures of a sweep: error against cost over all points.
 
 use super::Sweep;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Returns all figures.
+/// Returns all figures of a sweep.
 pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
     work(sweep).into_iter().collect()
 }
@@ -12,7 +12,7 @@ pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
 pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
     let mut found: Vec<(String, String)> = Vec::new();
     for point in &sweep.points {
-        // Points of a level are consecutive.
+        // Points of one level follow each other.
         if found.last().is_none_or(|(solver, level)| *solver != point.solver || *level != point.resolution) {
             let level = (point.solver.clone(), point.resolution.clone());
             if !found.contains(&level) {
@@ -23,13 +23,13 @@ pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
     found
 }
 
-/// Returns the quantile of some values for a fraction; none without values.
+/// Returns the value below which the fraction `part` of the values lies; none for an empty list. Sorts the values.
 fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
 }
 
-/// Returns the figure of error against particle-steps, with one point per level.
+/// Returns the figure of error against particle-steps, with one point for each solver and level.
 fn work(sweep: &Sweep) -> Option<Figure> {
     let mut curves: Vec<Curve> = Vec::new();
     for (solver, level) in levels(sweep) {
@@ -39,7 +39,7 @@ fn work(sweep: &Sweep) -> Option<Figure> {
         let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
         let Some(middle) = quantile(&mut steps, 0.5) else { continue };
         for (label, part, stroke) in
-            [("median", 0.5, Stroke::MarkedLine), ("nine in ten below", 0.9, Stroke::MarkedLine)]
+            [("median", 0.5, Stroke::MarkedLine), ("90 % of the errors are below", 0.9, Stroke::MarkedLine)]
         {
             let Some(error) = quantile(&mut errors, part) else { continue };
             let label = format!("{solver}, {label}");
@@ -56,9 +56,9 @@ fn work(sweep: &Sweep) -> Option<Figure> {
         Figure::graph(
             "work",
             "Cost of accuracy over all points of the design",
-            "The worst error of the recorded quantities over the particle steps of the median run, one point per \
+            "The worst error of the recorded quantities against the particle steps of the median run, one point per \
              level. Counts do not depend on the machine.",
-            [Axis::log("particle-steps in the middle run"), Axis::log("|error|")],
+            [Axis::log("particle-steps of the median run"), Axis::log("|error|")],
             curves,
         )
     })

@@ -1,4 +1,4 @@
-//! Maps over two factors that show where each solver is within the tolerance, one panel per solver and level.
+//! Maps over two factors. They show where each solver is within the tolerance, with one panel per solver and level.
 
 use super::figures::levels;
 use super::{Line, Point, Sweep, SweepStatus};
@@ -9,36 +9,33 @@ use serde_json::Value;
 
 /// Number of panels side by side.
 const ACROSS: usize = 3;
-/// Room to the left of a panel, for its numbers, and below it.
+/// Space to the left of a panel for its numbers (drawing units).
 const LEFT: f64 = 58.0;
+/// Space below a panel for its numbers and label (drawing units).
 const FOOT: f64 = 46.0;
-/// Room above a panel for its title, and above all panels for the title of the drawing.
+/// Space above a panel for its title (drawing units).
 const HEAD: f64 = 26.0;
+/// Space above all panels for the title of the drawing (drawing units).
 const TOP: f64 = 46.0;
-/// Distance between panels.
+/// Distance between panels (drawing units).
 const GAP: f64 = 12.0;
-/// Height of a panel.
+/// Height of a panel (drawing units).
 const HIGH: f64 = 210.0;
-/// Largest number of distinct values of a factor. If there are more, neighbouring values share a cell.
+/// Largest number of distinct values of a factor. If a factor has more values, neighbouring values share a cell.
 const MOST: usize = 40;
-/// Smallest size of a cell that shows a sign.
+/// Smallest size of a cell that shows a sign (drawing units).
 const SIGN: f64 = 13.0;
-/// Smallest distance between numbers along each axis.
+/// Smallest distance between numbers along each axis (drawing units).
 const APART: [f64; 2] = [36.0, 15.0];
 
-/// Colours of a cell: all points within the tolerance, some, none, and no point judged.
+/// Colours of a cell: all judged points are within the tolerance, some are, none is, and no point is judged.
 const COLOURS: [&str; 4] = ["#009e73", "#f0c36a", "#d55e00", "#e4e7eb"];
-/// Signs of a cell, so that the meaning does not depend on colour.
+/// Signs of a cell. They distinguish cells without colour.
 const SIGNS: [&str; 4] = ["", "·", "×", "–"];
-const WORDS: [&str; 4] = [
-    "within the tolerance for all values of the other factors",
-    "at some",
-    "at none",
-    "cannot be \
-     asked",
-];
+const WORDS: [&str; 4] =
+    ["within the tolerance for all values of the other factors", "at some", "at none", "not supported"];
 
-/// Returns the maps: file name, caption and SVG.
+/// Returns the file name, the caption and the SVG of each map.
 pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let Some([x, y]) = sweep.map.or_else(|| usual(sweep)) else { return Vec::new() };
     if sweep.points.is_empty() || !sweep.points.iter().any(|point| point.error().is_some()) {
@@ -77,7 +74,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     vec![("map".to_owned(), caption, svg.into_string())]
 }
 
-/// Returns the first two factors with several numeric values.
+/// Returns the first two factors that have several numeric values.
 fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
     let varies = |place: &usize| {
         let mut values = sweep.points.iter().map(|point| &point.factors[*place]);
@@ -88,7 +85,7 @@ fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
     Some([places.next()?, places.next()?])
 }
 
-/// Marks of an axis in ascending order: the values of a factor, or slices of its range.
+/// Marks of an axis in ascending order: the values of a factor, or the middle values of slices of its range.
 struct Marks {
     values: Vec<f64>,
     words: Vec<String>,
@@ -101,7 +98,7 @@ impl Marks {
         values.sort_by(f64::total_cmp);
         values.dedup();
         if values.len() > MOST {
-            // Each slice contains equally many values and is represented by its middle value.
+            // Each slice contains equally many values, and its middle value represents it.
             let slices = MOST / 2;
             values = (0..slices).map(|slice| values[(2 * slice + 1) * values.len() / (2 * slices)]).collect();
         }
@@ -109,8 +106,8 @@ impl Marks {
         Self { values, words, label: sweep.factors[place].label.clone() }
     }
 
-    /// Returns the position of a value in cells from the start of the axis. A mark is at the middle of its cell, values
-    /// between marks are interpolated linearly. Returns none if the value is more than half a cell outside the marks.
+    /// Returns the position of a value along the axis, in cells. A mark is at the middle of its cell, and values
+    /// between marks are interpolated linearly. Returns none for a value outside the cells.
     fn along(&self, value: f64) -> Option<f64> {
         let last = self.values.len().checked_sub(2)?;
         let after = self.values.partition_point(|mark| *mark < value).clamp(1, last + 1);
@@ -119,7 +116,7 @@ impl Marks {
         (0.0..=self.values.len() as f64).contains(&place).then_some(place)
     }
 
-    /// Returns the cell of a value.
+    /// Returns the index of the cell of a value: the nearest mark.
     fn cell(&self, value: &Value) -> Option<usize> {
         let value = value.as_f64()?;
         let after = self.values.partition_point(|mark| *mark < value);
@@ -145,7 +142,7 @@ fn panel(
     let is_in_panel = |point: &&Point| point.solver == solver && point.resolution == level;
     let mut all = [0_usize; 3];
     for point in sweep.points.iter().filter(is_in_panel) {
-        // A cell without a judged point has the colour of amber points.
+        // Points that are not judged count as amber.
         let standing = (point.standing() as usize).min(SweepStatus::Amber as usize);
         all[standing] += 1;
         if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
@@ -195,7 +192,7 @@ fn panel(
     }
 }
 
-/// Returns the line on a panel. The line consists of several pieces if it leaves the panel.
+/// Returns the line on a panel. It has several pieces if it leaves the panel and returns.
 fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2]) -> Vec<String> {
     let mut runs: Vec<Vec<String>> = vec![Vec::new()];
     for (x, y) in sweep.line.iter().flat_map(|line| &line.points) {
@@ -210,7 +207,8 @@ fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2])
     runs.into_iter().filter(|run| run.len() > 1).map(|run| run.join(" ")).collect()
 }
 
-/// Returns the index of a cell's colour; none if the cell has no points.
+/// Returns the index of the colour of a cell, from its numbers of points within, outside and amber; none for a cell
+/// without points.
 fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
     match (within, outside) {
         (0, 0) if amber == 0 => None,
@@ -221,7 +219,8 @@ fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
     }
 }
 
-/// Returns as many of the words as there is room for.
+/// Returns every n-th label with its index. `size` is the distance of neighbouring labels, and n is so large that the
+/// returned labels are at least `apart` away from each other.
 fn thinned(words: &[String], size: f64, apart: f64) -> impl Iterator<Item = (usize, &String)> {
     let every = (apart / size).ceil().max(1.0) as usize;
     words.iter().enumerate().step_by(every)

@@ -1,4 +1,4 @@
-//! Reports of sweeps: a scene run over a design of its parameters, with several solvers and resolution levels.
+//! Reports of sweeps: runs of one scene over a range of its parameters, with several solvers and resolution levels.
 
 mod figures;
 mod map;
@@ -17,7 +17,7 @@ use serde_json::Value;
 use std::io;
 use std::path::Path;
 
-/// Data of a sweep. They suffice to write every output.
+/// Data of a sweep, from which all its files are written.
 #[derive(Clone, Debug)]
 pub struct Sweep {
     /// Version, date, machine and options of the sweep.
@@ -36,9 +36,9 @@ pub struct Sweep {
     pub points: Vec<Point>,
     /// Number of points that are not finished.
     pub missing: usize,
-    /// Indices of the two factors of the map.
+    /// Indices of the two factors of the map; none for the first two factors with several numeric values.
     pub map: Option<[usize; 2]>,
-    /// Line on the map.
+    /// Line that is drawn on the map.
     pub line: Option<Line>,
 }
 
@@ -47,14 +47,14 @@ pub struct Sweep {
 pub struct Line {
     /// Meaning of the line.
     pub label: String,
-    /// Values of the two factors.
+    /// Points of the line, as values of the two factors.
     pub points: Vec<(f64, f64)>,
 }
 
 /// A varied parameter.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct Factor {
-    /// Name, which is a column name in tables.
+    /// Name of the factor, which is its column in tables.
     pub name: String,
     /// Label in figures.
     pub label: String,
@@ -67,33 +67,33 @@ pub struct Quantity {
     pub words: String,
     /// Unit of the quantity; `1` for a pure number.
     pub unit: String,
-    /// Tolerance for all points; none if each point has its own.
+    /// Tolerance for all points; none if every point has its own tolerance.
     pub allowed: Option<f64>,
     /// Source of the expected value.
     pub source: String,
 }
 
-/// A point of the design with one solver and level.
+/// A combination of factors, run with one solver at one level.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Point {
-    /// Values of the factors.
+    /// Values of the factors, in the order of the factors.
     pub factors: Vec<Value>,
-    /// The solver.
+    /// Name of the solver.
     pub solver: String,
-    /// Its resolution, in words.
+    /// Resolution of the run, in words.
     pub resolution: String,
     /// Output of the run.
     pub left: PointOutput,
 }
 
-/// Record counts, results and timings of one point.
+/// Counts, results and timings of a point.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointOutput {
-    /// Counts and times of the run; none if there is no record.
+    /// Counts and times of the run; none if the run left no record.
     pub ran: Option<RunCounts>,
     /// Results in the order of the quantities.
     pub looked: Vec<QuantityResult>,
-    /// Timings of all repetitions, if times are measured.
+    /// Timings of all repetitions; empty if times are not measured.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub timings: Vec<Timing>,
     /// Reason why there is no record.
@@ -108,7 +108,7 @@ pub struct RunCounts {
     pub steps: u64,
     /// Number of steps times number of grains or material points.
     pub particle_steps: u64,
-    /// Number of evaluated contact laws.
+    /// Number of evaluations of contact laws; absent if the program does not report it.
     pub contact_evaluations: Option<u64>,
     /// Number of grid nodes that were updated, over all steps.
     pub node_updates: Option<u64>,
@@ -127,7 +127,7 @@ pub struct QuantityResult {
     pub expected: Option<ExpectedValue>,
     /// Scale by which the error is divided.
     pub scale: Option<f64>,
-    /// Signed (value − expected)/scale.
+    /// Signed error, (value − expected)/scale.
     pub error: Option<f64>,
     /// Largest |error| that passes.
     pub allowed: Option<f64>,
@@ -139,7 +139,7 @@ pub struct QuantityResult {
 }
 
 impl Sweep {
-    /// Returns the number of points with each status: within, outside, amber and not judged.
+    /// Returns the numbers of points that are within, outside, amber and not judged.
     #[must_use]
     pub fn counts(&self) -> [usize; 4] {
         let mut counts = [0; 4];
@@ -157,9 +157,9 @@ pub enum SweepStatus {
     Within,
     /// A quantity fails, or the run crashed.
     Outside,
-    /// No quantity is red, and at least one is amber: the solver cannot represent the scene, or is not available.
+    /// No quantity is red, and at least one is amber, for example because the solver cannot represent the scene.
     Amber,
-    /// No quantity is judged, because none has an expectation.
+    /// No quantity is judged, for example because no quantity has an expectation.
     Unjudged,
 }
 
@@ -176,15 +176,15 @@ impl Point {
         }
     }
 
-    /// Returns the largest |error| of the quantities; none if there is no error.
+    /// Returns the largest |error| of all quantities; none if no quantity has an error.
     #[must_use]
     pub fn error(&self) -> Option<f64> {
         self.left.looked.iter().filter_map(|looked| looked.error).map(f64::abs).reduce(f64::max)
     }
 }
 
-/// Writes `index.html`, `results.json`, `rows.csv`, `rows.parquet` and `figures/*.svg` to a directory: all files, or
-/// none if an error occurs.
+/// Writes `index.html`, `results.json`, `rows.csv`, `rows.parquet` and `figures/*.svg` to a directory. If an error
+/// occurs, no file is written.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
@@ -216,7 +216,7 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
 /// Returns `results.json` of a sweep.
 ///
 /// # Errors
-/// When a value has no JSON form; this does not occur in sweeps of this project.
+/// When a value has no JSON form. This does not occur in sweeps of this project.
 pub fn sweep_json(sweep: &Sweep) -> io::Result<String> {
     let mut bytes = Vec::new();
     table::write_results(sweep, &mut bytes)?;
@@ -227,7 +227,7 @@ pub fn sweep_json(sweep: &Sweep) -> io::Result<String> {
 mod tests {
     use super::*;
 
-    /// A point without an expectation shows nothing about the solver, so it is not within a tolerance.
+    /// A point without an expectation shows nothing about the solver, so it does not count as within the tolerance.
     #[test]
     fn a_point_that_is_not_judged_is_not_within() {
         let looked = |verdict| QuantityResult { verdict, ..QuantityResult::default() };

@@ -6,10 +6,10 @@ use crate::number;
 use crate::page::{provenance, scrolling, shell};
 use maud::{Markup, PreEscaped, html};
 
-/// Largest number of points that are listed individually.
+/// Largest number of points that the page lists one by one.
 const MOST: usize = 50;
 
-/// Renders the page, with drawings by name, caption and SVG.
+/// Renders the page. `drawings` contains name, caption and SVG of each drawing.
 pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> String {
     let [within, outside, amber, unjudged] = sweep.counts();
     let body = html! {
@@ -48,7 +48,7 @@ fn factors(sweep: &Sweep) -> String {
     if words.is_empty() { "nothing: one point".to_owned() } else { words.join(", ") }
 }
 
-/// Renders a table with one row per solver and level: number of points by status, and errors.
+/// Renders a table with one row per solver and level: numbers of points by status, and errors.
 fn table(sweep: &Sweep) -> Markup {
     let rows = levels(sweep).into_iter().map(|(solver, level)| {
         let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
@@ -83,7 +83,7 @@ fn table(sweep: &Sweep) -> Markup {
         "Amber",
         "Not judged",
         "Median |error|",
-        "Nine in ten below",
+        "90 % below",
         "Worst",
         "Particle-steps, median",
     ];
@@ -96,7 +96,7 @@ fn table(sweep: &Sweep) -> Markup {
     html! { section id="levels" { h2 { "Solvers and levels" } (scrolling("Solvers and levels", &table)) } }
 }
 
-/// Renders the points with the largest errors, crashed runs first.
+/// Renders the points outside the tolerance, crashed runs first and then by decreasing error.
 fn worst(sweep: &Sweep) -> Markup {
     let mut points: Vec<&super::Point> =
         sweep.points.iter().filter(|point| point.standing() == SweepStatus::Outside).collect();

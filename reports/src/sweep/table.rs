@@ -1,4 +1,4 @@
-//! Table of a sweep: one row per point, solver, level and quantity.
+//! Table of a sweep, with one row for each point, solver, level and quantity.
 
 use super::{Point, QuantityResult, Sweep};
 use crate::parts::Values;
@@ -7,7 +7,7 @@ use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// A row: the point, the index of a quantity, and its result.
+/// Row of the table: a point, the index of a quantity, and the result of this quantity.
 type Row<'a> = (&'a Point, usize, &'a QuantityResult);
 
 fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
@@ -18,7 +18,7 @@ fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
     sweep.points.iter().flat_map(point_rows).collect()
 }
 
-/// Returns the columns with their names. Absent values are null.
+/// Returns the columns of the table with their names. Absent values are null.
 pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     let rows = rows(sweep);
     let words = |value: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(value).collect());
@@ -70,7 +70,7 @@ pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
     columns
 }
 
-/// Returns the median time of the repetitions, or the time of the single run (s).
+/// Returns the median wall-clock time of the repetitions (s), or the wall-clock time of the single run.
 pub(super) fn wall(point: &Point) -> Option<f64> {
     let walls: Vec<f64> = point.left.timings.iter().map(|timing| timing.wall).collect();
     if walls.is_empty() {
@@ -79,8 +79,8 @@ pub(super) fn wall(point: &Point) -> Option<f64> {
     Some(grainbench_harness::statistics::median(&walls))
 }
 
-/// Writes `results.json`, whose keys are a public interface: one entry per result, and the cost of each run. The file
-/// is written piece by piece, because 100,000 results take about 80 MB.
+/// Writes `results.json`, whose keys are a public interface, with one entry per result and the cost of each run. The
+/// file is written in pieces, because 100,000 results take about 80 MB.
 pub(super) fn write_results(sweep: &Sweep, out: &mut impl Write) -> io::Result<()> {
     let knobs = |point: &Point| -> serde_json::Map<String, Value> {
         let names = sweep.factors.iter().map(|factor| factor.name.clone());

@@ -1,11 +1,11 @@
-//! Axes with their ticks and labels.
+//! Axes of a graph with their ticks and labels.
 
 use maud::{Markup, html};
 
 use super::{LABEL, Panel, TICK, px};
 use crate::plot::{text, text_width};
 
-/// Draws the grid, the axes, their ticks and labels. Without `x_label`, the lower axis has no labels.
+/// Draws the grid, and the axes with ticks and labels. Without `x_label`, the horizontal axis has no labels.
 pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&str>) -> Markup {
     let frame = panel.frame;
     let (x_ticks, y_ticks) = (panel.x().ticks(), panel.y().ticks());

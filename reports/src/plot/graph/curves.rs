@@ -8,12 +8,13 @@ use maud::{Markup, html};
 use super::{CurveStyle, Place, px};
 use crate::plot::palette::{self, Marker};
 
-/// Number of points above which a curve is thinned to the resolution of the drawing.
+/// Number of points above which a curve is reduced to the resolution of the drawing.
 const DENSE: usize = 400;
-/// Number of markers on a line, which distinguish it from exact curves and other lines.
+/// Number of markers on a line. They distinguish it from exact curves and from all other lines.
 const MARKS_ON_A_LINE: usize = 7;
 
-/// Returns a path through places in tenths of a unit. The first place is absolute, all others are relative.
+/// Returns an SVG path in tenths of a drawing unit. The first position is absolute, and all others are relative to the
+/// previous one.
 fn path(places: &[Place]) -> String {
     let tenths = |(x, y): Place| ((10.0 * x).round() as i64, (10.0 * y).round() as i64);
     let mut text = String::new();
@@ -33,7 +34,7 @@ fn path(places: &[Place]) -> String {
     text
 }
 
-/// Draws a curve from its pieces.
+/// Draws a curve that consists of several pieces.
 pub(super) fn draw(stroke: Stroke, look: &CurveStyle, pieces: &[Vec<Place>]) -> Markup {
     let all = || pieces.iter().flatten().copied();
     let joined = matches!(stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
@@ -51,8 +52,8 @@ pub(super) fn draw(stroke: Stroke, look: &CurveStyle, pieces: &[Vec<Place>]) -> 
             Stroke::Markers | Stroke::MarkedLine => { (marks(all(), look, true, 4.2)) }
             Stroke::Line => {
                 (marks(pieces.iter().filter(|piece| piece.len() == 1).flatten().copied(), look, true, 4.2))
-                // Markers are evenly spaced along x. Each shape has its own offset, so that markers of coinciding
-                // curves do not overlap.
+                // Markers are evenly spaced along x. Each shape of marker has its own offset, so that markers of
+                // coinciding curves do not overlap.
                 @let shift = 0.15 + 0.7 * fraction_of(look.marker);
                 (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, shift)), look, false, 4.2))
             }
@@ -64,20 +65,20 @@ pub(super) fn draw(stroke: Stroke, look: &CurveStyle, pieces: &[Vec<Place>]) -> 
     }
 }
 
-/// Draws pale bars; each pair of places gives the two ends of a bar.
+/// Draws pale bars. Each pair of positions gives the two ends of a bar.
 fn bars(ends: &[Place], look: &CurveStyle) -> Markup {
     let bars: String = ends.chunks_exact(2).map(path).collect();
     html! { path transform="scale(.1)" d=(bars) fill="none" stroke=(look.colour) stroke-opacity=".3" stroke-width="50" {} }
 }
 
-/// Draws crosses for failed runs.
+/// Draws a cross for each failed run.
 fn crosses(places: impl Iterator<Item = Place>, look: &CurveStyle) -> Markup {
     let crosses: String = places.map(|(x, y)| format!("M{} {}l8 8m0 -8l-8 8", px(x - 4.0), px(y - 4.0))).collect();
     html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }
 }
 
-/// Draws markers: filled for measured points, hollow if they only distinguish lines. Outlines of crowded points are not
-/// filled.
+/// Draws markers. They are filled for measured points, and hollow if they only distinguish lines. Crowded markers are
+/// outlines without filling.
 fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, radius: f64) -> Markup {
     let corners = look.marker.corners();
     if corners.is_empty() {
@@ -103,7 +104,7 @@ fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, r
     }
 }
 
-/// Draws the outlines of round markers.
+/// Draws round markers as outlines.
 fn rings(places: impl Iterator<Item = Place>, look: &CurveStyle, radius: f64) -> Markup {
     let arc = |way: f64| format!("a{radius} {radius} 0 1 0 {way} 0");
     let rings: String = places
@@ -112,7 +113,7 @@ fn rings(places: impl Iterator<Item = Place>, look: &CurveStyle, radius: f64) ->
     html! { path d=(rings) fill="none" stroke=(look.colour) stroke-width="1.6" {} }
 }
 
-/// Draws round markers as lines of zero length with round ends, which need the fewest characters.
+/// Draws round markers as lines of zero length with round ends, which takes the fewest characters.
 fn dots(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, radius: f64) -> Markup {
     let dots: String = places.map(|(x, y)| format!("M{} {}h0", px(x), px(y))).collect();
     html! {
@@ -125,7 +126,7 @@ fn dots(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, ra
     }
 }
 
-/// Draws the sample of a curve in a legend, between two places.
+/// Draws a sample of a curve for a legend, between two positions.
 pub(super) fn sample(stroke: Stroke, look: &CurveStyle, from: Place, to: Place) -> Markup {
     let middle = (0.5 * (from.0 + to.0), from.1);
     html! {
@@ -141,13 +142,13 @@ pub(super) fn sample(stroke: Stroke, look: &CurveStyle, from: Place, to: Place) 
     }
 }
 
-/// Returns a fraction of one that differs for each shape.
+/// Returns a number between 0 and 1 that differs for each shape of marker.
 fn fraction_of(marker: Marker) -> f64 {
     let place = (0..7).find(|place| palette::marker(*place) == marker).unwrap_or(0);
     (place as f64 * 0.38).fract()
 }
 
-/// Returns interpolated points of a polyline at equal distances along x.
+/// Returns points on a polyline at equal distances along x.
 fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
     let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return Vec::new() };
     (0..count)
@@ -164,7 +165,7 @@ fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
         .collect()
 }
 
-/// Keeps the first, lowest, highest and last point in each interval of two units of a dense curve.
+/// Reduces a dense curve: keeps the first, lowest, highest and last point in each interval of two drawing units.
 pub(super) fn thin(points: Vec<Place>) -> Vec<Place> {
     let forward = points.windows(2).all(|pair| pair[0].0 <= pair[1].0);
     if points.len() <= DENSE || !forward {

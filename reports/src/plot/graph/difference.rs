@@ -1,4 +1,4 @@
-//! Difference between a measured curve and the exact curve, if the two coincide in the graph.
+//! Panel with the difference between measured and exact curves. It is drawn if the curves coincide in the graph.
 
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 
@@ -7,20 +7,21 @@ use crate::plot::scale::Scale;
 /// Largest distance between curves that look the same, as a fraction of the axis.
 const TOLD_APART: f64 = 0.03;
 
-/// Differences that are drawn in a panel of their own.
+/// Differences that are plotted in a separate panel.
 pub(super) struct Difference {
     pub(super) scale: Scale,
-    /// Index of each curve, and its differences.
+    /// Index of each curve, with the points of its difference.
     pub(super) curves: Vec<(usize, Vec<(f64, f64)>)>,
 }
 
-/// Returns the label of the axis, with the unit of the other axis.
+/// Returns the label of the axis of differences. It has the unit of the graph's vertical axis.
 pub(super) fn label(y: &str) -> String {
     let unit = y.rfind(" (").filter(|_| y.ends_with(')')).map_or("", |at| &y[at..]);
     format!("difference{unit}")
 }
 
-/// Returns the differences of the lines from the exact curves, on linear axes and if all lines coincide with them.
+/// Returns the differences between measured and exact curves. Returns none if an axis is logarithmic, the graph has other
+/// curves, a measured curve has fewer than eight points, the curves are visibly apart, or all differences are zero.
 pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     if graph.x.logarithmic || graph.y.logarithmic {
         return None;
@@ -29,7 +30,7 @@ pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     let (lines, exact): (Vec<_>, Vec<_>) =
         (curves_with(Stroke::Line).collect(), curves_with(Stroke::Dashed).map(|(_, curve)| curve).collect());
     let is_all = lines.len() + exact.len() == graph.curves.len() && !lines.is_empty();
-    // There is one exact curve for all lines, or one for each line.
+    // All lines share one exact curve, or each line has its own.
     if !is_all || exact.is_empty() || (exact.len() != 1 && exact.len() != lines.len()) {
         return None;
     }
@@ -52,7 +53,7 @@ pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     (worst < TOLD_APART && values.iter().any(|value| *value != 0.0)).then_some(Difference { scale, curves })
 }
 
-/// Returns the value of a curve at x, interpolated between two points.
+/// Returns the value of a curve at x, interpolated linearly.
 fn at_x(curve: &Curve, x: f64) -> Option<f64> {
     let next = curve.points.partition_point(|point| point.0 < x);
     let after = curve.points.get(next)?;

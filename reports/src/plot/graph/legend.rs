@@ -1,4 +1,4 @@
-//! Legend of a graph: labels at the ends of their lines if there is room, otherwise one below the other.
+//! Legend of a graph. Labels are at the ends of their lines if there is room, otherwise one below another.
 
 use grainbench_harness::figure::{Curve, Graph, Stroke};
 use maud::{Markup, html};
@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use super::{CurveStyle, LEGEND_LINE, LEGEND_SAMPLE, Panel, TICK, curves, px};
 use crate::plot::{text, wrap};
 
-/// Returns the labels broken into lines; empty if all labels are empty.
+/// Returns the lines of text of each label; empty if all labels are empty.
 pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     if curves.iter().all(|curve| curve.label.is_empty()) {
         return Vec::new();
@@ -14,8 +14,8 @@ pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     curves.iter().map(|curve| wrap(&curve.label, TICK, 150.0)).collect()
 }
 
-/// Returns true if a curve has an entry in the legend. A curve without label in the style of the previous curve has
-/// none.
+/// Returns true if a curve has an entry in the legend. A curve without a label that shares the style of the previous
+/// curve has none.
 fn is_told(curve: &Curve) -> bool {
     !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed))
 }
@@ -40,13 +40,13 @@ pub(super) fn draw(graph: &Graph, looks: &[CurveStyle], legend: &[Vec<String>], 
     }
 }
 
-/// Returns the position of the first line of each entry.
+/// Returns the index of the curve of each entry, and the vertical position of the entry's first line (drawing units).
 fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, labelled: &[usize]) -> Vec<(usize, f64)> {
     let frame = panel.frame;
     let (first, last) = (frame.top + 6.0, frame.bottom + 40.0);
     let height = |at: usize| LEGEND_LINE * legend[at].len() as f64;
     let whole: f64 = labelled.iter().map(|&at| height(at)).sum();
-    // The entries of a long legend move closer together before they leave the drawing.
+    // If the legend is long, its entries are closer together.
     let gap = ((last - first - whole) / labelled.len().max(1) as f64).clamp(0.0, 7.0);
     let end = |at: usize| {
         let joined = matches!(graph.curves[at].stroke, Stroke::Line | Stroke::Dashed | Stroke::MarkedLine);
@@ -70,7 +70,7 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, labelled: &[usize]
         return stacked(labelled.to_vec());
     };
     ends.sort_by(|a, b| a.1.total_cmp(&b.1));
-    // Overlapping entries move down, and then up from the lower edge.
+    // Entries that would overlap move down, and entries below the lower edge then move up.
     let mut free = first;
     let mut placed: Vec<(usize, f64)> = ends
         .into_iter()

@@ -1,5 +1,5 @@
-//! Graphs: curves over two axes. Measured curves have markers, exact curves are dashed. If the two coincide, their
-//! difference is drawn below.
+//! Graphs: curves over two axes. Measured curves have markers, and exact curves are dashed. If both coincide, their
+//! difference is plotted below.
 
 mod axes;
 mod curves;
@@ -16,7 +16,7 @@ use super::scale::Scale;
 use super::{FONTS, WIDTH, text, text_width};
 
 const HEIGHT: f64 = 520.0;
-/// Additional height for a panel of differences.
+/// Additional height for the panel of differences (drawing units).
 const BELOW: f64 = 150.0;
 const TITLE: f64 = 17.0;
 const LABEL: f64 = 15.0;
@@ -25,7 +25,7 @@ const NOTE: f64 = 12.5;
 const LEGEND_LINE: f64 = 18.0;
 const LEGEND_SAMPLE: f64 = 30.0;
 
-/// A position in the drawing.
+/// Position in the drawing (drawing units).
 type Place = (f64, f64);
 
 /// Colour, marker and dashes of a curve.
@@ -34,11 +34,11 @@ struct CurveStyle {
     colour: &'static str,
     marker: Marker,
     dash: Option<(u32, u32)>,
-    /// True if markers are outlines, so that they do not hide curves behind them.
+    /// True if markers are outlines, so that curves behind them stay visible.
     open: bool,
 }
 
-/// Position of the axes in the drawing.
+/// Rectangle between the axes (drawing units).
 #[derive(Clone, Copy)]
 struct Frame {
     left: f64,
@@ -47,7 +47,8 @@ struct Frame {
     bottom: f64,
 }
 
-/// A frame with its axes. Its plane has tenths of drawing units, because plotters uses integer coordinates.
+/// Rectangle with two scales. Its plane is in tenths of drawing units, because the plotting library uses integer
+/// coordinates.
 struct Panel {
     frame: Frame,
     plane: Cartesian2d<Scale, Scale>,
@@ -59,7 +60,7 @@ fn tenths(length: f64) -> i32 {
 
 impl Panel {
     fn new(frame: Frame, x: &Scale, y: &Scale) -> Self {
-        // In the drawing, y points downwards.
+        // In SVG, y points downwards.
         let limits = (tenths(frame.left)..tenths(frame.right), tenths(frame.bottom)..tenths(frame.top));
         Self { frame, plane: Cartesian2d::new(x.clone(), y.clone(), limits) }
     }
@@ -85,8 +86,8 @@ impl Panel {
         self.place(&(self.plane.get_x_range().start, value)).1
     }
 
-    /// Returns the pieces of a curve. A line breaks at missing points, because joining across the gap would invent
-    /// data.
+    /// Returns the pieces of a curve. A line is interrupted at a missing point, because a line across the gap would
+    /// show data that do not exist.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
         points
             .split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)))
@@ -96,23 +97,23 @@ impl Panel {
     }
 }
 
-/// Size of a drawing, and whether it has a legend.
+/// Size of a drawing, and flag for its legend.
 #[derive(Clone, Copy)]
 pub struct Form {
     /// Width (drawing units).
     pub width: f64,
     /// Height (drawing units).
     pub height: f64,
-    /// True if there is a legend.
+    /// True if the drawing has a legend.
     pub legend: bool,
 }
 
 impl Form {
-    /// Form of every figure.
+    /// Form of the figures in files and on pages.
     pub const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
 }
 
-/// Draws the samples of the curves with labels, for a legend beside the drawing.
+/// Returns the label and a drawn sample of each labelled curve, for a legend outside the graph.
 #[must_use]
 pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
     let (x, y) = scales(graph);
@@ -133,7 +134,7 @@ pub fn draw(title: &str, graph: &Graph) -> String {
     draw_as(title, graph, Form::FIGURE)
 }
 
-/// Draws a graph in another form.
+/// Draws a graph as an SVG document with the given form.
 #[must_use]
 pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let (x, y) = scales(graph);
@@ -190,7 +191,8 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     .into_string()
 }
 
-/// Returns the resolution levels if all curves share a few. Ticks are then at these levels only.
+/// Returns the resolution levels of a graph if all curves share a few levels, so that ticks are only at these levels. The
+/// list is empty otherwise.
 fn levels(curves: &[Curve]) -> Vec<f64> {
     const MOST: usize = 8;
     let is_of_levels = |curve: &&Curve| matches!(curve.stroke, Stroke::MarkedLine | Stroke::Markers);
@@ -201,12 +203,12 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
     let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine)
         && curves.iter().all(|curve| curve.stroke != Stroke::Beside);
-    // If every point has its own level, the runs were not done at shared levels.
+    // If every point has its own level, the levels are not shared.
     let is_shared = count > levels.len() || levels.len() <= 4;
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
-/// Returns both scales of a graph.
+/// Returns the horizontal and the vertical scale of a graph.
 fn scales(graph: &Graph) -> (Scale, Scale) {
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
     let (log_x, log_y) = (graph.x.logarithmic, graph.y.logarithmic);
@@ -221,7 +223,7 @@ fn scales(graph: &Graph) -> (Scale, Scale) {
     (x.at_levels(&levels(&graph.curves)), y)
 }
 
-/// Returns the curves in the order in which they are drawn. Clouds of points are behind lines, and markers are in front.
+/// Returns the curves in drawing order: clouds of points behind lines, and markers in front.
 fn in_order<'a>(curves: &'a [Curve], looks: &'a [CurveStyle]) -> Vec<(&'a Curve, &'a CurveStyle)> {
     let mut order: Vec<_> = curves.iter().zip(looks).collect();
     order.sort_by_key(|(curve, _)| match curve.stroke {
@@ -235,8 +237,8 @@ fn in_order<'a>(curves: &'a [Curve], looks: &'a [CurveStyle]) -> Vec<(&'a Curve,
     order
 }
 
-/// Returns true if the markers of any curve would hide each other, or those of another curve. Beside clouds of points, which
-/// are outlines, markers must be filled.
+/// Returns true if markers of a curve would hide each other or those of another curve. If the graph has clouds of
+/// points, which are outlines, returns false, so that markers are filled.
 fn is_any_crowded(curves: &[Curve], x: &Scale, y: &Scale) -> bool {
     let is_free = curves.iter().all(|curve| curve.stroke != Stroke::Beside);
     is_free && (0..curves.len()).any(|at| curves[at].stroke == Stroke::Markers && is_crowded(curves, at, x, y))
@@ -244,7 +246,8 @@ fn is_any_crowded(curves: &[Curve], x: &Scale, y: &Scale) -> bool {
 
 /// Returns true if the markers of a curve would hide each other, or those of another curve.
 fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
-    // Approximate size of the axes (drawing units), and distances at which markers overlap.
+    // Approximate size of the plot (drawing units), distances at which markers overlap, and number of markers that
+    // counts as many.
     const SIZE: (f64, f64) = (620.0, 410.0);
     const BESIDE: f64 = 11.0;
     const UPON: f64 = 4.0;
@@ -264,7 +267,8 @@ fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
             .any(|there| is_most(here.iter().filter(|a| there.iter().any(|b| is_near(a, b, UPON))).count(), here.len()))
 }
 
-/// Returns the style of each curve. Computed curves have the colours of their solvers, dashed curves cycle through shades.
+/// Returns the style of each curve. Curves that are not dashed have the colours of their solvers; dashed curves have
+/// grey shades.
 fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
@@ -299,7 +303,7 @@ fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
         .collect()
 }
 
-/// Returns notes about points that cannot be drawn.
+/// Returns notes about the points that cannot be plotted.
 fn notes(graph: &Graph) -> Vec<String> {
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
     let finite = |point: &&(f64, f64)| point.0.is_finite() && point.1.is_finite();
@@ -318,7 +322,7 @@ fn notes(graph: &Graph) -> Vec<String> {
     notes
 }
 
-/// Returns a length with at most one decimal.
+/// Returns a length in drawing units with at most one decimal.
 fn px(length: f64) -> String {
     let text = format!("{length:.1}");
     text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
