@@ -1,17 +1,17 @@
-//! Stored measurements of cost, stability and effects, with the hashes of the solver sources.
+//! Stored measurements of cost, stability and effects, with the hashes of the solvers' sources.
 
 pub use grainbench_cases::kept::sources;
 use grainbench_reports::measured::{Costs, Effects, Measurements, Stability};
 use grainbench_reports::study::Study;
 use grainbench_studies::kept::{COST, EFFECTS, STABILITY};
 
-/// Cost measurements of external solvers and of our solvers in some scenes.
+/// Cost measurements of external solvers, and of our solvers in the same scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
 
 /// Reads the stored measurements.
 ///
 /// # Errors
-/// The error names the file that cannot be read as a study.
+/// When a file cannot be read as a study. The error names the file.
 pub fn measured() -> Result<Measurements, String> {
     let read = |name: &str, text: &str| -> Result<Study, String> {
         serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))

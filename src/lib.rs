@@ -1,7 +1,7 @@
 //! Benchmarks for the accuracy and the computing cost of solvers for granular mechanics.
 //!
 //! This crate is the public interface for authors of solvers. [`judge`] tests a solver with the claims of cases, and
-//! [`conform`] with the conformance properties. `examples/own_solver.rs` is a complete solver.
+//! [`conform`] tests it with the conformance properties. `examples/own_solver.rs` shows a complete solver.
 
 pub mod check;
 pub mod kept;

@@ -1,4 +1,4 @@
-//! Tests of an external or new solver against the claims of cases:
+//! Tests of a solver that implements [`Solver`] against claims of cases and conformance properties:
 //!
 //! ```no_run
 //! # fn main() -> Result<(), Box<dyn std::error::Error>> {
@@ -26,7 +26,7 @@ use thiserror::Error;
 pub struct Judgement {
     /// Results of the claims or conformance properties.
     pub verdicts: Vec<Verdict>,
-    /// Negative controls of the results. A control that stays green means that the result does not depend on the
+    /// Negative controls of the results. A control that does not fail means that the result does not depend on the
     /// physics in question. For example, the solver ignores a parameter of the scene.
     pub controls: Vec<Control>,
 }
@@ -34,18 +34,17 @@ pub struct Judgement {
 /// Reasons why a case cannot test a solver.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum JudgementError {
-    /// The case does not exist.
+    /// No case has this name.
     #[error("there is no case `{0}`; there are {known}", known = names())]
     NoSuchCase(String),
-    /// The case has no solver-independent claim.
+    /// No claim of this case is solver-independent.
     #[error(
-        "the case `{0}` has no solver-independent claim: all claims test a convention of the solvers that they \
-             name"
+        "the case `{0}` has no solver-independent claim; each claim tests the convention of the solver that it names"
     )]
     NothingFair(String),
 }
 
-/// Error of a solver that failed. `Debug` prints the same lines as `Display`, so that failed tests show them too.
+/// Failed results of a solver. `Debug` prints the same lines as `Display`, so that a failed test shows them.
 #[derive(Clone, PartialEq, Eq)]
 pub struct SolverRejection {
     lines: Vec<String>,
@@ -69,11 +68,10 @@ fn names() -> String {
     registry::CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ")
 }
 
-/// Tests a solver with the solver-independent claims of some cases. The solver replaces the solvers that the claims
-/// name.
+/// Judges a solver by the solver-independent claims of the named cases. The solver replaces the solvers that the claims name.
 ///
-/// The solver receives the resolutions of the claims as fractions of the critical time step of a spring contact. It may
-/// choose its own step instead.
+/// The solver gets the resolutions of the claims, as fractions of the critical time step of a spring contact. It may
+/// choose another time step.
 ///
 /// # Errors
 /// When a case does not exist or has no solver-independent claim.
@@ -100,8 +98,7 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
     Ok(judgement)
 }
 
-/// Tests the conformance properties that every solver must satisfy: conservation, symmetries, free flight, order,
-/// determinism.
+/// Tests the conformance properties that every solver must satisfy: conservation, symmetries, free flight, order and determinism.
 #[must_use]
 pub fn conform(solver: &dyn Solver, terms: &Terms) -> Judgement {
     let (verdicts, controls) = conformance::judge(solver, terms);
@@ -109,7 +106,7 @@ pub fn conform(solver: &dyn Solver, terms: &Terms) -> Judgement {
 }
 
 impl Judgement {
-    /// Returns one line for each failed result and each control that stayed green.
+    /// Returns one line for each red result and each control that did not fail.
     #[must_use]
     pub fn failures(&self) -> Vec<String> {
         let failed = |row: &&Verdict| row.outcome.is_red();
@@ -117,15 +114,15 @@ impl Judgement {
         rows.chain(self.controls.iter().filter(|control| !control.turned_red).map(line::control)).collect()
     }
 
-    /// Returns the judgement if nothing failed and at least one result passed.
+    /// Returns the judgement if [`Judgement::failures`] is empty and at least one result passed.
     ///
     /// # Errors
-    /// With the lines of [`Judgement::failures`], or with all results if none is green.
+    /// When there are failures, or when no result passed. The error contains the lines of the failures or of all results.
     pub fn require(self) -> Result<Self, SolverRejection> {
         let mut lines = self.failures();
         if lines.is_empty() && self.verdicts.iter().all(|row| row.outcome != Outcome::Pass) {
             lines = self.verdicts.iter().map(line::verdict).collect();
-            lines.push("no row passed".to_owned());
+            lines.push("no result passed".to_owned());
         }
         if lines.is_empty() { Ok(self) } else { Err(SolverRejection { lines }) }
     }

@@ -2,7 +2,7 @@
 
 use grainbench_reports::judged::ExternalResults;
 
-/// Stored results by the directory of the solver.
+/// Stored results, by the name of the solver's directory in `peers/`.
 pub const KEPT: [(&str, &str); 5] = [
     ("yade", include_str!("../peers/yade/judged.json")),
     ("kratos-dem", include_str!("../peers/kratos-dem/judged.json")),
@@ -11,10 +11,10 @@ pub const KEPT: [(&str, &str); 5] = [
     ("kratos-mpm", include_str!("../peers/kratos-mpm/judged.json")),
 ];
 
-/// Reads the stored results.
+/// Reads the stored results of all external solvers.
 ///
 /// # Errors
-/// The error names the file that cannot be read as stored results.
+/// When a file cannot be read as stored results. The error names the file.
 pub fn kept() -> Result<Vec<ExternalResults>, String> {
     let read = |(name, text): (&str, &str)| {
         ExternalResults::read(text).map_err(|error| format!("peers/{name}/judged.json: {error}"))

@@ -9,7 +9,7 @@ use crate::scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutlin
 use crate::store::write_file;
 use std::path::Path;
 
-/// File for checkpoints; each checkpoint replaces the previous one.
+/// File of the checkpoints of a run. Each checkpoint replaces the previous one.
 #[derive(Clone, Copy, Debug)]
 pub struct Place<'a> {
     /// Path of the file.
@@ -18,14 +18,14 @@ pub struct Place<'a> {
     pub every: u64,
 }
 
-/// Runs a scene from its start or from a checkpoint of the same run, which this function or `simulate --checkpoint`
-/// wrote.
+/// Runs a scene from its start or from a checkpoint of the same run. The checkpoint was written by this function or by
+/// `simulate --checkpoint`.
 ///
-/// The record equals that of an uninterrupted run in every bit except the run time. The run time is NaN if `simulate`
-/// wrote the checkpoint.
+/// The record equals that of an uninterrupted run to the bit, except for the run time (s). The run time is NaN if
+/// `simulate` wrote the checkpoint.
 ///
 /// # Errors
-/// When the solver returns an error, or when the checkpoint belongs to another run.
+/// When the solver fails, or when the checkpoint belongs to another run.
 pub fn run(
     solver: &dyn Solver,
     scene: &Scene,
@@ -44,7 +44,7 @@ pub fn run(
     Ok(record)
 }
 
-/// Prefix of the elapsed time (s) in the output section of a checkpoint.
+/// Text before the elapsed time (s) in the output section of a checkpoint.
 const TAKEN: &str = "taken ";
 
 /// Returns the elapsed time at a checkpoint (s); `None` if another command wrote the checkpoint.
@@ -52,11 +52,11 @@ fn seconds(checkpoint: &Checkpoint) -> Option<f64> {
     std::str::from_utf8(checkpoint.output()).ok()?.strip_prefix(TAKEN)?.parse().ok()
 }
 
-/// Observer that stores checkpoints and forwards all other calls.
+/// Observer that stores checkpoints and forwards all other calls to another observer.
 struct CheckpointWriter<'a> {
     observer: &'a mut dyn Observer,
     place: Place<'a>,
-    /// Run time before the checkpoint (s).
+    /// Run time before the checkpoint from which the run started (s).
     before: f64,
     begun: std::time::Instant,
 }

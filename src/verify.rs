@@ -1,4 +1,4 @@
-//! Comparison of a stored run with a new run of the installed program.
+//! Comparison of a stored run with a new run by the installed program.
 
 use grainbench_cases::stored::Reference;
 use grainbench_harness::evidence::Evidence;
@@ -12,16 +12,15 @@ use grainbench_scene::error::SceneError;
 use grainbench_scene::record::Series;
 use grainbench_scene::solver::{RunError, Solver};
 
-/// Largest |difference| of a rerun while the run is predictable, in units of the column's extent. A rounding error of
-/// one unit in the last place of one position grows to a thousandth of it. Other builds and processors round every sum
-/// differently.
+/// Largest accepted |difference| of the new run while the run is predictable, divided by the extent of the column.
+/// During this time, a rounding error of one unit in the last place of one position grows to a thousandth of this
+/// limit. Other builds and processors round every sum differently.
 pub const ALLOWED: f64 = 1e-6;
 
-/// Repeats a stored run and compares both runs. It compares sample by sample while the run is predictable, and means
-/// after that.
+/// Repeats a stored run and compares both runs, sample by sample while the run is predictable, and by means after that.
 ///
 /// # Errors
-/// When the scene of the case is wrong.
+/// When the scene of the case is invalid.
 pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     let scene = reference.scene()?;
     let row = Verdict {
@@ -40,7 +39,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     let ended = |error: &RunError| vec![row.clone().ended(error)];
     let stored = match StoredRun::load(&directory) {
         Ok(stored) => stored,
-        // A damaged stored file is our error, not an error of the external program.
+        // A damaged stored file is an error of our project, not of the external program.
         Err(error) => {
             return Ok(vec![row.left(Outcome::Fail, unusable(reference.program, &error).to_string())]);
         }
@@ -73,7 +72,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
     Ok(verdicts)
 }
 
-/// Returns the magnitude of a difference; NaN counts as infinite.
+/// Returns the magnitude of a difference; infinity for NaN.
 fn weight(drift: &Drift) -> f64 {
     if drift.error().is_nan() { f64::INFINITY } else { drift.error().abs() }
 }
@@ -87,7 +86,7 @@ fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
     let row = Verdict {
         quantity: format!("the stored run, repeated{until}: worst in {}", worst.name),
         unit: worst.unit.clone(),
-        because: "a thousand times the final effect of one unit in the last place of one position; relative to the \
+        because: "a thousand times the final effect of one unit in the last place of one position, relative to the \
                   motion"
             .to_owned(),
         ..row.clone()
@@ -95,8 +94,8 @@ fn pointwise(row: &Verdict, worst: &Drift, last: u64) -> Verdict {
     row.judged(&found)
 }
 
-/// Compares means over the unpredictable part of a run. Only sums over all grains are compared, because single grains
-/// have no reproducible mean.
+/// Compares means over the part of a run that is not predictable. Only quantities of the whole system are compared,
+/// because means of single grains are not reproducible.
 fn statistics(row: &Verdict, before: &Series, rerun: &Series, last: u64) -> Vec<Verdict> {
     let mut verdicts = Vec::new();
     let places: Vec<usize> = (0..before.step.len()).filter(|&at| before.step[at] > last).collect();

@@ -12,8 +12,7 @@ use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
 use std::sync::Arc;
 
-/// Evaluates a claim of the case. The tolerance is increased by the change of the quantity that the rounding of the
-/// printed digits can cause.
+/// Judges a claim of the case with the output. The tolerance is increased by the effect of the printed digits on the quantity.
 pub(super) fn exact(
     claim: &Claim,
     candidate: &Candidate,
@@ -54,7 +53,7 @@ pub(super) fn exact(
         }
     }
     let row = judged(row, open, outputs, &found);
-    // If wrong values in the longest interval do not change the result, it needs no sample there.
+    // If wrong values in the longest interval do not change the result, the result needs no sample there.
     let is_same = |part: f64| {
         let wrong = covered.with_wrong_sample(&observed.series, part).map(&measured);
         wrong.is_none_or(|wrong| wrong.is_ok_and(|wrong| wrong.error().to_bits() == found.error().to_bits()))

@@ -1,11 +1,11 @@
-//! Figures of the output and of our runs.
+//! Figures with curves of the output and of our runs.
 
 use super::ours::is_compared;
 use grainbench_harness::compare::peers::{Peer, together};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_reference::observer::DumpRecord;
 
-/// Plots the first columns that change: the output and our runs.
+/// Plots the first four compared columns that change over time, from the output and from our runs.
 pub(super) fn figures(ours: &[Peer], file: &str, observed: &DumpRecord) -> Vec<Figure> {
     const MOST: usize = 4;
     const MARKERS: usize = 40;

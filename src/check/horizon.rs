@@ -1,4 +1,4 @@
-//! Predictability horizon of a run, and comparison after it by means over time of quantities of the whole system.
+//! Predictability horizon of a run. After it, means over time are compared, for quantities of the whole system and of walls.
 
 use super::ours::{Plan, is_compared};
 use grainbench_dem::convention::Convention;
@@ -12,12 +12,12 @@ use grainbench_reports::number;
 use grainbench_scene::perturbed::{PARTED, move_one};
 use grainbench_scene::scene::{ProbeTarget, Scene};
 
-/// Largest difference of two means, in units of half its 99 % confidence interval, because several columns are compared
-/// at once.
+/// Largest accepted difference of two means, in units of half the 99 % confidence interval. It exceeds 1, because
+/// several columns are compared at once.
 const INTERVALS: f64 = 2.0;
 
-/// Returns the last time (s) at which our run and a perturbed run agree; `None` if they agree to the end. In the
-/// perturbed run, one position is moved by one unit in the last place.
+/// Returns the last time (s) at which our run and a perturbed run agree; `None` if they agree to the end, or if the
+/// scene has only one grain. In the perturbed run, one position is changed by one unit in the last place.
 pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f64>, String> {
     let Some(ours) = ours.first().filter(|_| scene.grains.len() > 1) else { return Ok(None) };
     let mut perturbed = scene.clone();
@@ -34,7 +34,7 @@ pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f
     Ok(first.and_then(|first| ours.series.time.get(first.saturating_sub(1)).copied()))
 }
 
-/// Compares means after the horizon (s), for columns of the whole system and of walls.
+/// Compares means over the time after the horizon (s). Only columns of the whole system and of walls are compared.
 pub(super) fn beyond(
     scene: &Scene,
     ours: &[Peer],
@@ -53,8 +53,8 @@ pub(super) fn beyond(
             tolerance: ToleranceOrigin::Interval,
             allowed: INTERVALS,
             because: format!(
-                "in units of half the 99 % confidence interval of the difference, from the means over {BLOCKS} blocks of time; \
-                 {INTERVALS} of them, because several columns are judged at once"
+                "in units of half the 99 % confidence interval of the difference, from the means over {BLOCKS} blocks \
+                 of time; {INTERVALS} units are allowed, because several columns are judged at once"
             ),
             ..row(quantity, &column.unit)
         };
@@ -63,7 +63,7 @@ pub(super) fn beyond(
     rows.collect()
 }
 
-/// Evaluates a mean. The result is amber if the interval is wide or the samples are few.
+/// Judges a mean. The result is amber if the confidence interval is too wide or there are too few samples.
 fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     let Some(means) = difference(expected, found, BLOCKS) else {
         let reason = format!("fewer than {BLOCKS} samples lie after the horizon");
@@ -76,7 +76,10 @@ fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
     let row = row.judged(&Measurement::new(means.second, means.first, means.half_width));
     if row.outcome == Outcome::Pass && INTERVALS * means.half_width > WIDE * largest {
         let open = number::fraction(INTERVALS * means.half_width / largest);
-        return row.left(Outcome::NoReference, format!("inconclusive: the interval is {open} of the largest value"));
+        return row.left(
+            Outcome::NoReference,
+            format!("inconclusive: the confidence interval is {open} of the largest value"),
+        );
     }
     row
 }

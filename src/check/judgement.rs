@@ -1,4 +1,4 @@
-//! Tolerances of a check: constant or over time, increased by the rounding of the printed digits.
+//! Tolerances of a check, constant or varying in time, increased by the uncertainty of the printed digits.
 
 use grainbench_harness::compare::peers::{ColumnComparison, DecisiveSample, Sample, WIDE};
 use grainbench_harness::expect::Measurement;
@@ -6,26 +6,26 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 
-/// Evaluates a measured value, with the tolerance widened by the uncertainty of the printed digits. A tolerance above a
-/// twentieth of the scale never gives a green result.
+/// Judges a measured value. The uncertainty `open` of the printed digits is added to the tolerance. The result is not
+/// green if the tolerance exceeds [`WIDE`], a twentieth of the scale.
 pub(super) fn judged(row: Verdict, open: f64, outputs: &Outputs, found: &Measurement) -> Verdict {
     widened(row, open, outputs).judged(found).unless_wider_than(WIDE)
 }
 
-/// Allowed error of a column, without the uncertainty of its digits.
+/// Allowed error of a column without the uncertainty of the printed digits.
 pub(super) struct ErrorAllowance {
-    /// Constant part of the tolerance, as a fraction of the scale.
+    /// Constant part of the allowed error, as a fraction of the scale.
     pub(super) floor: f64,
-    /// Factor for the change from halving the time step.
+    /// Factor for the change due to half the time step.
     pub(super) times: f64,
-    /// Description of the runs whose difference sets the tolerance.
+    /// Description of the runs whose difference determines the allowed error.
     pub(super) conventions: &'static str,
 }
 
-/// Largest fraction of samples with a tolerance above [`WIDE`]. If more samples have one, a pass becomes inconclusive.
+/// Largest fraction of samples with an allowed error above [`WIDE`]. If the fraction is larger, the result is inconclusive.
 const FEW: f64 = 0.1;
 
-/// Evaluates a column at each sample, with a tolerance from the differences between its runs around that time.
+/// Judges a column at each sample. The allowed error follows from the differences between the runs around that time.
 pub(super) fn judged_in_time(
     row: Verdict,
     compared: &ColumnComparison<'_>,
@@ -34,7 +34,7 @@ pub(super) fn judged_in_time(
 ) -> Verdict {
     let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
     let Some(decisive) = compared.decisive(|sample| allowed(sample) + compared.open) else {
-        return row.left(Outcome::NoReference, "there is no sample");
+        return row.left(Outcome::NoReference, "the output has no sample");
     };
     let DecisiveSample { sample, wide, first_outside, .. } = decisive;
     let times = if beside.times == 1.0 { String::new() } else { format!(", times {}", beside.times) };
@@ -56,7 +56,10 @@ pub(super) fn judged_in_time(
         }
         (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
             let most = 100.0 * WIDE;
-            let reason = format!("inconclusive: {wide} of {count} samples allow an error above {most} % of the scale");
+            let reason = format!(
+                "inconclusive: for {wide} of {count} samples the tolerance is above {most} % of the \
+                                  scale"
+            );
             row.left(Outcome::NoReference, reason)
         }
         (Outcome::Pass, _) if wide > 0 => {
@@ -67,10 +70,10 @@ pub(super) fn judged_in_time(
     }
 }
 
-/// Widens the tolerance by the uncertainty of the printed digits.
+/// Adds the uncertainty of the printed digits to the tolerance.
 fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
     row.allowed += open;
-    // A widening below a thousandth of the tolerance is not reported.
+    // An addition below a thousandth of the tolerance is not reported.
     if open > 1e-3 * row.allowed {
         let digits = outputs.significant_digits();
         let words = format!("; plus {} for the printed digits, at most {digits}", number::fraction(open));

@@ -43,7 +43,7 @@ pub enum CheckError {
     /// The files are damaged or incomplete.
     #[error(transparent)]
     Output(#[from] OutputError),
-    /// The case's scene is wrong.
+    /// The scene of the case is invalid.
     #[error(transparent)]
     Scene(#[from] SceneError),
     /// The output matches the start of several variants.
@@ -59,7 +59,7 @@ pub enum CheckError {
         /// Names of the matching variants.
         variants: String,
     },
-    /// The time step is not below the critical one.
+    /// A time step of the files is at or above the critical one.
     #[error(
         "{file}: expected a time step below the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
          {:.3} of it (--allow-unstable permits it)",
@@ -80,33 +80,32 @@ pub enum CheckError {
         file: String,
         /// Name of the case, with its variant.
         case: String,
-        /// Expected value of the first grain that differs.
+        /// Value in the scene of the first quantity that differs.
         expected: String,
-        /// Value of this grain in the output.
+        /// Value of this quantity in the output.
         found: String,
     },
 }
 
-/// Accepted incompleteness and time steps, and extent of the power search.
+/// Options of a check: accepted incompleteness, accepted time steps and extent of the power search.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Options {
     /// True if the output may end early or have few samples.
     pub partial: bool,
     /// True if time steps at or above the critical one are accepted.
     pub allow_unstable: bool,
-    /// Extent of the search for the power of the check.
+    /// Extent of the search for changes of the scene that the output reveals.
     pub power: Power,
 }
 
-/// Checks output against a case or a scene of the user. For a case without a named variant, the first sample selects
-/// the variant.
+/// Checks output against a case or a scene file. If no variant of a case is named, the first sample selects the variant.
 ///
-/// If the output does not reach the end of the run, claims about the whole run have no result. The result for the
+/// If the output ends before the end of the run, claims about the whole run have no result. The result about the
 /// coverage is then red, or amber with `partial`.
 ///
 /// # Errors
-/// When the files cannot be read, start unlike every scene of the case, or have a time step that is not below the
-/// critical one.
+/// When the files cannot be read, when their first sample matches no scene of the case, or when a time step is at or
+/// above the critical one.
 pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -> Result<Section, CheckError> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, DumpRecord)> = Vec::new();
@@ -114,7 +113,7 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         let observed = outputs.observe(&candidate.scene);
         let observed = match (observed, &first_miss) {
             (Ok(observed), _) => observed,
-            // Other variants may have other numbers of grains; only the first error is reported.
+            // Variants may differ in their numbers of grains. Only the first error is reported.
             (Err(error), None) => {
                 first_miss = Some(CheckError::Output(error));
                 continue;
@@ -136,8 +135,7 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         let variants = variants.join(", ");
         return Err(CheckError::Ambiguous { file: outputs.name(), case: subject.name(), variants });
     }
-    // With few printed digits, several scenes of a variant can match. The nearest scene counts, and the first of
-    // equally near ones.
+    // If few digits are printed, several scenes of a variant can match. The nearest scene is used.
     let starts = matching.len();
     let distance = |(candidate, observed): &(Candidate, DumpRecord)| distance(&candidate.scene, observed);
     matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
@@ -217,7 +215,7 @@ fn section(
             (rows_of_ours(&made, power, &row), figures(&of_ours.peers, &file, observed))
         }
         Err((Outcome::Fail, reason)) if options.partial => {
-            let reason = format!("{reason}; a part of the run is meant (--partial)");
+            let reason = format!("{reason}; accepted because of --partial");
             (vec![no_comparison(&row, Outcome::Known, reason)], Vec::new())
         }
         Err((Outcome::Fail, reason)) => {
@@ -239,8 +237,9 @@ fn section(
         name: subject.name(),
         title: format!("{}: {file}", subject.title()),
         claim: format!(
-            "The output of another program, `{file}`, printed with up to {} significant digits, against exact answers where \
-             they hold, against our solvers on the same scene, and against stored runs of it where there are some.",
+            "The output of another program, `{file}`, has up to {} significant digits. It is compared with exact \
+             solutions if the scene has any, with our solvers on the same scene, and with stored runs if there are \
+             any.",
             outputs.significant_digits()
         ),
         derivation: derivation.to_owned(),
@@ -256,7 +255,7 @@ fn section(
 struct OwnRuns {
     plan: Plan,
     peers: Vec<Peer>,
-    /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
+    /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
     horizon: Option<f64>,
 }
 
@@ -279,12 +278,13 @@ fn against_ours(scene: &Scene, plan: Plan) -> Result<OwnRuns, String> {
     Ok(OwnRuns { plan, peers, horizon })
 }
 
-/// Compares the output with our runs: sample by sample up to the horizon, and by means after it. Adds the power of the
-/// check.
+/// Compares the output with our runs, sample by sample up to the horizon and by means after it. Adds the results about
+/// the power of the check.
 fn rows_of_ours(made: &CheckInputs<'_>, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
     let mut rows = made.compare(made.observed, row);
     if rows.is_empty() {
-        let reason = "fewer than two samples are at times of our runs, or the files contain no compared quantity";
+        let reason = "fewer than two samples are at times of our runs, or the files contain no quantity that can be \
+                      compared";
         rows.push(no_comparison(row, Outcome::NoReference, reason.to_owned()));
     }
     rows.extend(made.power(power, row));
@@ -292,6 +292,7 @@ fn rows_of_ours(made: &CheckInputs<'_>, power: Power, row: &dyn Fn(String, &str)
 }
 
 fn no_comparison(row: &dyn Fn(String, &str) -> Verdict, outcome: Outcome, reason: String) -> Verdict {
-    let row = Verdict { because: "none was made".to_owned(), ..row("comparison with our solvers".to_owned(), "1") };
+    let row =
+        Verdict { because: "no comparison was made".to_owned(), ..row("comparison with our solvers".to_owned(), "1") };
     row.left(outcome, reason)
 }

@@ -14,12 +14,12 @@ use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::Solver;
 
-/// Our conventions, the default one first.
+/// Contact conventions of our runs, the default first.
 const CONVENTIONS: [Convention; 4] =
     [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS];
-/// Allowed difference beyond the measured ones: a millionth of the scale.
+/// Allowed difference in addition to the measured differences, as a fraction of the scale.
 const FLOOR: f64 = 1e-6;
-/// Largest number of particle-steps for one run of our solvers: about half an hour.
+/// Largest number of particle-steps of one run of our solvers, which takes about half an hour.
 const MOST_WORK: f64 = 2e10;
 /// Largest number of samples of our runs.
 const MOST_SAMPLES: u64 = 2_000_000;
@@ -29,21 +29,22 @@ const MOST_SAMPLES: u64 = 2_000_000;
 pub(super) struct Plan {
     /// Time step (s).
     pub(super) step: f64,
-    /// Number of steps to the last sample, and greatest common divisor of the steps of all samples.
+    /// Two numbers: the number of steps to the last sample, and the greatest common divisor of the step numbers of all samples.
     counts: [u64; 2],
-    /// Steps of the finer run per step: two, or more if the shortest step of the output requires it.
+    /// Number of steps of the finer run per step of the plan. It is at least 2, and the finer step is at most the
+    /// shortest step of the output.
     parts: u64,
 }
 
 impl Plan {
-    /// Returns a plan whose time step divides all sample times: the longest time step of the output (s), or else the
-    /// shortest. Without a plan, returns the outcome and its reason. It is red if the time steps of the output do not
-    /// reach its own times.
+    /// Returns a plan whose time step divides all sample times. The time step is the longest time step of the output
+    /// (s), or the shortest if the longest does not divide all sample times. If there is no such plan, returns an
+    /// outcome with its reason. The outcome is red if neither time step divides all sample times.
     pub(super) fn new(observed: &DumpRecord, [shortest, longest]: [f64; 2]) -> Result<Self, (Outcome, String)> {
         let amber = |reason: String| (Outcome::NoReference, reason);
         let times = &observed.series.time;
         if !times.windows(2).all(|pair| pair[0] < pair[1]) {
-            return Err(amber("the times do not grow".to_owned()));
+            return Err(amber("the times do not increase".to_owned()));
         }
         let off = |step: f64| {
             let is_off = |time: &f64| ((time / step).round() * step - time).abs() > 1e-6 * step.max(*time);
@@ -63,18 +64,18 @@ impl Plan {
         let last = steps.last().copied().ok_or_else(|| amber("there is no sample".to_owned()))?;
         let interval = steps.iter().fold(0, |all, &step| common_divisor(all, step)).max(1);
         if last / interval > MOST_SAMPLES {
-            return Err(amber(format!("{} samples are more than {MOST_SAMPLES}", last / interval)));
+            return Err(amber(format!("the output has {} samples, more than {MOST_SAMPLES}", last / interval)));
         }
         let parts = ((step / shortest * (1.0 - 1e-6)).ceil() as u64).max(2);
         Ok(Self { step, counts: [last, interval], parts })
     }
 
-    /// Work of the comparison with our solvers, in units of one run.
+    /// Returns the work of the comparison with our solvers, in units of one run.
     pub(super) const fn work(&self) -> u64 {
         CONVENTIONS.len() as u64 + self.parts
     }
 
-    /// Runs a scene with a contact convention, and divides each step into `parts` steps.
+    /// Runs a scene with a contact convention. Each step of the plan is divided into `parts` steps.
     pub(super) fn run(&self, scene: &Scene, convention: Convention, parts: u64) -> Result<Record, String> {
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let (scene, resolution) = refined(&scene, self.step, self.counts, parts);
@@ -82,12 +83,12 @@ impl Plan {
     }
 }
 
-/// Runs a scene over the time of the output with each of our contact conventions, and once more with smaller time
-/// steps.
+/// Runs a scene up to the last sample of the output with each of our contact conventions. The run in the LAMMPS
+/// convention is repeated with smaller time steps.
 pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {
-        return Err(format!("{last} steps of {} s exceed the limit for our solvers here", plan.step));
+        return Err(format!("{last} steps of {} s exceed the limit of work for our solvers", plan.step));
     }
     let peer = |convention: Convention| {
         let run = |parts: u64| plan.run(scene, convention, parts).map(|record| record.series);
@@ -101,7 +102,7 @@ fn common_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
-/// Returns true if a column is compared: motion, kinetic energy, and forces of contacts and walls.
+/// Returns true if a column is compared: motion, kinetic energy, contact forces or forces on walls.
 pub(super) fn is_compared(name: &str) -> bool {
     let quantity = name.rsplit_once('.').map_or(name, |(_, quantity)| quantity);
     ["x", "y", "z", "vx", "vy", "vz", "kinetic_energy", "normal_force", "shear_force"].contains(&quantity)
@@ -109,8 +110,8 @@ pub(super) fn is_compared(name: &str) -> bool {
         || quantity.starts_with("force_")
 }
 
-/// Compares each column with the contact convention that is nearest to all columns. The tolerance contains the
-/// difference between conventions and the change from halving the time step.
+/// Compares all columns with our run in the contact convention nearest to the output. The allowed error contains the
+/// difference between the conventions and the change due to smaller time steps.
 pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],
@@ -122,9 +123,9 @@ pub(super) fn compare(
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     let mass: f64 = scene.grains.iter().map(|grain| grain.mass).sum();
     let end = observed.series.time.last().copied().unwrap_or_default();
-    // Grains at rest must not be compared by their rounding. The smallest displacement scale is therefore a millionth
-    // of the radius. The smallest speed is that displacement over the run time, and the smallest angular velocity has
-    // that speed at the rim. The smallest energy is that of all grains at a thousandth of the speed scale.
+    // The scale must exceed the rounding of grains at rest. The smallest displacement scale is therefore 10⁻⁶ of the largest
+    // radius. The smallest speed scale is that displacement divided by the run time, and the smallest angular velocity has that
+    // speed at the rim. The smallest energy is the kinetic energy of all grains at 10⁻³ of the speed scale.
     let scale = |extent: &dyn Fn(&str) -> f64, unit: &str| {
         let way = extent("m").max(1e-6 * radius);
         let speed = if end > 0.0 { extent("m/s").max(way / end) } else { extent("m/s") };
@@ -149,11 +150,11 @@ fn column(
     covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
-    // Programs print forces with the velocities of the full step, half a step after those that moved the grains. For a
-    // dashpot, this shift changes the force by twice the change from halving the step.
+    // Programs print forces that depend on velocities half a step later than the velocities that moved the grains. For
+    // a dashpot, this difference is twice the change due to half the time step, so three times this change is allowed.
     let times = if compared.unit == "N" { 3.0 } else { 1.0 };
     let row = Verdict {
-        source: format!("{nearest}, the nearest of our conventions, at the file's time step"),
+        source: format!("{nearest}, our nearest convention, at the time step of the file"),
         tolerance: ToleranceOrigin::Computed,
         ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };

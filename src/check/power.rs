@@ -1,5 +1,5 @@
-//! Power of a check: the changes of the scene that the given output would reveal. Our solver runs the scene with one
-//! effect changed, and its result is checked as if it were the output.
+//! Power of a check: the changes of the scene that the given output reveals. Our solver runs the scene with one effect
+//! changed, and the result is checked in place of the output.
 
 use super::covered::Coverage;
 use super::horizon;
@@ -23,23 +23,23 @@ use grainbench_scene::scene::Scene;
 pub enum Power {
     /// No search.
     Off,
-    /// At most three times the work of the comparison with our solvers.
+    /// The search takes at most three times the work of the comparison with our solvers.
     #[default]
     Limited,
-    /// Every effect with every size of change.
+    /// The search tries every effect with every size of change.
     Full,
 }
 
-/// Source that identifies results about power.
+/// Source text that identifies results about power.
 const SOURCE: &str = "our solver on the scene with one effect changed";
-/// Most work, in units of the comparison with our solvers.
+/// Largest work of a limited search, in units of the comparison with our solvers.
 const MOST_WORK: u64 = 3;
-/// Relative changes of coefficients, from the smallest.
+/// Relative changes of coefficients, from the smallest to the largest.
 const SIZES: [f64; 2] = [0.1, 0.25];
 /// Largest number of column names in a result.
 const MOST_NAMES: usize = 8;
 
-/// Returns true if a result describes the power of a check, and not the output itself.
+/// Returns true if a result describes the power of a check instead of the output.
 #[must_use]
 pub fn is_of_power(row: &Verdict) -> bool {
     row.source == SOURCE
@@ -51,7 +51,7 @@ struct Family {
     sizes: Vec<Size>,
 }
 
-/// Changes of one size. The size counts as revealed only if all of them are revealed.
+/// Changes of one size. The size is revealed only if each of the changes is revealed.
 struct Size {
     /// Relative change.
     amount: f64,
@@ -59,22 +59,22 @@ struct Size {
     scenes: Vec<Scene>,
 }
 
-/// Outcome of the search for one effect.
+/// Outcome of the search for the smallest revealed change of one effect.
 enum SearchOutcome {
     /// Smallest revealed change; larger changes are revealed too.
     Revealed(f64),
     /// Even the largest change is not revealed.
     Hidden,
-    /// Not tried, with the reason.
+    /// Nothing was tried, for this reason.
     NotTried(String),
 }
 
-/// Inputs of a check, which can be repeated for other output.
+/// Inputs of a check. The check can be repeated with other output.
 pub(super) struct CheckInputs<'c> {
     pub(super) scene: &'c Scene,
     pub(super) plan: &'c Plan,
     pub(super) ours: &'c [Peer],
-    /// Time (s) up to which the run can be predicted; `None` if it can be predicted to its end.
+    /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
     pub(super) horizon: Option<f64>,
     pub(super) outputs: &'c Outputs,
     pub(super) observed: &'c DumpRecord,
@@ -82,7 +82,7 @@ pub(super) struct CheckInputs<'c> {
 }
 
 impl CheckInputs<'_> {
-    /// Compares output with our runs: sample by sample up to the horizon, and by means after it.
+    /// Compares output with our runs, sample by sample up to the horizon and by means after it.
     pub(super) fn compare(&self, observed: &DumpRecord, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
         let mut seen = observed.clone();
         if let Some(horizon) = self.horizon {
@@ -95,8 +95,8 @@ impl CheckInputs<'_> {
         rows
     }
 
-    /// Returns a result for each effect of the scene, one for all untried effects, and one for all columns without
-    /// comparison.
+    /// Returns one result for each effect that was tried, one for all other effects, and one for all columns that are
+    /// not compared.
     pub(super) fn power(&self, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
         if power == Power::Off {
             return Vec::new();
@@ -119,19 +119,18 @@ impl CheckInputs<'_> {
             }
         }
         if !not_tried.is_empty() {
-            let row = Verdict { because: "none was made".to_owned(), ..row("effects not tried".to_owned()) };
+            let row = Verdict { because: "no comparison was made".to_owned(), ..row("effects not tried".to_owned()) };
             rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
         }
         rows.extend(self.unjudged().map(|names| {
-            let because = "a wrong value cannot be detected there".to_owned();
+            let because = "a wrong value in these columns cannot be detected".to_owned();
             let row = Verdict { because, ..row("columns of probes not judged".to_owned()) };
             row.left(Outcome::NoReference, names)
         }));
         rows
     }
 
-    /// Finds the smallest revealed change, from the largest to smaller ones. If the output hides a large change, it
-    /// also hides a smaller one.
+    /// Finds the smallest revealed change, beginning with the largest. Output that hides a large change also hides a smaller one.
     fn find(&self, family: &Family, left: &mut u64) -> SearchOutcome {
         let mut smallest = None;
         for size in family.sizes.iter().rev() {
@@ -143,15 +142,19 @@ impl CheckInputs<'_> {
                 (Ok(false) | Err(_), Some(_)) => break,
             }
         }
-        smallest.map_or_else(|| SearchOutcome::NotTried("it has no smaller value".to_owned()), SearchOutcome::Revealed)
+        smallest.map_or_else(
+            || SearchOutcome::NotTried("there is no smaller change of it".to_owned()),
+            SearchOutcome::Revealed,
+        )
     }
 
     fn is_revealed(&self, size: &Size, left: &mut u64) -> Result<bool, String> {
         for scene in &size.scenes {
             if scene.is_unstable_at(self.plan.step) {
-                return Err("the time step would not be below the critical one".to_owned());
+                return Err("the time step would be at or above the critical one".to_owned());
             }
-            *left = left.checked_sub(1).ok_or_else(|| "--power full has no limit of time".to_owned())?;
+            *left =
+                left.checked_sub(1).ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
             let record = self.plan.run(scene, Convention::DEFAULT, 1)?;
             if !self.is_red(&record.series) {
                 return Ok(false);
@@ -160,8 +163,8 @@ impl CheckInputs<'_> {
         Ok(true)
     }
 
-    /// Returns true if a run would give a red result as output, with the sample times, columns and digits of the real
-    /// output.
+    /// Returns true if a run gives a red result in place of the output. The run is compared at the sample times of the
+    /// output, for the columns of the output, and with the uncertainty of its printed digits.
     fn is_red(&self, series: &Series) -> bool {
         let mut seen = DumpRecord::default();
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
@@ -178,7 +181,7 @@ impl CheckInputs<'_> {
         self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail)
     }
 
-    /// Returns the columns of the scene's probes that are not compared; `None` if all are compared.
+    /// Returns the names of the columns of the scene's probes that are not compared; `None` if all are compared.
     fn unjudged(&self) -> Option<String> {
         let columns = Recorder::new(self.scene, 1.0, 1).finish().0.columns;
         let is_judged = |name: &str| is_compared(name) && self.observed.series.column(name).is_some();
@@ -208,7 +211,7 @@ fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict 
     }
 }
 
-/// Returns the effects of a scene that can be scaled, and those that can only be removed.
+/// Returns the effects of a scene: those whose coefficient can be scaled, and those that can only be removed.
 fn families(scene: &Scene) -> Vec<Family> {
     let has = |is_on: &dyn Fn(&ContactLaw) -> bool| scene.laws.iter().flatten().any(is_on);
     let mut families = Vec::new();
@@ -246,7 +249,7 @@ fn families(scene: &Scene) -> Vec<Family> {
     families
 }
 
-/// Returns changes of one relative size in both directions.
+/// Returns two changes of one relative size: an increase and a decrease.
 fn both(scene: &Scene, size: f64, change: &dyn Fn(&mut ContactLaw, f64)) -> Size {
     let with = |factor: f64| changed(scene, |law| change(law, factor));
     Size {

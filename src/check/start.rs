@@ -1,32 +1,32 @@
-//! Comparison of the first sample of a program's output with the initial state of the scene.
+//! Comparison of the first sample of the output with the initial state of the scene.
 
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::{Origin, Outputs};
 use grainbench_scene::nalgebra::Vector3;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
 
-/// Accepted deviation from the start beyond the printed digits: in radii for positions, and as a fraction of the fastest
-/// rim for speeds.
+/// Accepted deviation from the initial state in addition to the printed digits. It is a fraction of the radius for
+/// positions, and of the largest surface speed for velocities.
 const START: f64 = 1e-9;
-/// Names of the axes.
 const AXES: [&str; 3] = ["x", "y", "z"];
 
-/// Quantity of a grain in the first sample.
+/// A quantity of a grain in the first sample.
 struct Start {
     name: String,
     unit: &'static str,
-    /// Value in the scene.
+    /// Value in the initial state of the scene.
     expected: f64,
     /// Difference of the sample from the scene. Along a periodic axis, whole periods are removed.
     off: f64,
     /// Uncertainty of the sample due to its printed digits.
     open: f64,
-    /// Scale of the quantity.
+    /// Scale: the radius for positions (m), the largest surface speed for velocities (m/s), and this speed divided by
+    /// the radius for spins (rad/s).
     scale: f64,
 }
 
 impl Start {
-    /// Returns true if the sample differs from the scene by more than its printed digits and a rounding.
+    /// Returns true if the sample differs from the scene by more than the uncertainty of its digits and a rounding error.
     fn is_off(&self) -> bool {
         self.off.abs() > self.open + START * self.scale
     }
@@ -46,13 +46,14 @@ fn probed<'o>(scene: &'o Scene, observed: &'o DumpRecord) -> impl Iterator<Item 
     })
 }
 
-/// Returns positions, velocities and spins of all grains in the first snapshot, if the files have them. `step` is the
-/// time step (s). Components out of the plane of the scene are left out.
+/// Returns the positions, velocities and spins of all grains in the first snapshot, if the files have them. `step` is
+/// the time step (s). Components perpendicular to a planar scene are left out.
 fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord) -> impl Iterator<Item = Start> + 'o {
     let axes = if scene.dimension == Dimension::Two { (0..2, 2..3) } else { (0..3, 0..3) };
     let rim = scene.grains.iter().map(|grain| grain.velocity.norm() + grain.radius * grain.spin.norm());
     let fastest = rim.fold(0.0, f64::max);
-    // Some programs store velocities half a step before or after the positions.
+    // Some programs store velocities half a step before or after the positions, so a velocity may differ by gravity
+    // times the time step.
     let fall = scene.gravity.norm() * step.unwrap_or_default();
     let groups = scene.driven_group_of_grains();
     let printed = observed.snapshots.first().map_or(&[][..], |first| &first.grains);
@@ -77,13 +78,13 @@ fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord
         let spins = turning.map(move |axis| {
             start("omega", "rad/s", axis, [grain.spin, found.spin, shifted.spin], fastest / grain.radius)
         });
-        // Programs differ in the velocity that they print for a grain with prescribed motion.
+        // Programs print different velocities for a grain with prescribed motion, so these velocities are not compared.
         let is_free = groups[place].is_none();
         places.chain(speeds.chain(spins).filter(move |_| is_free))
     })
 }
 
-/// Returns a difference of coordinates (m) without whole periods of its axis.
+/// Returns a difference of coordinates (m), reduced by whole periods along a periodic axis.
 fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
     match scene.domain.filter(|domain| domain.periodic[axis]) {
         Some(domain) => off - (off / (domain.high - domain.low)[axis]).round() * (domain.high - domain.low)[axis],
@@ -91,13 +92,13 @@ fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
     }
 }
 
-/// Returns the largest distance of a coordinate from the start of a scene, in grain radii.
+/// Returns the largest deviation of a coordinate from the initial state of a scene, in grain radii.
 pub(super) fn distance(scene: &Scene, observed: &DumpRecord) -> f64 {
     let starts = probed(scene, observed).chain(of_snapshot(scene, None, observed)).filter(|start| start.unit == "m");
     starts.map(|start| start.off.abs() / start.scale).fold(0.0, f64::max)
 }
 
-/// Returns the expected and the found value of the first grain that does not start as in the scene.
+/// Returns the expected and the found value of the first quantity that differs from the initial state; `None` if all agree.
 pub(super) fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord) -> Option<(String, String)> {
     let late = outputs.origin().map(|origin| format!("a first sample at {}", at(origin)));
     let mut is_placed = false;
@@ -109,11 +110,11 @@ pub(super) fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord)
         }
         is_placed = true;
     }
-    // A first sample counts as time 0 only if it shows the start of the scene.
+    // A later first sample counts as time 0 only if it can be compared with the initial state.
     late.filter(|_| !is_placed).map(|late| ("at time 0".to_owned(), late))
 }
 
-/// Returns step and time of a first sample, in words.
+/// Returns the step and, if known, the time of a first sample in words.
 pub(super) fn at(origin: Origin) -> String {
     let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
     format!("step {}{time}", origin.step)

@@ -15,15 +15,15 @@ use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
 use grainbench_scene::record::Series;
 
-/// Ratio of the uncertainty of a stored run to its change from halving the time step. It is the grid convergence index
-/// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). F_s = 3 applies to two steps, with r = 2. The order is p = 1,
-/// because contacts begin and end within steps.
+/// Ratio of the uncertainty of a stored run to its change due to half the time step. It is the grid convergence index
+/// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). The factor of safety F_s = 3 applies to two steps, whose ratio is
+/// r = 2. The order is p = 1, because contacts begin and end within steps.
 const SAFETY: f64 = 6.0;
-/// Allowed error of a program beyond the measured ones: a millionth of the scale.
+/// Allowed error of a program in addition to the measured differences, as a fraction of the scale.
 const FLOOR: f64 = 1e-6;
 
-/// Compares each column with the stored run that is nearest to all columns, at the sample times that both have. The
-/// tolerance contains the difference between the stored runs and their own uncertainty.
+/// Compares each column with the stored run that is nearest to the output, at the sample times that both have. The
+/// allowed error contains the difference between the stored runs and the uncertainty of the stored run.
 pub(super) fn compare(
     case: &Case,
     candidate: &Candidate,
@@ -56,7 +56,7 @@ pub(super) fn compare(
     rows.collect()
 }
 
-/// Returns the valid stored runs of the scene; outdated and damaged runs are skipped.
+/// Returns the valid stored runs of the scene. Outdated and damaged runs are skipped.
 fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
     let of_case = stored::all().into_iter().filter(|stored_run| stored_run.case.name == case.name);
     of_case

@@ -1,4 +1,4 @@
-//! Scene that the output is compared with: a case with its own or with changed parameters, or a scene of the user.
+//! Scene with which the output is compared: a case, with or without changed parameters, or a scene file of the user.
 
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::{Claim, ParameterVariation};
@@ -6,30 +6,30 @@ use grainbench_harness::tolerance::computed;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 
-/// Declared scene of the output.
+/// Scene that the user states for the output.
 pub enum DeclaredScene<'s> {
-    /// A case, with one variant or with the variant that matches the first sample.
+    /// A case with a named variant or, without a name, with the variant that matches the first sample.
     Case {
         /// The case.
         case: &'static Case,
-        /// The variant.
+        /// Name of the variant.
         variant: Option<&'s str>,
-        /// Changed scene keys with their values.
+        /// Changed keys of the scene with their values.
         set: &'s [(String, String)],
     },
-    /// A scene of the user.
+    /// A scene file of the user.
     Scene {
-        /// The name.
+        /// Name of the file without its extension.
         name: String,
-        /// The scene.
+        /// The scene with its changed keys.
         scene: Box<Scene>,
-        /// The scene of the file without changed keys, if it is complete.
+        /// The scene without changed keys; `None` if it is incomplete without them.
         own: Option<Box<Scene>>,
     },
 }
 
 impl DeclaredScene<'_> {
-    /// Returns the case; `None` for a scene of the user.
+    /// Returns the case; `None` for a scene file of the user.
     pub(super) const fn case(&self) -> Option<&'static Case> {
         match self {
             Self::Case { case, .. } => Some(case),
@@ -37,7 +37,7 @@ impl DeclaredScene<'_> {
         }
     }
 
-    /// Returns the case if its parameters are unchanged, as in stored runs.
+    /// Returns the case if none of its parameters is changed, so that its stored runs can be used.
     pub(super) const fn as_stored(&self) -> Option<&'static Case> {
         match self {
             Self::Case { case, set: [], .. } => Some(case),
@@ -60,7 +60,7 @@ impl DeclaredScene<'_> {
         }
     }
 
-    /// Returns the name, with the variant if one is given.
+    /// Returns the name of the case or scene, with the variant if one is named.
     pub(super) fn place(&self) -> String {
         match self {
             Self::Case { case, variant: Some(variant), .. } => format!("{}/{variant}", case.name),
@@ -68,7 +68,7 @@ impl DeclaredScene<'_> {
         }
     }
 
-    /// Returns all scenes that the output may belong to.
+    /// Returns all scenes to which the output may belong.
     pub(super) fn candidates(&self) -> Result<Vec<Candidate>, SceneError> {
         match *self {
             Self::Case { case, variant, set: [] } => candidates(case, variant),
@@ -81,17 +81,17 @@ impl DeclaredScene<'_> {
     }
 }
 
-/// Scene that the output may belong to.
+/// Scene to which the output may belong.
 pub(super) struct Candidate {
     pub(super) variant: String,
     pub(super) scene: Scene,
-    /// The scene without changed keys. It determines the longest interval between samples.
+    /// The scene without changed keys. Its sampling interval determines the longest accepted interval between samples.
     pub(super) own: Option<Scene>,
     /// Claims about this scene.
     pub(super) claims: Vec<Claim>,
 }
 
-/// Returns the scenes of a case, with and without the adjustments of solver-independent claims.
+/// Returns the scenes of a case, and these scenes as changed by solver-independent claims.
 fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidate>, SceneError> {
     let mut names = case.variants()?;
     if !names.iter().any(|name| name == PLAIN) {
@@ -121,7 +121,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     Ok(candidates)
 }
 
-/// Returns the scenes with changed parameters, and the claims whose tolerance can be computed for them.
+/// Returns the scenes of a case with changed parameters, and the claims whose tolerance can be computed for them.
 fn with_other_numbers(
     case: &'static Case,
     variant: Option<&str>,
@@ -141,7 +141,7 @@ fn with_other_numbers(
     names.into_iter().map(candidate).collect()
 }
 
-/// Returns a claim for another scene of the same kind; `None` if its tolerance is unknown there.
+/// Returns a claim for a scene with other parameters; `None` if its tolerance for this scene is unknown.
 fn elsewhere(mut claim: Claim, scene: &Scene) -> Option<Claim> {
     let ParameterVariation { quantity, allowed, because } = claim.elsewhere.take()?;
     let allowed = allowed(scene);

@@ -1,7 +1,7 @@
-//! Folder of the cache of finished runs, outside the source tree.
+//! Cache of finished runs, in a folder outside the source tree.
 //!
-//! The key of a run is a plain hash, so a user who can write the folder can change the results. A folder that another
-//! user owns, or that every user can write, is not used.
+//! A user who can write the folder can change the results, because the keys of runs are plain hashes. A folder is not
+//! used if another user owns it, or if every user can write it.
 
 use super::exit;
 use grainbench::cases::solvers::Registry;
@@ -15,13 +15,13 @@ use std::os::unix::fs::MetadataExt;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
-/// Environment variable with the folder, or `off`.
+/// Environment variable that contains the path of the folder, or `off`.
 const VARIABLE: &str = "GRAINBENCH_CACHE";
 /// Largest size of the cache (bytes).
 const MOST: u64 = 2 << 30;
 
-/// Opens the cache. Returns `None` if the cache is off, if it has no folder, or if the folder cannot be written or
-/// trusted. Under `CI=true` the cache is off unless the variable names a folder.
+/// Opens the cache. Returns `None` if the cache is off, if there is no folder for it, or if the folder cannot be
+/// written or trusted. If `CI=true`, the cache is off unless the environment variable contains a folder.
 pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
     let is_ci = env::var_os("CI").is_some_and(|word| word == "true");
     let folder = match env::var_os(VARIABLE) {
@@ -41,7 +41,8 @@ pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
     }
 }
 
-/// Returns the number of runs from the cache, its folder and the folder's owner, in words.
+/// Returns a text with the number of runs taken from the cache, the folder of the cache and the owner of the folder;
+/// `None` if no run was taken from the cache.
 pub(crate) fn words(cache: &RunCache) -> Option<String> {
     let taken = cache.taken();
     let about = owner(cache.folder()).map(|owner| format!(", {owner}")).unwrap_or_default();
@@ -50,7 +51,7 @@ pub(crate) fn words(cache: &RunCache) -> Option<String> {
         .then(|| format!("{taken} runs taken from the cache of finished runs, with their times: {folder}{about}"))
 }
 
-/// Returns the reason why a folder cannot be trusted: another user owns it, or every user can write it.
+/// Returns the reason why a folder is not trusted: another user owns it, or every user can write it.
 #[cfg(unix)]
 fn distrust(folder: &Path) -> Option<String> {
     let about = fs::metadata(folder).ok()?;
@@ -59,7 +60,7 @@ fn distrust(folder: &Path) -> Option<String> {
         return Some(format!("expected a folder of user {user} or of root, found one of user {}", about.uid()));
     }
     let mode = about.mode() & 0o7777;
-    (mode & 0o002 != 0).then(|| format!("expected a folder that not every user can write, found mode {mode:o}"))
+    (mode & 0o002 != 0).then(|| format!("expected a folder that not all users can write to, found mode {mode:o}"))
 }
 
 #[cfg(not(unix))]
@@ -80,12 +81,12 @@ const fn owner(_: &Path) -> Option<String> {
     None
 }
 
-/// Returns the solvers of the registry, with the cache if there is one.
+/// Returns the solvers of the registry, which use the cache if there is one.
 pub(crate) fn solvers(cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     with(Registry, cache)
 }
 
-/// Returns solvers with the cache if there is one.
+/// Returns the given solvers, which use the cache if there is one.
 pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
     match cache {
         Some(cache) => Arc::new(CachingSolvers::new(solvers, Arc::clone(cache))),
@@ -93,7 +94,7 @@ pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>
     }
 }
 
-/// Returns everything in this program that a solver's runs depend on: its sources, compiler and build options.
+/// Returns the parts of this program on which the runs of a solver depend: its sources, the compiler and the build options.
 fn edition(solver: &str) -> Option<String> {
     let sources = grainbench::kept::sources(solver)?;
     Some(format!("{sources} {}", env!("GRAINBENCH_BUILD")))

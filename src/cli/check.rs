@@ -1,4 +1,4 @@
-//! `grainbench check`: checks the output of any program against a case or scene.
+//! `grainbench check`: judges the output of any program against a case or scene.
 
 use super::exit::{Fault, Outcome, check_writable};
 use super::pattern;
@@ -18,58 +18,58 @@ use std::io;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `grainbench check`.
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
-    /// Case, variant of a case, or your own scene file.
+    /// Case, variant of a case, or scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
     scene: Option<String>,
-    /// Override one key of the scene if your run has other parameters than the case. Exact solutions are computed for
+    /// Override one key of the scene, if your run has other parameters than the case. Exact solutions are computed for
     /// the new value. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Output files, plain, gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at the same steps;
-    /// VTK files (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`); NumPy arrays (`.npz`); CSV tables of grains from
-    /// ParaView, one per time or one for all times; one CSV table of probes.
+    /// Output files, plain or compressed by gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at
+    /// the same steps; VTK files (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`); NumPy arrays (`.npz`); CSV tables of
+    /// grains from ParaView, one per time or one for all times; one CSV table of probes.
     #[arg(long, value_name = "FILE", required_unless_present = "all", num_args = 1..)]
     dump: Vec<PathBuf>,
-    /// Check all outputs in this directory, named `DIR/CASE` and `DIR/CASE/VARIANT`. A folder without output is red.
+    /// Check all outputs in this directory. The output of a case is in `DIR/CASE` or `DIR/CASE/VARIANT`. A folder
+    /// without output is red.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
     all: Option<PathBuf>,
-    /// File that `--all` ignores, by name or by a quoted pattern such as `'*.log'`; repeatable. Any other file that is
-    /// not output is red.
+    /// File name that `--all` ignores, or a quoted pattern such as `'*.log'`. Repeatable. Any other file that is not
+    /// output is red.
     #[arg(long, value_name = "NAME", requires = "all")]
     ignore: Vec<String>,
-    /// Log of the run; by default `log.lammps` or `log.liggghts` next to the first dump.
+    /// Log file of the run. Default: `log.lammps` or `log.liggghts` in the directory of the first dump.
     #[arg(long, value_name = "FILE")]
     log: Option<PathBuf>,
-    /// Time step in seconds, if neither dump nor log contains it.
+    /// Time step in seconds, if neither the dumps nor the log contain it.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     time_step: Option<f64>,
-    /// Time between frames in seconds, if the files are numbered by frame and contain no times.
+    /// Time between frames in seconds, for files that contain frame numbers but no times.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     frame_interval: Option<f64>,
-    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have `id1`, `id2`, `force_x` (on the first
-    /// grain) and an optional `tangential_x`. `WALL.force_x` is the force of a wall on a grain, and `angle` is the
-    /// angle of a disc.
+    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have the columns `id1`, `id2`, `force_x` (on
+    /// the first grain) and, optionally, `tangential_x`. `WALL.force_x` is the force of a wall on a grain, and `angle`
+    /// is the angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Report incomplete output as amber instead of red. The output may end early, and the time between samples may
-    /// exceed both a tenth of the run and the sampling interval of the scene. The whole frames of a truncated file are
-    /// judged.
+    /// Report incomplete output as amber instead of red. The output may then end early or have few samples. Of a
+    /// truncated file, the complete frames are judged. Without this option, samples farther apart than both a tenth of
+    /// the run and the scene's sampling interval are red.
     #[arg(long)]
     partial: bool,
     /// Accept a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
-    /// Determine which changes of the scene the output would reveal: `off` skips this, `limited` takes at most three
+    /// Search for changes of the scene that the output reveals. `off` skips the search, `limited` takes at most three
     /// times the work of the comparison, and `full` tries all changes.
     #[arg(long, value_name = "HOW", default_value = "limited", value_parser = ["off", "limited", "full"])]
     power: String,
     /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
-    /// Directory for the report.
+    /// Directory of the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
     /// Print the results as JSON instead of a table.
@@ -77,7 +77,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Checks the output and writes the report.
+/// Checks one output or all outputs of a directory, and writes the report.
 pub(crate) fn check(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     let mut words = vec!["check".to_owned()];
@@ -96,7 +96,8 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     };
     check_writable(&arguments.out)?;
     let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), sections);
-    // A complete run can still have wrong content, so each output needs at least one result about a quantity.
+    // Each section needs at least one judged result about a quantity, because the coverage alone does not show that the
+    // content is right.
     let is_told = report.sections.iter().all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
         rows.any(|row| is_judged(row) && !is_of_power(row))
@@ -106,7 +107,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     publish(&report, &Output { text: Some(rows(&report)), ..Output::new(out, *json, *strict) })
 }
 
-/// Checks the named output. Returns its section, and its name for the page.
+/// Checks one output. Returns its section and the name of the output for the page.
 fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
     let is_file = Path::new(scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let subject = if is_file {
@@ -149,10 +150,10 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
 /// Default names of log files.
 const LOGS: [&str; 2] = ["log.lammps", "log.liggghts"];
 
-/// Files that `deck` writes as input of a program.
+/// Files that `deck` writes; they are input of a program, not output.
 const INPUTS: [&str; 4] = ["in.lammps", "in.liggghts", "data.grains", "wall-*.stl"];
 
-/// Checks all outputs in the folders of cases and variants. The content of a file decides whether it is output.
+/// Checks all outputs in the folders of cases and variants. The content of a file decides whether the file is output.
 fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     let mut ignored: Vec<Pattern> =
         arguments.ignore.iter().map(|name| pattern::read("--ignore", name)).collect::<Result<_, _>>()?;
@@ -205,18 +206,20 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
             beside.extend(folders);
         }
     }
-    let place = |path: PathBuf| (path, "it is in no folder `CASE` or `CASE/VARIANT`".to_owned());
+    let place = |path: PathBuf| (path, "it is not in a folder `CASE` or `CASE/VARIANT`".to_owned());
     not_judged.extend(empty);
     not_judged.extend(beside_cases.into_iter().chain(beside).map(place));
     if sections.is_empty() && not_judged.is_empty() {
         let folder = folder.display();
-        return Err(Fault::input(format!("{folder}: expected outputs in `CASE` or `CASE/VARIANT` of it, found none")));
+        return Err(Fault::input(format!(
+            "{folder}: expected outputs in its folders `CASE` or `CASE/VARIANT`, found none"
+        )));
     }
     sections.extend((!not_judged.is_empty()).then(|| section_of_not_judged(folder, &not_judged)));
     Ok(sections)
 }
 
-/// Returns the reason why the folder of a case or variant without output is not judged.
+/// Returns the error message for a folder without output. It also states if the scene is unknown.
 fn without_output(scene: &str) -> String {
     let unknown = match Variant::read(scene) {
         Err(Fault::Unknown(message, _)) => format!("; {}", message.trim_end_matches("; there are:")),
@@ -226,12 +229,12 @@ fn without_output(scene: &str) -> String {
     format!("expected output of a run in the folder, found none{unknown}")
 }
 
-/// Returns a section with a red result for each file or folder that was not checked, and the reason.
+/// Returns a section with one red result, and its reason, for each file or folder that was not judged.
 fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section {
     let row = |(path, reason): &(PathBuf, String)| {
         let name = path.strip_prefix(folder).unwrap_or(path).to_string_lossy();
         let row = Verdict {
-            because: "each file and each folder of a case must be judged, or ignored by its name (--ignore)".to_owned(),
+            because: "each file and each folder of a case must be judged or ignored by name (--ignore)".to_owned(),
             source: "content of the file or folder".to_owned(),
             ..Verdict::open("files", format!("{name}, not judged"), "1")
         };
@@ -240,13 +243,14 @@ fn section_of_not_judged(folder: &Path, files: &[(PathBuf, String)]) -> Section 
     Section {
         name: "files".to_owned(),
         title: format!("Files of {} that were not judged", folder.display()),
-        claim: "Each file and each folder below the directory is judged, or ignored by its name.".to_owned(),
+        claim: "Each file and each folder below the directory is judged or ignored by name.".to_owned(),
         verdicts: files.iter().map(row).collect(),
         ..Section::default()
     }
 }
 
-/// Returns the largest number of rows of a snapshot: 16 contacts per grain, and one per grain and wall.
+/// Returns the largest accepted number of rows of a snapshot: 16 contacts per grain, and one contact of each grain with
+/// each wall.
 fn most_rows(subject: &DeclaredScene<'_>) -> Result<u64, Fault> {
     let row_count = |scene: &Scene| scene.grains.len() * (16 + scene.walls.len());
     let most = match subject {
@@ -260,7 +264,7 @@ fn most_rows(subject: &DeclaredScene<'_>) -> Result<u64, Fault> {
     Ok(most as u64)
 }
 
-/// Returns the results of a report, and the number for each outcome.
+/// Returns a table of all results of a report, followed by the number of results of each colour.
 pub(crate) fn rows(report: &Report) -> String {
     let rows = report.sections.iter().flat_map(|section| &section.verdicts);
     let count = |severity| rows.clone().filter(|row| row.outcome.severity() == severity).count();

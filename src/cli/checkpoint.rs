@@ -7,7 +7,7 @@ use std::fs;
 use std::io::ErrorKind;
 use std::path::{Path, PathBuf};
 
-/// File for checkpoints; each checkpoint replaces the previous one.
+/// File of the checkpoints of a run. Each checkpoint replaces the previous one.
 pub(crate) struct Store {
     pub(crate) path: PathBuf,
     /// Number of steps between checkpoints.
@@ -15,7 +15,7 @@ pub(crate) struct Store {
 }
 
 impl Store {
-    /// Rejects a path at which anything other than our checkpoint exists, because it would be replaced.
+    /// Returns an error if the path exists and is not a checkpoint, because a checkpoint would replace it.
     pub(crate) fn refuse_others(&self) -> Result<(), Fault> {
         let refused = |found: &str| {
             let there = self.path.display();
@@ -26,7 +26,7 @@ impl Store {
         match fs::symlink_metadata(&self.path) {
             Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
             Err(error) => refused(&error.to_string()),
-            Ok(metadata) if !metadata.is_file() => refused("something that is no file"),
+            Ok(metadata) if !metadata.is_file() => refused("something that is not a file"),
             Ok(_) => match Checkpoint::is_one(&self.path) {
                 Ok(true) => Ok(()),
                 Ok(false) => refused("another file"),
@@ -35,13 +35,13 @@ impl Store {
         }
     }
 
-    /// Stores a checkpoint atomically.
+    /// Writes a checkpoint in one atomic operation.
     pub(crate) fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
         write_file(&self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))
     }
 }
 
-/// Reads a checkpoint.
+/// Reads a checkpoint from a file.
 pub(crate) fn read(path: &Path) -> Result<Checkpoint, Fault> {
     let refused = |reason: String| Fault::input(format!("{}: {reason}", path.display()));
     let bytes = fs::read(path).map_err(|error| refused(error.to_string()))?;

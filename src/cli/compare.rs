@@ -1,4 +1,4 @@
-//! `grainbench compare`: compares two outputs.
+//! `grainbench compare`: compares the outputs of two runs.
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable};
@@ -18,33 +18,33 @@ use grainbench::reports::{Report, Section, number};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `grainbench compare`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Reference output: grains in any format that `check` reads, or a CSV table; plain, gzip or zstd.
+    /// Reference output: grains in any format that `check` reads, or a CSV table. Plain or compressed by gzip or zstd.
     a: PathBuf,
-    /// Other output of the same kind.
+    /// Second output, of the same kind.
     b: PathBuf,
-    /// Largest accepted difference, as a fraction of the column's largest magnitude (for coordinates: of the largest change).
+    /// Largest accepted difference, as a fraction of the largest magnitude of the column (for coordinates: of the
+    /// largest change).
     #[arg(long, value_name = "FRACTION", default_value_t = 1e-6, value_parser = positive, allow_hyphen_values = true)]
     tolerance: f64,
-    /// Compare only these columns, with the names of the first file.
+    /// Compare only these columns, named as in the first output.
     #[arg(long, value_name = "NAME,…", value_delimiter = ',')]
     columns: Vec<String>,
-    /// Names of the first file's columns in the second file, such as `x=xu,fx=f_x`.
+    /// Names in the second output of columns of the first, such as `x=xu,fx=f_x`.
     #[arg(long, value_name = "FIRST=SECOND,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Time step in seconds, one for both or one for each, for files without times.
+    /// Time step in seconds, for files without times. One number for both outputs, or one for each.
     #[arg(long, value_name = "SECONDS[,SECONDS]", value_delimiter = ',', value_parser = positive, allow_hyphen_values = true)]
     time_step: Vec<f64>,
-    /// Report samples that exist in only one file as amber instead of red. The whole frames of a truncated file are
-    /// compared.
+    /// Report samples that exist in only one output as amber instead of red. Of a truncated file, the complete frames
+    /// are compared.
     #[arg(long)]
     partial: bool,
     /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
-    /// Directory for the report.
+    /// Directory of the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
     /// Print the results as JSON instead of a table.
@@ -52,7 +52,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Compares the outputs and writes the report.
+/// Compares two outputs and writes the report.
 pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     if arguments.time_step.len() > 2 {
@@ -80,27 +80,25 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
 }
 
-/// Columns that identify or describe grains and contain no motion. Their agreement alone does not count as a
-/// comparison.
+/// Columns that identify or describe grains, not their motion. If only these columns agree, nothing counts as compared.
 const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
 
 fn is_label(row: &Verdict) -> bool {
     LABELS.iter().any(|label| row.quantity == quantity(label))
 }
 
-/// Returns the quantity of a column's result.
+/// Returns the name of the quantity of a column's result.
 fn quantity(column: &str) -> String {
     format!("column {column}, worst")
 }
 
-/// Returns the error of an unreadable file. For a truncated file, the error names the option that compares its whole
-/// frames.
+/// Returns the error of a file that cannot be read. For a truncated file, it names the option that compares the complete frames.
 fn unreadable(error: ReadError) -> Fault {
-    let hint = if error.is_cut() { " (--partial compares the whole frames in front of it)" } else { "" };
+    let hint = if error.is_cut() { " (--partial compares the complete frames before it)" } else { "" };
     Fault::input(format!("{error}{hint}"))
 }
 
-/// Returns the names of the outputs: the file names, or the paths if the file names are equal.
+/// Returns the names of the two outputs: the file names, or the paths if the file names are equal.
 fn names(arguments: &Arguments) -> [String; 2] {
     let paths: [&Path; 2] = [&arguments.a, &arguments.b];
     let short = paths.map(|path| path.file_name().unwrap_or_default().to_string_lossy().into_owned());
@@ -112,13 +110,13 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     Section {
         name: "compare".to_owned(),
         title: format!("{b} against {a}"),
-        claim: format!("Whether both have the same values: {}.", counts(comparison)),
+        claim: format!("Both outputs have the same values: {}.", counts(comparison)),
         derivation:
-            "Rows are matched by id, coordinates are unscaled, and tolerances are widened by half a unit of the last \
-             printed place of each file. If the steps differ, the second file is interpolated linearly, with a \
-             tolerance of an eighth of its largest second difference."
+            "Rows are matched by id, and coordinates are unscaled. Each tolerance is widened by half a unit of the \
+             last printed digit of each file. If the steps differ, the second file is interpolated linearly, and the \
+             tolerance is widened by an eighth of its largest second difference."
                 .to_owned(),
-        weak: "Two outputs that agree may both be wrong. Moving grains diverge in two correct outputs too, when \
+        weak: "Two outputs that agree may both be wrong. Two correct outputs of moving grains also differ as soon as \
                rounding differences have grown."
             .to_owned(),
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
@@ -137,7 +135,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     }
 }
 
-/// Returns the number of compared samples, in words.
+/// Returns the numbers of compared and of existing samples, in words.
 fn counts(comparison: &Comparison) -> String {
     let Comparison { compared, interpolated, samples: [a, b], key, .. } = comparison;
     let between = if *interpolated > 0 { format!(", {interpolated} of them interpolated") } else { String::new() };
@@ -145,7 +143,7 @@ fn counts(comparison: &Comparison) -> String {
     format!("{compared} {noun} compared by {}{between}, of {a} and {b}", key.word())
 }
 
-/// Returns the results for coverage: the number of compared samples, and the last of them.
+/// Returns two results about the coverage: the number of compared samples, and the time or step of the last compared sample.
 fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict; 2] {
     let unit = if comparison.key == Key::Time { "s" } else { "1" };
     let row = |quantity: String, unit: &str, value: f64, least: f64, slack: f64| {
@@ -160,15 +158,15 @@ fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict;
         };
         let row = row.judged(&Measurement::new(value, ExpectedValue::Bound(Bound::AtLeast(least)), scale));
         if row.outcome == verdict::Outcome::Fail && partial {
-            return row.left(verdict::Outcome::Known, "missing samples are meant (--partial)");
+            return row.left(verdict::Outcome::Known, "missing samples are accepted because of --partial");
         }
         row
     };
     let fewest = comparison.samples[0].min(comparison.samples[1]) as f64;
-    // The last compared sample may be up to one interval before the later end. If it is a whole interval before, a
-    // sample is missing.
+    // The last compared sample may be earlier than the end of the longer output by less than one interval. If it is
+    // earlier by a whole interval, a sample is missing.
     let (end, slack) = (comparison.last[0].max(comparison.last[1]), (1.0 - 1e-6) * comparison.interval);
-    // If sampling times differ, the samples of the first file count.
+    // If samples are matched by time, all samples of the first file must be compared.
     let least = if comparison.key == Key::Time { comparison.samples[0] as f64 } else { fewest };
     [
         cut(comparison, row("samples that were compared".to_owned(), "1", comparison.compared as f64, least, 0.0)),
@@ -176,17 +174,17 @@ fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict;
     ]
 }
 
-/// Makes the result of the samples amber if a file is truncated.
+/// If a file is truncated, makes a passed result about the samples amber.
 fn cut(comparison: &Comparison, row: Verdict) -> Verdict {
     match comparison.cuts.iter().flatten().next() {
         Some(cut) if row.outcome == verdict::Outcome::Pass => {
-            row.left(verdict::Outcome::Known, format!("whole frames before a cut are meant (--partial): {cut}"))
+            row.left(verdict::Outcome::Known, format!("only the complete frames are compared (--partial): {cut}"))
         }
         _ => row,
     }
 }
 
-/// Returns a result for each column that only one output has.
+/// Returns one result for each column that exists in only one output.
 fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
     let names =
         comparison.lonely.iter().zip([a, b]).flat_map(|(names, file)| names.iter().map(move |name| (name, file)));
@@ -197,7 +195,7 @@ fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
             source: a.to_owned(),
             ..Verdict::open("compare", quantity(name), "1")
         };
-        row.left(verdict::Outcome::NoReference, format!("only {file} has it"))
+        row.left(verdict::Outcome::NoReference, format!("only {file} has this column"))
     };
     names.map(row).collect()
 }
@@ -209,7 +207,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
         allowed: tolerance + open,
         tolerance: ToleranceOrigin::Required,
         because: format!(
-            "required {}, plus {} for the printed digits of both",
+            "required {}, plus {} for the printed digits of both files",
             number::fraction(tolerance),
             number::fraction(open)
         ),
@@ -228,7 +226,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
     }
 }
 
-/// Plots the growth of the differences.
+/// Plots the differences over time or step.
 fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     const MOST: usize = 6;
     let mut curves = Vec::new();
@@ -246,7 +244,7 @@ fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };
     (!curves.is_empty()).then(|| Figure {
         name: "differences".to_owned(),
-        title: "How the differences grow".to_owned(),
+        title: "Growth of the differences".to_owned(),
         caption: "The largest difference of each column at each step, in units of its scale.".to_owned(),
         drawing: Drawing::Graph(Graph { x: axis(key.word(), false), y: axis("difference / scale", true), curves }),
     })

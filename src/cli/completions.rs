@@ -5,17 +5,15 @@ use grainbench::store::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Arguments of `completions`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Shell that reads the script.
+    /// Shell that reads the completion script.
     shell: clap_complete::Shell,
 }
 
-/// Arguments of `grainbench man`.
 #[derive(clap::Args)]
 pub(crate) struct ManArguments {
-    /// Directory for the pages of all commands; by default the page of `grainbench` is printed.
+    /// Directory for the pages of all commands. Default: print the page of `grainbench`.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }

@@ -17,16 +17,15 @@ use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of `grainbench conform`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Solvers, by name or manifest; all built-in solvers by default.
+    /// Names or manifests of solvers. Default: all built-in solvers.
     #[arg(value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
     /// Treat amber results as red.
     #[arg(long)]
     strict: bool,
-    /// Directory for the report.
+    /// Directory of the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
     /// Print the results as JSON instead of a table.
@@ -34,7 +33,7 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Tests the solvers and writes the report.
+/// Tests the conformance properties of the solvers and writes the report.
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     check_writable(&arguments.out)?;
@@ -60,15 +59,15 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     publish(&report, &Output::new(&arguments.out, arguments.json, arguments.strict))
 }
 
-/// Solver with its conformance properties and limitations.
+/// Solver whose conformance properties are tested.
 pub(crate) struct ConformingSolver {
     pub(crate) solver: Arc<dyn Solver>,
     terms: Terms,
-    /// True if the solver is built in. An external solver may have the name of a built-in one.
+    /// True if the solver is built in. An external solver may have the name of a built-in solver.
     is_ours: bool,
 }
 
-/// Returns the named solvers and external solvers with their conformance properties. If none is named, returns all
+/// Returns the named built-in and external solvers with their conformance properties. Without names, returns all
 /// built-in solvers.
 pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
@@ -83,27 +82,26 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     Ok(solvers)
 }
 
-/// Tests the conformance of a solver. Finished runs of our solvers may come from a cache.
+/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache.
 pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<Control>) {
     let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
     conformance::judge_kept(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
 }
 
-/// Returns the section of some conformance results.
+/// Returns a report section with results of conformance properties.
 pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
     Section {
         name: "conformance".to_owned(),
         title: "Conformance properties".to_owned(),
-        claim: format!("For every method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
-        derivation: "Each property is tested in its own scenes: a grain that collides with four others, with friction \
-                     and without; two grains that separate; one grain held between two walls. The same solver with an \
-                     error of 10⁻⁹ must fail. A documented exception of a method is amber with its reason and red \
-                     beyond the stated size."
+        claim: format!("For each method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
+        derivation: "Each property is tested in its own scenes. Examples are a grain that collides with four others, \
+                     with friction and without, two grains that separate, and one grain held between two walls. The \
+                     same solver with an error of 10⁻⁹ must fail. A documented exception of a method is amber and \
+                     states its reason. If the error exceeds the stated size, the exception is red."
             .to_owned(),
-        weak:
-            "A solver can satisfy all properties and still be wrong: it may conserve momentum, be symmetric and have \
-               the wrong stiffness. Grid methods run in the plane, with two cells per radius."
-                .to_owned(),
+        weak: "A solver can satisfy all properties and still be wrong. For example, it may conserve momentum and be \
+               symmetric but have the wrong stiffness. Grid methods run in two dimensions, with two cells per radius."
+            .to_owned(),
         verdicts,
         controls,
         ..Section::default()

@@ -22,39 +22,37 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Arguments of `grainbench cost`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to measure; all cases with an exact solution by default.
+    /// Cases to measure. Default: all cases with an exact solution.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     pub(crate) cases: Vec<String>,
-    /// Select a solver, by name or manifest; repeatable.
+    /// Measure only this solver, by name or manifest. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Resolution levels: `all` includes points that take more than twenty seconds.
+    /// Resolution levels. `all` includes points that take more than 20 s.
     #[arg(long, value_name = "default|all", default_value = "default", value_parser = ["default", "all"])]
     pub(crate) levels: String,
-    /// Also measure the cost of the parts of a step, and of a step with one and with ten thousand grains. If no case is
-    /// named, these costs are always measured.
+    /// Also measure the cost of the parts of a step, and of a step with one and with 10,000 grains. Without a named
+    /// case, these costs are always measured.
     #[arg(long)]
     pub(crate) prices: bool,
     /// Measure finished points again.
     #[arg(long)]
     no_cache: bool,
-    /// Compare with an earlier `results.json`: counts exactly, times within their spread.
+    /// Compare with an earlier `results.json`. Counts must be equal, and times must agree within their spread.
     #[arg(long, value_name = "OLD.json", conflicts_with = "plan")]
     against: Option<PathBuf>,
-    /// Store the results in the source tree, for the first screen of the report. Requires all cases and all built-in
-    /// solvers.
+    /// Store the results in the source tree, for the first screen of the report. Needs all cases and all built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     update_stored: bool,
-    /// Directory for the report and the finished points.
+    /// Directory of the report and of the finished points.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     pub(crate) out: PathBuf,
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
-    /// Measure only errors and operation counts in a plan. Without timing, tasks can share a machine.
+    /// Measure only errors and operation counts, in a plan. Without timing, several tasks can run on one machine.
     #[arg(long, requires = "plan", conflicts_with = "prices")]
     counts: bool,
     #[command(flatten)]
@@ -62,7 +60,7 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Returns the arguments of a plan; none if no plan is requested.
+    /// Returns the arguments of the plan; none without `--plan`.
     pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
         let planned = self.plan.arguments("cost", &self.cases, &self.solver)?;
         let levels = if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() };
@@ -71,10 +69,10 @@ impl Arguments {
     }
 }
 
-/// Rounds of the measurement of a step.
+/// Number of rounds in which the cost of a step is measured.
 pub(crate) const ROUNDS: u32 = 5;
 
-/// Measures the points and writes the report. The report is updated after each target quantity.
+/// Measures the points and writes the report, which is updated after each target quantity.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let subjects = subjects(&arguments.cases)?;
     let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
@@ -125,13 +123,13 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     publish_study(&study, output, is_red(&study))
 }
 
-/// Returns true if a study measures no error, or if a change since an earlier session is for the worse.
+/// Returns true if a study measures no error, or if a value has become worse since an earlier study.
 pub(crate) fn is_red(study: &Study) -> bool {
     let measures = study.diagrams.iter().flat_map(|diagram| &diagram.points).any(|point| point.error.is_some());
     !measures || study.changes.iter().any(|change| change.worse)
 }
 
-/// Compares a study with the points of an earlier session from the file `path`.
+/// Compares a study with the points of an earlier study, and names the file `path` of that study in the report.
 pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
     let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
     study.changes = compare(old, &new);
@@ -161,7 +159,7 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     Ok(found)
 }
 
-/// Returns the command and its options that differ from the default.
+/// Returns the command, the cases and the options that differ from the default, in words.
 pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["cost".to_owned()];
     words.extend(arguments.cases.iter().cloned());
@@ -177,8 +175,8 @@ pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
-/// Returns the summary of a cost study as text: one line per target quantity and error target, then the changes since
-/// an earlier session.
+/// Returns the summary of a cost study as text: one line per target quantity and error target, followed by the changes
+/// since an earlier study.
 pub(crate) fn text(study: &Study) -> String {
     let mut text = String::new();
     for diagram in &study.diagrams {
@@ -201,7 +199,7 @@ pub(crate) fn text(study: &Study) -> String {
     text
 }
 
-/// Progress of a study, with the number of reused results.
+/// Progress display of a study, which counts reused results.
 pub(crate) struct Follower {
     progress: Option<Progress>,
     reused: u64,
@@ -212,7 +210,7 @@ impl Follower {
         Self { progress: Some(Progress::new(pieces, what)), reused: 0 }
     }
 
-    /// Creates a follower without display.
+    /// Creates a progress display that prints nothing.
     pub(crate) const fn none() -> Self {
         Self { progress: None, reused: 0 }
     }

@@ -1,4 +1,4 @@
-//! `grainbench deck`: writes the input of another program for a scene.
+//! `grainbench deck`: writes the input files of another program for a scene.
 
 use super::exit::{Fault, Outcome, check_folder, print};
 use super::subject;
@@ -9,37 +9,36 @@ use grainbench::store::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Default time step of the user's scenes, as a fraction of the critical one.
+/// Default time step for scene files, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Arguments of `grainbench deck`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     scene: String,
-    /// Program: `lammps` or `liggghts`.
+    /// Program that reads the input: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
     /// Use the scene for which the exact solution holds for any solver, for example with a stiffer contact. `check`
     /// recognizes this scene by its initial state.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
-    /// Override one key of the scene; repeatable.
+    /// Override one key of the scene. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Time step as a fraction of the critical one; by default the level of the case, or 0.1.
+    /// Time step as a fraction of the critical one. Default: the default of the case, or 0.1 for a scene file.
     #[arg(long, value_name = "FRACTION", value_parser = positive, allow_hyphen_values = true, conflicts_with = "time_step")]
     time_step_fraction: Option<f64>,
     /// Time step in seconds.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     time_step: Option<f64>,
-    /// Directory for the deck.
+    /// Directory of the input files.
     #[arg(long, value_name = "DIR", default_value = "grainbench-deck")]
     out: PathBuf,
 }
 
-/// Writes a deck.
+/// Writes the input files of a program and prints the command that runs it.
 pub(crate) fn deck(arguments: &Arguments) -> Outcome {
     let name = arguments.program.as_str();
     let program =

@@ -1,4 +1,4 @@
-//! Outcomes of an earlier run.
+//! Outcomes in the report of an earlier run.
 
 use super::exit::Fault;
 use grainbench::harness::claim::Claim;
@@ -9,10 +9,10 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Key that identifies a result: case, variant, solver, resolution and quantity.
+/// Key of a result: case, variant, solver, resolution and quantity.
 type Name = [String; 5];
 
-/// Results and controls from a `results.json` file.
+/// Results and controls of an earlier report, read from `results.json`.
 #[derive(Deserialize)]
 pub(crate) struct EarlierReport {
     #[serde(default)]
@@ -33,7 +33,7 @@ fn name(row: &Verdict) -> Name {
 }
 
 impl EarlierReport {
-    /// Reads the directory of a report, or its `results.json`. `place` is the option that names the path.
+    /// Reads an earlier report. `path` is its directory or its `results.json`, and `place` is the option that contains the path.
     pub(crate) fn read(place: &str, path: &Path) -> Result<Self, Fault> {
         let file = if path.is_dir() { path.join("results.json") } else { path.to_owned() };
         let fault = |found: String| {
@@ -47,7 +47,8 @@ impl EarlierReport {
         serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
     }
 
-    /// Returns the cases that an interrupted run named; none for another run or for all cases.
+    /// Returns the cases that an interrupted run named. The list is empty for a run that was not interrupted, and for a
+    /// run without named cases.
     pub(crate) fn cases(&self) -> Vec<String> {
         let options = if self.is_interrupted() { &self.provenance.options[..] } else { &[] };
         let is_case = |words: &&String| !words.starts_with("--") && !words.starts_with("interrupted:");
@@ -58,13 +59,13 @@ impl EarlierReport {
         self.provenance.options.iter().any(|words| words.starts_with("interrupted:"))
     }
 
-    /// Returns true if a claim of a case was red: its result with this solver was red, or its control stayed green.
+    /// Returns true if a result of the claim with this solver was red, or if its control did not fail.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
         rows.into_iter().any(is_red) || controls.iter().any(|control| !control.turned_red)
     }
 
-    /// Returns true if an interrupted run omitted a claim of a case or its control.
+    /// Returns true if an interrupted run omitted the claim or its control.
     pub(crate) fn was_left_out(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
         self.is_interrupted() && (rows.is_empty() || with_controls && controls.is_empty())
@@ -84,10 +85,10 @@ impl EarlierReport {
         (rows.collect(), self.controls.iter().filter(is_its).collect())
     }
 
-    /// Returns the differences of a report from the earlier one, one line per result or control. Lines that turned red
-    /// come first.
+    /// Returns the differences between a report and the earlier one, one line per result or control. Lines of red
+    /// results come first.
     ///
-    /// If `is_whole` is false, earlier results of cases that the report does not contain are ignored.
+    /// If `is_whole` is false, earlier results of cases that are not in the report are ignored.
     pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
         let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
         let before: BTreeMap<Name, &Verdict> = self.verdicts.iter().map(|row| (name(row), row)).collect();

@@ -23,21 +23,20 @@ use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
 
-/// Arguments of `grainbench effects`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases, or your own scene file; all cases by default.
+    /// Cases, or one scene file. Default: all cases.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     cases: Vec<String>,
     #[command(flatten)]
     yours: SceneOptions,
-    /// Repeat finished parts.
+    /// Repeat the finished parts of the study.
     #[arg(long)]
     no_cache: bool,
-    /// Store the results in the source tree, for the first screen of the report. Requires all cases.
+    /// Store the results in the source tree, for the first screen of the report. Needs all cases.
     #[arg(long, conflicts_with = "cases")]
     update_stored: bool,
-    /// Directory for the report and the finished parts.
+    /// Directory of the report and of the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
     /// Print the results as JSON instead of text.
@@ -45,26 +44,26 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Options for a scene of the user.
+/// Options for a scene file.
 #[derive(clap::Args)]
 struct SceneOptions {
-    /// Solver for your own scene file.
+    /// Solver for the scene file, by name or manifest.
     #[arg(long, value_name = "NAME|SOLVER.toml", default_value = SOLVER)]
     solver: String,
     #[command(flatten)]
     step: Step,
-    /// Smallest relevant change of a probe, as a fraction of its largest value.
+    /// Smallest relevant change of a probe, as a fraction of the largest value of the probe.
     #[arg(long, value_name = "FRACTION", default_value_t = MATTERS, value_parser = positive, allow_hyphen_values = true)]
     matters: f64,
 }
 
-/// Default solver for a scene of the user.
+/// Default solver for a scene file.
 const SOLVER: &str = "dem";
-/// Default of the smallest relevant change of a probe, as a fraction of its largest value.
+/// Default of the smallest relevant change of a probe, as a fraction of the probe's largest value.
 const MATTERS: f64 = 0.01;
 
 impl SceneOptions {
-    /// Returns true if all options have their defaults. Cases set these options themselves and would ignore them.
+    /// Returns true if all options have their defaults. Cases define these settings themselves and would ignore the options.
     fn is_usual(&self) -> bool {
         self.solver == SOLVER && self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq()
     }
@@ -78,16 +77,16 @@ impl SceneOptions {
     }
 }
 
-/// Tests the effects and writes the report. The report is updated after each case.
+/// Tests the effects and writes the report, which is updated after each case.
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
         if arguments.cases.len() > 1 {
-            return Err(Fault::input(format!("{scene}: expected one scene file and no further case")));
+            return Err(Fault::input(format!("{scene}: expected no case in addition to a scene file")));
         }
         return of_scene(scene, arguments);
     }
     if !arguments.yours.is_usual() {
-        let found = "found none: a case sets its own solvers, steps and quantities";
+        let found = "found no scene file: a case sets its own solvers, steps and quantities";
         return Err(Fault::input(format!(
             "--solver, --time-step, --time-step-fraction, --matters: expected a scene file with them, {found}"
         )));
@@ -130,7 +129,7 @@ fn is_scene(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
 }
 
-/// Tests the effects of a scene of the user.
+/// Tests the effects of a scene file.
 fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let yours = &arguments.yours;
     let (scene, _) = subject::scene(name, &[])?;
@@ -146,12 +145,12 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let effects: Vec<Effect> = Effect::switches().collect();
     let start = Instant::now();
     let mut follower = Follower::new(effects.len() as u64 + 1, "effects");
-    follower.now("the scene as it stands");
+    follower.now("the unchanged scene");
     let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
     follower.done(false);
     if whole.series.columns.is_empty() {
         return Err(Fault::input(format!(
-            "{name}: expected probes, which show the influence of an effect, found none"
+            "{name}: expected probes, because they show the influence of an effect, found none"
         )));
     }
     let mut study = Study::new(provenance(vec!["effects".to_owned(), name.to_owned()], 0.0));
@@ -170,7 +169,8 @@ pub(crate) fn is_red(study: &Study) -> bool {
     study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
 }
 
-/// Writes and prints the results. The outcome is red if an absent effect with a neutral value changes a result.
+/// Writes and prints the results. The exit code is red if an absent effect changes a result when it is compiled in with
+/// a neutral value.
 fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     let mut text = String::new();
     for entry in &study.ledger {
@@ -183,7 +183,7 @@ fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
     publish_study(study, output, is_red(study))
 }
 
-/// Returns the effects studies of the named cases, with their effects.
+/// Returns the study of each named case, with the effects to test.
 fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();

@@ -1,4 +1,4 @@
-//! Exit codes, messages, and printing.
+//! Exit codes, messages and output on the terminal.
 
 use grainbench::scene::error::{SceneError, did_you_mean};
 use grainbench::scene::text::{shortened, tamed};
@@ -16,28 +16,28 @@ pub(crate) type Outcome = Result<ExitCode, Fault>;
 pub(crate) enum Fault {
     /// Bad input or usage: exit code 2.
     Input(String),
-    /// Bad input with an unknown name, and the known names, which are printed one per line; exit code 2.
+    /// Bad input with an unknown name: message, and the known names, which are printed one per line. Exit code 2.
     Unknown(String, Vec<String>),
     /// Failure during a run, such as a crash of our solver or a full disk; exit code 1.
     Broken(String),
 }
 
-/// Exit code if a result fails, a control stays green, or a solver crashes.
+/// Exit code if a result is red, a control does not fail, or a run fails.
 pub(crate) const RED: u8 = 1;
 
-/// Largest number of known names that are printed on one line.
+/// Largest number of known names that fit on one line.
 const MOST_ON_A_LINE: usize = 6;
 
-/// Exit code of bad input or usage; clap uses the same one.
+/// Exit code for bad input or usage; it is also the exit code of clap.
 const BAD_INPUT: u8 = 2;
 
 impl Fault {
-    /// Returns an error of input or usage.
+    /// Returns an error for bad input or usage.
     pub(crate) fn input(message: impl Display) -> Self {
         Self::Input(message.to_string())
     }
 
-    /// Returns the error of a failed write. A full disk is not an input error.
+    /// Returns the error of a failed write. A full disk counts as a failure during the run, not as bad input.
     pub(crate) fn writing(error: impl std::error::Error + 'static) -> Self {
         let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
         while let Some(inner) = cause {
@@ -49,7 +49,7 @@ impl Fault {
         Self::input(error)
     }
 
-    /// Returns the error of a word that is not among the known ones.
+    /// Returns the error of an unknown word, with the known words.
     pub(crate) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Self {
         let mut names: Vec<&str> = known.clone().into_iter().collect();
         let mut seen = BTreeSet::new();
@@ -92,18 +92,18 @@ impl From<SceneError> for Fault {
     }
 }
 
-/// Prints a line on the standard error. A closed standard error is ignored.
+/// Prints a message on one line of the standard error. A closed standard error is ignored.
 pub(crate) fn say(kind: &str, message: &str) {
     let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
     let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&shortened(&one_line), |_| false));
 }
 
-/// Prints text on the standard output. A reader that closes the pipe early, as `head` does, is not an error.
+/// Prints text on the standard output. If the reader closes the pipe early, as `head` does, this is not an error.
 pub(crate) fn print(text: &str) -> Result<(), Fault> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
-/// Prints what a function writes, in pieces, so that a large output takes no memory.
+/// Prints the output of a function in blocks, so that large output needs little memory.
 pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
     let mut out = TamedOutput { out: io::stdout().lock(), piece: Vec::new() };
     match write(&mut out).and_then(|()| out.flush()) {
@@ -114,14 +114,14 @@ pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -
     }
 }
 
-/// Standard output without control characters other than line feeds and tabs.
+/// Standard output that replaces all control characters except line feeds and tabs.
 struct TamedOutput {
     out: io::StdoutLock<'static>,
     piece: Vec<u8>,
 }
 
 impl TamedOutput {
-    /// Writes the complete characters of the piece.
+    /// Prints the complete characters of the buffered block.
     fn write_piece(&mut self) -> io::Result<()> {
         let end = match std::str::from_utf8(&self.piece) {
             Err(error) if error.error_len().is_none() => error.valid_up_to(),
@@ -136,7 +136,7 @@ impl TamedOutput {
 
 impl Write for TamedOutput {
     fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
-        /// Size of a piece (bytes).
+        /// Size of a block (bytes).
         const PIECE: usize = 1 << 16;
         let bytes = &bytes[..bytes.len().min(PIECE)];
         self.piece.extend_from_slice(bytes);
@@ -158,13 +158,13 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
     print(&(text + "\n"))
 }
 
-/// Rejects an output directory that cannot be written. It may contain other files of the user.
+/// Returns an error if an output directory cannot be written. The directory may contain other files of the user.
 pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
-    // The test directory is removed at once, so that an interrupted run leaves nothing next to the output directory.
+    // The temporary directory is removed immediately, so that an interrupted run leaves nothing beside the output directory.
     grainbench::store::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
 }
 
-/// Rejects an output directory before any computation. The directory must be writable and must not contain a page or
+/// Checks an output directory before any computation. The directory must be writable and must not contain a page or
 /// manifest of another program.
 pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
     check_folder(out)?;

@@ -1,4 +1,4 @@
-//! `grainbench fields`: computes continuum fields of grains or material points, cell by cell.
+//! `grainbench fields`: computes continuum fields from grains or material points, cell by cell.
 
 use super::exit::{Fault, Outcome, check_writable, print, print_json, say};
 use super::value::{path_and_value, positive, whole};
@@ -20,82 +20,83 @@ use grainbench::store::refuse_mixed;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of `grainbench fields`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory written by `simulate`, or a LAMMPS or LIGGGHTS dump of grains.
     #[arg(value_name = "DIR|DUMP")]
     source: PathBuf,
-    /// Cell size (m), one number for all axes or one for each axis. The size is adjusted so that whole cells fill the
-    /// box.
+    /// Cell size in metres: one number for all axes, or one for each axis. The size is adjusted so that whole cells fill the box.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive, required = true)]
     cell: Vec<f64>,
-    /// Dump of the contacts (`dump local`) at the same steps.
+    /// Dump of the contacts (`dump local`) at the steps of the grain dump.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// Names of columns in the files, such as `x=xu`; contacts have `id1`, `id2`, `force_x` (on the first grain) and an optional
-    /// `tangential_x`.
+    /// Names of columns in the files, such as `x=xu`. Contacts have the columns `id1`, `id2`, `force_x` (on the first
+    /// grain) and, optionally, `tangential_x`.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
-    /// Radius of all grains (m), for a dump without radii.
+    /// Radius of all grains in metres, for a dump without radii.
     #[arg(long, value_name = "METRES", value_parser = positive)]
     radius: Option<f64>,
-    /// Density of all grains (kg/m³; kg/m² for discs), for a dump without mass and density.
+    /// Density of all grains in kg/m³ (discs: kg/m²), for a dump without mass and density.
     #[arg(long, value_name = "DENSITY", value_parser = positive)]
     density: Option<f64>,
-    /// Time step (s), for a dump without times.
+    /// Time step in seconds, for a dump without times.
     #[arg(long, value_name = "SECONDS", value_parser = positive)]
     time_step: Option<f64>,
-    /// Use the whole frames of a truncated dump and report the truncation.
+    /// Use the complete frames of a truncated dump, and report the truncation.
     #[arg(long)]
     partial: bool,
-    /// 2 for discs in the plane z = 0, 3 for spheres; by default the dimension of the stored run.
+    /// Dimension: 2 for discs in the plane z = 0, 3 for spheres. Default: the dimension of the stored run, or 3 for a dump.
     #[arg(long, value_name = "2|3", value_parser = whole::<u8>(2, 3))]
     dimension: Option<u8>,
-    /// Lower corner of the cells (m); by default the corner of the box.
+    /// Lower corner of the cells in metres. Default: the lower corner of the box.
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
     low: Vec<f64>,
-    /// Upper corner of the cells (m).
+    /// Upper corner of the cells in metres. Default: the upper corner of the box.
     #[arg(long, value_name = "X,Y,Z", value_delimiter = ',', allow_hyphen_values = true)]
     high: Vec<f64>,
-    /// First time of the analysis (s).
+    /// First time of the analysis in seconds. Default: the first snapshot.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     from: Option<f64>,
-    /// Last time of the analysis (s).
+    /// Last time of the analysis in seconds. Default: the last snapshot.
     #[arg(long, value_name = "SECONDS", allow_hyphen_values = true)]
     to: Option<f64>,
-    /// Compute velocities from the displacements since the previous frame instead of using instantaneous velocities.
+    /// Compute velocities from displacements since the previous frame, instead of using instantaneous velocities.
     #[arg(long)]
     between: bool,
-    /// Stress of grains: instantaneous, or the mean since the previous frame, which is the default if the run contains
-    /// `mean-virial`.
+    /// Stress of grains: `instant`, or `mean` for the mean since the previous frame. Default: `mean` if the run
+    /// contains `mean-virial`, otherwise `instant`.
     #[arg(long, value_name = "WHICH", value_parser = ["instant", "mean"])]
     stress: Option<String>,
-    /// Track elements that move with the flow and start as boxes of this size (m): one number for all axes or one for each axis.
+    /// Track elements that move with the flow. They start as boxes of this size in metres: one number for all axes, or
+    /// one for each.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive)]
     tracers: Vec<f64>,
-    /// Upward direction of the free surface; by default y in two dimensions and z in three.
+    /// Upward direction, towards the free surface. Default: y in two dimensions, z in three.
     #[arg(long, value_name = "AXIS", value_parser = ["x", "y", "z", "-x", "-y", "-z"], allow_hyphen_values = true)]
     up: Option<String>,
-    /// Packing fraction below which means exclude a surface cell and the cell under it.
+    /// Packing fraction that marks the free surface. Cells with a smaller packing fraction, and the cells directly
+    /// under them, are left out of averages.
     #[arg(long, value_name = "FRACTION", value_parser = positive, default_value_t = 0.4)]
     surface: f64,
-    /// Smallest number of grains or points in a cell that means include.
+    /// Leave cells with fewer grains or points than this number out of averages.
     #[arg(long, value_name = "NUMBER", default_value_t = 8)]
     fewest: usize,
-    /// Exclude cells with a centre within `r` of an orifice from means (m), such as `x=0,z=0,r=7.5` for a slit along y.
+    /// Leave cells out of averages if their centre is within `r` metres of an orifice, such as `x=0,z=0,r=7.5` for a
+    /// slit along y.
     #[arg(long, value_name = "x=…,z=…,r=…", allow_hyphen_values = true)]
     orifice: Option<String>,
-    /// Exclude cells with a smaller shear rate |D₀| from means (1/s).
+    /// Leave cells out of averages if their shear rate |D₀| is below this value in 1/s.
     #[arg(long, value_name = "RATE", value_parser = positive)]
     flowing: Option<f64>,
-    /// Number of blocks of frames for confidence intervals.
+    /// Number of blocks of frames, from which the confidence intervals are computed.
     #[arg(long, value_name = "NUMBER", default_value_t = 8, value_parser = whole(2, u16::MAX))]
     blocks: u16,
-    /// Directory for tables, image data and figures.
+    /// Directory of the tables, image data and figures.
     #[arg(long, value_name = "DIR", default_value = "grainbench-fields")]
     out: PathBuf,
-    /// Also write Parquet tables.
+    /// Also write the tables as Parquet.
     #[arg(long)]
     parquet: bool,
     /// Print the summary as JSON.
@@ -103,12 +104,12 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Largest number of cells of a grid.
+/// Largest accepted number of cells of a grid.
 const MOST_CELLS: f64 = 1e6;
-/// Largest number of cells in all frames together.
+/// Largest accepted number of cells of all frames together.
 const MOST_ELEMENTS: usize = 20_000_000;
 
-/// Reads the snapshots, averages them over the cells, and writes the fields.
+/// Reads the snapshots, computes the fields in all cells, and writes them.
 pub(crate) fn fields(arguments: &Arguments) -> Outcome {
     check_writable(&arguments.out)?;
     let mut course: Option<Course> = None;
@@ -128,13 +129,14 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         }
         if let Some(flag) = needs_time.filter(|_| !snapshot.points.is_empty()) {
             return Err(Fault::input(format!(
-                "{flag}: expected grains to follow, found material points, which have no names"
+                "{flag}: expected grains with ids, found material points, which have no ids"
             )));
         }
         course.add(snapshot);
         if course.grid.cells() * course.frames.len() > MOST_ELEMENTS {
             return Err(Fault::input(format!(
-                "expected at most {} elements in all frames, found more: take larger cells, or fewer frames (--from, --to)",
+                "expected at most {} elements in all frames, found more; use larger cells or fewer frames (--from, \
+                 --to)",
                 number::count(MOST_ELEMENTS as u64)
             )));
         }
@@ -148,8 +150,11 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
     let there = arguments.source.display();
     let Some(course) = course.filter(|course| !course.frames.is_empty()) else {
         let what = if arguments.between { "two snapshots or more" } else { "a snapshot" };
-        let hint =
-            if arguments.source.is_dir() { " (a large run keeps them with `simulate --write parquet`)" } else { "" };
+        let hint = if arguments.source.is_dir() {
+            " (`simulate --write parquet` stores the snapshots of a large run)"
+        } else {
+            ""
+        };
         return Err(Fault::input(format!("{there}: expected {what} in the selected time interval, found fewer{hint}")));
     };
     let summary = Summary::new(&course, there.to_string(), usize::from(arguments.blocks));
@@ -177,7 +182,7 @@ fn of_directory(
     ];
     if let Some((_, flag)) = beside_a_dump.into_iter().find(|(given, _)| *given) {
         return Err(Fault::input(format!(
-            "{flag}: expected a dump to be beside, found the directory {}",
+            "{flag}: expected a dump with this option, found the directory {}",
             dir.display()
         )));
     }
@@ -185,7 +190,7 @@ fn of_directory(
     each_snapshot(dir, Fault::input, take)
 }
 
-/// Reads the snapshots of a dump.
+/// Reads the snapshots of a dump of grains.
 fn of_dump(
     path: &Path,
     arguments: &Arguments,
@@ -200,7 +205,7 @@ fn of_dump(
         partial: arguments.partial,
     };
     if (arguments.from.is_some() || arguments.to.is_some()) && arguments.time_step.is_none() {
-        // In a dump without times, a time interval would select nothing without an error.
+        // If the dump has no times, `--from` and `--to` would select nothing without any message.
         let mut first = GrainDump::open(path, None, beside.clone()).map_err(Fault::input)?;
         if first.read().map_err(Fault::input)?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
             return Err(Fault::input("--from, --to: expected a dump with times, or the option `--time-step`"));
@@ -211,15 +216,14 @@ fn of_dump(
         take(snapshot)?;
     }
     if let Some(cut) = dump.cut() {
-        say("warning", &format!("whole frames before a cut alone (--partial): {cut}"));
+        say("warning", &format!("only the complete frames are read (--partial): {cut}"));
     }
     Ok(())
 }
 
-/// Returns the error of an unreadable dump. For a truncated dump, the error names the option that accepts its whole
-/// frames.
+/// Returns the error of a dump that cannot be read. For a truncated dump, it names the option that uses the complete frames.
 fn unreadable(error: ReadError) -> Fault {
-    let hint = if error.is_cut() { " (--partial takes the whole frames in front of it)" } else { "" };
+    let hint = if error.is_cut() { " (--partial reads the complete frames before it)" } else { "" };
     Fault::input(format!("{error}{hint}"))
 }
 
@@ -231,7 +235,7 @@ fn is_plane(snapshot: &Snapshot) -> bool {
     (snapshot.bounds.0.z, snapshot.bounds.1.z) == (-0.5, 0.5) && heights.all(|height| height == 0.0)
 }
 
-/// Creates the grid over the first snapshot, and the masks.
+/// Creates the grid in the box of the first snapshot, and the masks that leave cells out of averages.
 fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     let space = match arguments.dimension {
         Some(2) => Dimension::Two,
@@ -251,7 +255,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     let cells: f64 = (0..dimension).map(|axis| ((high[axis] - low[axis]) / size[axis]).round().max(1.0)).product();
     if cells > MOST_CELLS {
         return Err(Fault::input(format!(
-            "--cell: expected at most {MOST_CELLS} cells, found {cells}: take larger ones"
+            "--cell: expected at most {MOST_CELLS} cells, found {cells}; use larger cells"
         )));
     }
     let up = match arguments.up.as_deref() {
@@ -259,7 +263,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
         Some(word) => (usize::from(word.as_bytes()[word.len() - 1] - b'x'), !word.starts_with('-')),
     };
     if up.0 >= dimension {
-        return Err(Fault::input("--up: expected x or y in the plane, found z"));
+        return Err(Fault::input("--up: expected x or y in two dimensions, found z"));
     }
     let masks = Masks {
         fewest: arguments.fewest.max(1),
@@ -282,7 +286,7 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     Ok(course)
 }
 
-/// Returns the requested cell size (m), if it fits into the box from `low` to `high` (m).
+/// Returns the cell size (m) along each axis, if the box from `low` to `high` (m) is large enough.
 fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension: usize) -> Result<Vector3<f64>, Fault> {
     let size = match *given {
         [all] => Vector3::repeat(all),
@@ -296,13 +300,14 @@ fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension:
         let name = ["x", "y", "z"][axis];
         if !(length > 0.0 && length.is_finite()) {
             return Err(Fault::input(format!(
-                "expected a box that is wide along {name}, found {length} m from {} to {}: set --low and --high",
+                "expected a box with a width above zero along {name}, found {length} m from {} to {}; set --low and \
+                 --high",
                 low[axis], high[axis]
             )));
         }
         if size[axis] > length * (1.0 + 1e-9) {
             return Err(Fault::input(format!(
-                "{flag}: expected at most the {length} m that the box is wide along {name}, found {}",
+                "{flag}: expected at most {length} m, the width of the box along {name}, found {}",
                 size[axis]
             )));
         }
@@ -310,10 +315,10 @@ fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension:
     Ok(size)
 }
 
-/// Reads the centre and radius of an orifice, such as `x=0,z=0,r=7.5`.
+/// Reads the centre and the radius of an orifice (m), such as `x=0,z=0,r=7.5`.
 fn orifice(text: &str) -> Result<Orifice, Fault> {
     let fault =
-        || Fault::input(format!("--orifice: expected places and a reach such as x=0,z=0,r=7.5, found `{text}`"));
+        || Fault::input(format!("--orifice: expected coordinates and a radius such as x=0,z=0,r=7.5, found `{text}`"));
     let (mut middle, mut reach) = ([None; 3], None);
     for part in text.split(',') {
         let (name, value) = part.split_once('=').ok_or_else(fault)?;
@@ -330,10 +335,10 @@ fn orifice(text: &str) -> Result<Orifice, Fault> {
     Ok(Orifice { middle, reach })
 }
 
-/// Number of quantities in the printed summary.
+/// Number of columns, from the start of [`COLUMNS`], that the printed summary can contain.
 const PRINTED: usize = 11;
 
-/// Returns the printed summary.
+/// Returns the summary of the fields for the terminal.
 fn summary_text(summary: &Summary, out: &Path) -> String {
     let [x, y, z] = summary.cell.map(|size| number::significant(size, 4));
     let mut text = format!("{}\ncells of {x} × {y} × {z} m\n\n", summary.words());

@@ -7,7 +7,7 @@ use grainbench::harness::evidence::Evidence;
 use grainbench::harness::verdict::Outcome;
 use grainbench::reports::headline::OUTCOMES;
 
-/// Options of patterns: letter case is ignored, and `*` matches any text.
+/// Options for matching patterns: letter case is ignored, and `*` matches any text.
 const LOOSE: MatchOptions =
     MatchOptions { case_sensitive: false, require_literal_separator: false, require_literal_leading_dot: false };
 
@@ -23,17 +23,17 @@ enum Filter {
     Outcome(Outcome),
 }
 
-/// All filters. A result is selected if, for each key, one of the filters matches.
+/// All filters of a command line. For each key that occurs, one of its filters must match.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct Filters(Vec<Filter>);
 
 impl Filters {
-    /// Reads filters of the form `KEY=WHAT`.
+    /// Reads filters from texts of the form `KEY=WHAT`.
     pub(crate) fn read(texts: &[String]) -> Result<Self, Fault> {
         texts.iter().map(|text| read(text)).collect::<Result<_, _>>().map(Self)
     }
 
-    /// Returns true if the claim is selected by the properties that are known before it runs.
+    /// Returns true if the filters by quantity, source and evidence select the claim. These properties are known before a run.
     pub(crate) fn means(&self, claim: &Claim) -> bool {
         self.of_one_key(|filter| match filter {
             Filter::Quantity(pattern) => Some(pattern.matches_with(&claim.quantity, LOOSE)),
@@ -47,7 +47,7 @@ impl Filters {
         })
     }
 
-    /// Returns the requested outcomes; empty if all are requested.
+    /// Returns the outcomes that the filters name; empty if no filter names an outcome.
     pub(crate) fn outcomes(&self) -> Vec<Outcome> {
         let outcome = |filter: &Filter| match filter {
             Filter::Outcome(outcome) => Some(*outcome),
@@ -56,7 +56,8 @@ impl Filters {
         self.0.iter().filter_map(outcome).collect()
     }
 
-    /// Returns true if one of the filters of a key matches, or if no filter has this key.
+    /// Returns true if one of the filters of a key matches, or if there is no filter with this key. `passes` returns
+    /// `None` for a filter with another key.
     fn of_one_key(&self, passes: impl Fn(&Filter) -> Option<bool>) -> bool {
         let mut answers = self.0.iter().filter_map(passes).peekable();
         answers.peek().is_none() || answers.any(|passes| passes)
@@ -85,7 +86,7 @@ fn read(text: &str) -> Result<Filter, Fault> {
     }
 }
 
-/// Reads a shell pattern. Text without `*`, `?` and `[` matches anywhere.
+/// Reads a shell pattern. Text without `*`, `?` and `[` is a substring.
 fn pattern(what: &str) -> Result<Pattern, Fault> {
     let text = if super::pattern::is_one(what) { what.to_owned() } else { format!("*{what}*") };
     super::pattern::read("--filter", &text)

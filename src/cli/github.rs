@@ -1,4 +1,4 @@
-//! Job summary and annotations of red results on GitHub.
+//! Job summary and annotations of red results for GitHub Actions.
 
 use super::exit::{Fault, print};
 use grainbench::reports::Report;
@@ -7,8 +7,7 @@ use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 
-/// Appends to the job summary, and prints annotations unless the standard output is JSON. Does nothing outside GitHub
-/// jobs.
+/// Appends to the job summary, and prints annotations unless the standard output is JSON. Outside GitHub Actions, does nothing.
 pub(crate) fn tell(report: &Report, is_json: bool) -> Result<(), Fault> {
     if let Some(path) = env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) {
         let file = OpenOptions::new().create(true).append(true).open(&path);

@@ -1,5 +1,5 @@
-//! Ctrl-C. The first one ends external programs and stops the run after the current items. The second one ends
-//! grainbench.
+//! Interrupt by Ctrl-C. The first one stops external programs, and ends the run after the current items. The second one
+//! ends grainbench.
 
 use grainbench::reference::end_programs_at;
 use signal_hook::consts::{SIGINT, SIGTERM};
@@ -12,17 +12,17 @@ use std::sync::atomic::{AtomicBool, Ordering};
 pub(crate) struct Interrupt(Arc<AtomicBool>);
 
 impl Interrupt {
-    /// Starts to listen for signals. If signals cannot be caught, they end the program as by default.
+    /// Starts to listen for the signals SIGINT and SIGTERM. Signals that cannot be caught end the program.
     pub(crate) fn listen() -> Self {
         let asked = Self::default();
         for signal in [SIGINT, SIGTERM] {
-            // This order ensures that the second signal ends the program.
+            // The handlers are called in the order of their registration, so that only the second signal ends the program.
             let again = flag::register_conditional_default(signal, Arc::clone(&asked.0));
             if again.is_ok() {
                 let _ = flag::register(signal, Arc::clone(&asked.0));
             }
         }
-        // An external program may be silent for hours, so it does not count as a current item.
+        // A run of an external program may take hours, so it is stopped immediately.
         end_programs_at(Arc::clone(&asked.0));
         asked
     }

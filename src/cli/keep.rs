@@ -1,6 +1,5 @@
-//! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and
-//! `--expect-stored` compares with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the
-//! source tree.
+//! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and `--expect-stored`
+//! compares with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the source tree.
 
 use super::exit::Fault;
 use super::select::CaseSelection;
@@ -11,16 +10,16 @@ use grainbench::reports::study::{Study, kept_text};
 use grainbench::store::write_file;
 use std::fs;
 
-/// File of stored results.
+/// Name of the file with stored results, in the directory of a manifest.
 const KEEPS: &str = "judged.json";
-/// Version of a program that reports none.
+/// Version of a program that does not report its version.
 const UNKNOWN: &str = "unknown";
 
-/// Returns the only selected external solver.
+/// Returns the selected external solver. Returns an error if there is none or more than one.
 pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {
     let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
-        return Err(Fault::input("--update-stored: expected one program by its manifest, found a built-in solver"));
+        return Err(Fault::input("--update-stored: expected the manifest of one program, found a built-in solver"));
     };
     let is_it =
         |other: Option<&ExternalProgram>| other.is_some_and(|other| other.manifest().name == program.manifest().name);
@@ -31,17 +30,17 @@ pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fa
     }
 }
 
-/// Reads the stored results of an external solver.
+/// Reads the stored results of an external solver from the directory of its manifest.
 pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
     let path = program.folder().join(KEEPS);
     let wrong = |found: String| {
-        Fault::input(format!("{KEEPS} beside the manifest: expected the output of `--update-stored`, found {found}"))
+        Fault::input(format!("{KEEPS} next to the manifest: expected the output of `--update-stored`, found {found}"))
     };
     let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
     ExternalResults::read(&text).map_err(|error| wrong(error.to_string()))
 }
 
-/// Returns the name and version of an external solver if they differ from the stored ones.
+/// Returns the differences between the stored and the present name and version of an external solver, in words.
 pub(crate) fn other_program(program: &ExternalProgram, kept: &ExternalResults) -> Vec<String> {
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let pairs = [("name", &program.manifest().name, &kept.program), ("version", &version, &kept.version)];
@@ -49,13 +48,13 @@ pub(crate) fn other_program(program: &ExternalProgram, kept: &ExternalResults) -
     other.map(|(what, is, was)| format!("{what} {is}; kept: {was}")).collect()
 }
 
-/// Stores a study in the source tree, for the first screen of the page.
+/// Stores a study in the source tree, for the first screen of the report.
 pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
     let text = kept_text(study).map_err(Fault::input)?;
     write_file(grainbench::studies::kept::place(name), text.as_bytes()).map_err(Fault::writing)
 }
 
-/// Stores the results of an external solver next to its manifest.
+/// Stores the results of an external solver in the directory of its manifest.
 pub(crate) fn keep(program: &ExternalProgram, report: &Report) -> Result<(), Fault> {
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();

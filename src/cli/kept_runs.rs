@@ -1,4 +1,4 @@
-//! `grainbench reference keep`: runs the simulations whose results are stored with their cases.
+//! `grainbench reference keep`: does the runs whose results are stored with the cases.
 
 use super::checkpoint::read;
 use super::cores::MOST_THREADS;
@@ -19,30 +19,29 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 
-/// Arguments of `grainbench reference keep`.
 #[derive(clap::Args)]
 pub(crate) struct KeepArguments {
-    /// Cases; all cases with stored results by default.
+    /// Cases whose runs are done. Default: all cases with stored results.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Also repeat the runs with a valid stored result.
+    /// Also repeat runs whose stored result is valid.
     #[arg(long)]
     no_cache: bool,
     /// Include full-scale runs, which take hours.
     #[arg(long)]
     paper_size: bool,
-    /// Select runs whose name contains this text. The command prints the names.
+    /// Do only runs whose name contains this text. The command prints the names.
     #[arg(long, value_name = "LETTERS")]
     run: Option<String>,
-    /// Directory with your copy of third-party data; without it the runs that need the data are skipped.
+    /// Directory with your copy of third-party data. Runs whose data are missing are skipped.
     #[arg(long, value_name = "DIR")]
     data: Option<PathBuf>,
-    /// Threads of each run.
+    /// Number of threads of each run.
     #[arg(long, value_name = "N", default_value_t = 1, value_parser = whole(1, MOST_THREADS))]
     threads: u16,
-    /// Directory for checkpoints. An interrupted run continues from `CASE-RUN.checkpoint`, which is deleted when the
-    /// result is stored. A checkpoint of the same run by `simulate --checkpoint` can be used too. Runs that are read
-    /// snapshot by snapshot have no checkpoints.
+    /// Directory of checkpoints. An interrupted run continues from `CASE-RUN.checkpoint`, which is deleted when the
+    /// result is stored. The checkpoint may also come from `simulate --checkpoint` of the same run. Runs whose
+    /// snapshots are processed during the run have no checkpoints.
     #[arg(long, value_name = "DIR", default_value = "grainbench-checkpoints")]
     checkpoints: PathBuf,
 }
@@ -50,7 +49,7 @@ pub(crate) struct KeepArguments {
 /// Number of steps between checkpoints.
 const EVERY: u64 = 20_000;
 
-/// Performs the runs and stores their results. Each result is complete before the next run begins.
+/// Does the runs and stores their results. Each result is stored before the next run begins.
 pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     let known = kept::cases();
     let names = || known.iter().map(|case| case.name);
@@ -76,7 +75,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
         for (place, one) in wanted.iter().enumerate() {
             let given = match runner.given(&one.claim, &one.run, one.wrong) {
                 Err(RunError::NotAvailable { reason, .. }) if arguments.data.is_none() => {
-                    say("note", &format!("{}: left out: {reason}", one.id));
+                    say("note", &format!("{}: skipped: {reason}", one.id));
                     lines.push_str(&format!("{:6} {}/{}\n", "absent", case.name, one.id));
                     continue;
                 }
@@ -123,16 +122,16 @@ struct StorageTask<'a> {
     runner: &'a Runner,
     wanted: &'a StorableRun,
     given: Arc<Scene>,
-    /// Description of the run for the progress bar.
+    /// Name of the run in the progress bar.
     words: String,
     interrupt: &'a Interrupt,
 }
 
 impl StorageTask<'_> {
-    /// Performs the run, stores the result, and then deletes the checkpoint.
+    /// Does the run, stores the result and deletes the checkpoint.
     fn done(&self) -> Result<(), Fault> {
         let Self { wanted, runner, .. } = self;
-        // A snapshot reader receives each snapshot once, and checkpoints do not contain its state.
+        // Checkpoints do not contain the state of a reader that processes the snapshots during the run.
         let is_resumable = wanted.run.reading.is_none() && !solvers::is_program(wanted.run.solver);
         let done = if is_resumable {
             self.resumed()?
@@ -152,7 +151,7 @@ impl StorageTask<'_> {
         }
         out.commit().map_err(Fault::writing)?;
         if is_resumable {
-            // A short run has no checkpoint. The directory is deleted if it is empty.
+            // A short run has no checkpoint. The directory is deleted only if it is empty.
             let _ = fs::remove_file(self.checkpoint());
             let _ = fs::remove_dir(&self.arguments.checkpoints);
         }
@@ -164,7 +163,7 @@ impl StorageTask<'_> {
         self.arguments.checkpoints.join(format!("{}-{id}.checkpoint", case.name))
     }
 
-    /// Performs the run, starting from its checkpoint if there is one.
+    /// Does the run, starting from its checkpoint if there is one.
     fn resumed(&self) -> Result<FinishedRun, Fault> {
         let run = &self.wanted.run;
         let solver = solvers::by_name(run.solver)

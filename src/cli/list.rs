@@ -8,10 +8,9 @@ use grainbench::harness::case::Case;
 use serde::Serialize;
 use std::process::ExitCode;
 
-/// Arguments of `grainbench list`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases whose claims are listed; all by default.
+    /// Cases whose claims are listed. Default: all cases.
     #[arg(value_name = "CASE|CASE/VARIANT", requires = "rows")]
     cases: Vec<String>,
     /// List the solver-independent claims with their controls instead of the cases.
@@ -22,7 +21,6 @@ pub(crate) struct Arguments {
     json: bool,
 }
 
-/// Solver-independent claim.
 #[derive(Serialize)]
 struct Row {
     case: &'static str,
@@ -31,11 +29,10 @@ struct Row {
     unit: &'static str,
     /// Wrong physics of the negative control.
     control: &'static str,
-    /// Kind of solvers that the claim applies to: `any`, `continuum` or `springs`.
+    /// Solvers to which the claim applies: `any`, `continuum` or `springs`.
     solvers: &'static str,
 }
 
-/// Entry of a case.
 #[derive(Serialize)]
 struct Entry {
     name: &'static str,
@@ -48,7 +45,6 @@ struct Entry {
     solvers: Vec<&'static str>,
 }
 
-/// Prints the cases.
 pub(crate) fn list(arguments: &Arguments) -> Outcome {
     if arguments.rows {
         return list_rows(arguments);
@@ -62,7 +58,7 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the claims that `run --solver SOLVER.toml` evaluates.
+/// Prints the claims by which `run --solver SOLVER.toml` judges an external solver.
 fn list_rows(arguments: &Arguments) -> Outcome {
     let mut rows = Vec::new();
     for selected in select::select_fair(&arguments.cases, &[])? {

@@ -1,4 +1,4 @@
-//! Commands of the program.
+//! Commands of the command line.
 
 mod cache;
 mod campaign;
@@ -46,7 +46,7 @@ use exit::Fault;
 use grainbench::lanes::Processor;
 use std::process::ExitCode;
 
-/// Version, and the commit that the program is built from.
+/// Version of the program, and the commit from which it is built.
 const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")");
 
 /// Benchmarks for the accuracy and the computing cost of solvers for granular mechanics.
@@ -61,25 +61,25 @@ struct Cli {
 
 #[derive(Subcommand)]
 enum Command {
-    /// List the cases: title, variants, number of claims, default level, solvers.
+    /// List the cases with title, variants, number of claims, default level and solvers.
     List(list::Arguments),
-    /// Run cases and judge their claims.
+    /// Run cases, judge their claims and write a report.
     Run(run::Arguments),
-    /// Simulate one scene and write its record.
+    /// Simulate a scene and write its record.
     Simulate(simulate::Arguments),
     /// Write the LAMMPS or LIGGGHTS input for a case or a scene.
     Deck(deck::Arguments),
-    /// Judge the output of any program for a case or a scene. Formats are dumps, VTK files, arrays and CSV tables.
+    /// Judge the output of any program for a case or a scene. Formats: dumps, VTK files, NumPy arrays and CSV tables.
     Check(check::Arguments),
-    /// Compute continuum fields cell by cell: packing fraction, stress, friction, shear rate.
+    /// Compute continuum fields cell by cell: packing fraction, stress, friction and shear rate.
     Fields(fields::Arguments),
     /// Compare two outputs column by column.
     Compare(compare::Arguments),
-    /// Measure error against computing time, for each solver over its parameters.
+    /// Measure the error of each solver against its computing time.
     Cost(cost::Arguments),
     /// Find the largest stable time step of each solver, and run difficult cases.
     Stability(stability::Arguments),
-    /// Measure the influence of each physical effect by switching it off or compiling it in.
+    /// Measure the influence of each physical effect, by switching it off or giving it a neutral value.
     Effects(effects::Arguments),
     /// Old spelling of `--plan DIR`.
     #[command(hide = true)]
@@ -93,29 +93,29 @@ enum Command {
     /// Old spelling of `report DIR`.
     #[command(hide = true)]
     Collect(campaign::collect::Arguments),
-    /// Compare throughput with LAMMPS and LIGGGHTS, in particle steps per second of processor time.
+    /// Compare throughput with LAMMPS and LIGGGHTS, in particle-steps per second of processor time.
     Race(race::Arguments),
-    /// Build, verify and update stored runs and references.
+    /// Make, verify and update stored runs of other programs and stored results.
     #[command(subcommand)]
     Reference(reference::Command),
-    /// Test the conformance properties of solvers: conservation, symmetries, free flight, order, determinism.
+    /// Test the conformance properties of solvers: conservation, symmetries, free flight, order and determinism.
     Conform(conform::Arguments),
-    /// Print the resolved scene that external solvers receive, in SI units, or the schema of scene files.
+    /// Print the resolved scene that external solvers get, in SI units, or the schema of scene files.
     Scene(scene::Arguments),
     /// Old spelling of `scene --schema`.
     #[command(hide = true)]
     Schema(scene::SchemaArguments),
-    /// Make the page and figures of a stored report, simulation or plan, without running a solver.
+    /// Write the page and figures of a stored report, simulation or plan. No solver runs.
     Report(report::Arguments),
     /// Print the completion script of a shell.
     #[command(hide = true)]
     Completions(completions::Arguments),
-    /// Print the manual page, or write one for each command to a directory.
+    /// Print the manual page of grainbench, or write one page for each command to a directory.
     #[command(hide = true)]
     Man(completions::ManArguments),
 }
 
-/// Commands by task, in the order of the help.
+/// Groups of commands in the help text.
 const GROUPS: [(&str, &[&str]); 5] = [
     ("Judge solvers with the cases", &["run", "conform", "list"]),
     ("Judge output of other programs", &["check", "compare", "deck", "fields"]),
@@ -124,7 +124,7 @@ const GROUPS: [(&str, &[&str]); 5] = [
     ("Stored runs", &["reference"]),
 ];
 
-/// Returns the command line, whose help lists the commands by task.
+/// Returns the command line. Its help text lists the commands by group.
 fn grouped() -> clap::Command {
     let command = Cli::command();
     let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
@@ -146,7 +146,7 @@ fn grouped() -> clap::Command {
     command.help_template(template)
 }
 
-/// Writes a plan if one is requested; otherwise calls `work`.
+/// Writes a plan if `planned` is given; otherwise calls `work`.
 fn planned_or(planned: Option<campaign::arguments::Arguments>, work: impl FnOnce() -> exit::Outcome) -> exit::Outcome {
     match planned {
         Some(arguments) => campaign::plan::plan(&arguments),

@@ -5,18 +5,18 @@ use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
 
-/// Returns the run whose variant and solver identify the result of a claim.
+/// Returns the first run of a claim. Its variant and solver identify the result.
 pub(crate) fn row(claim: &Claim) -> Option<&Run> {
     claim.runs.first()
 }
 
-/// Returns the level name of a run: the name in the case, or the resolution in words.
+/// Returns the name of a run's level: the name in the case, or the resolution in words.
 pub(crate) fn level_of(case: &Case, run: &Run) -> String {
     let level = case.levels.iter().find(|level| level.resolution == run.resolution);
     level.map_or_else(|| run.resolution.to_string(), |level| level.name.to_owned())
 }
 
-/// Returns the level names of a case: its own levels, and then further ones of its claims.
+/// Returns the names of the levels of a case, followed by the names of further levels of its claims.
 pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
     let mut names: Vec<String> = case.levels.iter().map(|level| level.name.to_owned()).collect();
     for run in claims.iter().flat_map(|claim| &claim.runs) {
@@ -25,7 +25,7 @@ pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
     names
 }
 
-/// Returns the variants of a case. The plain scene is included if a claim uses it.
+/// Returns the names of the variants of a case. The plain scene is included if the result of a claim uses it.
 pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
     let mut names = case.variants()?;
     if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
@@ -34,7 +34,7 @@ pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fau
     Ok(names)
 }
 
-/// Returns the solvers that identify results of claims, and then the programs that they are compared with, each once.
+/// Returns the solvers that identify results, followed by the programs with which they are compared. Each name occurs once.
 pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
     let mut names = Vec::new();
     for run in claims.iter().filter_map(row) {

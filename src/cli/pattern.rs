@@ -5,21 +5,21 @@ use super::names::variants;
 use glob::{MatchOptions, Pattern};
 use grainbench::cases::registry::CASES;
 
-/// Returns true if a word is a pattern.
+/// Returns true if a word contains a character that makes it a pattern.
 pub(crate) fn is_one(word: &str) -> bool {
     word.contains(['*', '?', '['])
 }
 
-/// Reads a pattern; `place` is the option or argument that contains it.
+/// Reads a pattern. `place` is the option or argument that contains it, for error messages.
 pub(crate) fn read(place: &str, text: &str) -> Result<Pattern, Fault> {
     Pattern::new(text)
         .map_err(|error| Fault::input(format!("{place}: expected a pattern, found `{text}`: {}", error.msg)))
 }
 
-/// Replaces each pattern by the matching names of the registry: `incline-*` selects cases, and `*/60deg*` selects
-/// variants.
+/// Replaces each pattern by the matching names of the registry. For example, `incline-*` selects cases, and `*/60deg*`
+/// selects variants.
 pub(crate) fn expanded(names: &[String]) -> Result<Vec<String>, Fault> {
-    /// Options of patterns: `*` does not match the `/` between a case and its variant.
+    /// Options for matching patterns: `*` does not match the `/` between a case and its variant.
     const IN_PARTS: MatchOptions =
         MatchOptions { case_sensitive: true, require_literal_separator: true, require_literal_leading_dot: false };
     let mut all = Vec::new();

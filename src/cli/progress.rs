@@ -1,15 +1,15 @@
-//! Progress bar for terminals; files and pipes get none.
+//! Progress bar on a terminal. Nothing is shown if the standard error is a file or pipe.
 
 use indicatif::{ProgressBar, ProgressDrawTarget, ProgressState, ProgressStyle};
 use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// Progress bar on the standard error; empty if this is not a terminal.
+/// Progress bar on the standard error; empty if the standard error is not a terminal.
 pub(crate) struct Progress(Option<ProgressBar>);
 
 impl Progress {
-    /// Creates a bar for `total` items; `what` is their name in the plural.
+    /// Creates a bar for `total` items. `what` is the name of the items in the plural.
     pub(crate) fn new(total: u64, what: &str) -> Self {
         if !std::io::stderr().is_terminal() {
             return Self(None);
@@ -25,7 +25,7 @@ impl Progress {
         Self(Some(bar))
     }
 
-    /// Shows the current item.
+    /// Shows the name of the current item.
     pub(crate) fn now(&self, what: &str) {
         if let Some(bar) = &self.0 {
             bar.set_message(what.to_owned());
@@ -40,14 +40,14 @@ impl Progress {
         }
     }
 
-    /// Counts one more finished item.
+    /// Increases the number of finished items by one.
     pub(crate) fn advance(&self) {
         if let Some(bar) = &self.0 {
             bar.inc(1);
         }
     }
 
-    /// Sets the number of items that were finished before. The remaining time is estimated from here.
+    /// Sets the number of items that were finished before. The estimate of the remaining time starts here.
     pub(crate) fn from(&self, done: u64) {
         if let Some(bar) = &self.0 {
             bar.set_position(done);
@@ -64,10 +64,10 @@ impl Progress {
     }
 }
 
-/// Returns the remaining time in words. Unfinished work never shows zero time.
+/// Returns the remaining time in words. The time of unfinished work is never shown as zero.
 fn left(done: u64, estimate: Duration) -> String {
     match estimate.as_secs() {
-        _ if done == 0 => "time left not known yet".to_owned(),
+        _ if done == 0 => "time left is not known yet".to_owned(),
         0 => "less than a second left".to_owned(),
         seconds @ 1..60 => format!("{seconds} s left"),
         seconds @ 60..3600 => format!("{} min {} s left", seconds / 60, seconds % 60),
@@ -89,7 +89,7 @@ mod tests {
 
     #[test]
     fn what_is_left_takes_time() {
-        assert_eq!(left(0, Duration::ZERO), "time left not known yet");
+        assert_eq!(left(0, Duration::ZERO), "time left is not known yet");
         assert_eq!(left(999, Duration::from_millis(300)), "less than a second left");
         assert_eq!(left(9, Duration::from_secs(59)), "59 s left");
         assert_eq!(left(9, Duration::from_secs(61)), "1 min 1 s left");

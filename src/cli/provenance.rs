@@ -1,11 +1,11 @@
-//! Provenance: program, date and machine.
+//! Provenance of a run: program, date and machine.
 
 use super::cores::cores;
 use grainbench::lanes::Processor;
 use grainbench::reports::Provenance;
 use std::fs;
 
-/// Returns the provenance of a run that took `wall_seconds`, with its options in words.
+/// Returns the provenance of a run of `wall_seconds` (s). `options` are the options of the run in words.
 pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance {
     Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
@@ -18,14 +18,14 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
     }
 }
 
-/// Returns processor, cores, operating system, and the vector instructions that our solvers use.
+/// Returns a description of the processor, its cores, the operating system, and the vector instructions of our solvers.
 fn machine() -> String {
     let cores = cores();
     let plural = if cores == 1 { "" } else { "s" };
     format!("{}, {cores} core{plural}, {}, loops compiled for {}", processor(), system(), Processor::new().name())
 }
 
-/// Returns the value of the first line `key … separator value` in a system file.
+/// Returns the value on the first line of a system file that starts with `key`. The value follows `separator`.
 fn setting(file: &str, key: &str, separator: char) -> Option<String> {
     let text = fs::read_to_string(file).ok()?;
     let line = text.lines().find(|line| line.starts_with(key))?;

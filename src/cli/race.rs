@@ -1,4 +1,4 @@
-//! `grainbench race`: measures the throughput of solvers and of other programs on the same scenes in turn.
+//! `grainbench race`: measures the throughput of our solvers and of other programs, in turn on the same scenes.
 
 use super::exit::{Fault, Outcome, RED, check_writable, print};
 use super::progress::Progress;
@@ -16,8 +16,8 @@ use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Default benchmark scenes: dense in the plane and in space, sparse, with Hertz contacts, few grains, and the impact
-/// of a ball on a bed of 25,000 grains.
+/// Default benchmark scenes: dense discs, dense spheres, a sparse gas, Hertz contacts, few grains, and the impact of a
+/// ball on a bed of 25,000 grains.
 const TRACKS: [&str; 7] =
     ["plane-shear", "cooling-gas", "nine-discs/kappa-1", "discs-400", "spheres", "hertz", "impact-bed/late"];
 /// Benchmark scenes that are not cases.
@@ -26,43 +26,43 @@ const SCENES: [(&str, &str); 3] = [
     ("spheres", include_str!("../../benches/race/spheres.toml")),
     ("hertz", include_str!("../../benches/race/hertz.toml")),
 ];
-/// Our solver in the contact convention of a program, and the program.
+/// Pairs of our solver, in the contact convention of a program, and the program.
 const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
-/// Default number of particle-steps of the long run, which takes any program some seconds.
+/// Default number of particle-steps of the long run. Every program needs some seconds for it.
 const WORK: u64 = 30_000_000;
-/// Largest default number of steps of the long run. With few grains, the cost per step dominates early.
+/// Largest default number of steps of the long run, for scenes with few grains.
 const MOST_STEPS: u64 = 600_000;
 
-/// Largest default number of steps of the short run. Kinetic energies are compared at its end, and later collisions
+/// Largest default number of steps of the short run. Kinetic energies are compared at its end, because later collisions
 /// amplify rounding errors.
 const MOST_TO_COMPARE: u64 = 1000;
 
-/// Arguments of `grainbench race`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Scenes of grains, by case or file.
+    /// Scenes of grains, by case or scene file.
     ///
-    /// By default: plane-shear, cooling-gas, nine-discs/kappa-1, impact-bed/late, and three scenes that are not cases: discs-400,
-    /// spheres and hertz.
+    /// Default: plane-shear, cooling-gas, nine-discs/kappa-1, impact-bed/late, and three scenes that are not cases:
+    /// discs-400, spheres and hertz.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
     tracks: Vec<String>,
-    /// Number of timings for each solver and scene.
+    /// Number of timings for each solver and each scene.
     #[arg(long, value_name = "N", default_value_t = 5, value_parser = whole::<u32>(1, 999))]
     rounds: u32,
-    /// Number of steps of the short run and of the long run.
+    /// Numbers of steps of the short and of the long run. Default: about 30 million particle-steps for the long run,
+    /// and at most 1000 steps for the short run.
     #[arg(long, value_name = "SHORT,LONG", value_parser = steps)]
     steps: Option<[u64; 2]>,
-    /// Select a solver or program. A manifest adds a program to the comparison with LAMMPS. Repeatable.
+    /// Measure only this solver or program. A manifest adds a program to the comparison with LAMMPS. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
-    /// Directory for `race.json` with each timing, and `race.md`.
+    /// Directory of `race.json`, with each timing, and of `race.md`.
     #[arg(long, value_name = "DIR", default_value = "grainbench-race")]
     out: PathBuf,
 }
 
-/// Reads the numbers of steps of the short and the long run.
+/// Reads the numbers of steps of the short and of the long run.
 fn steps(text: &str) -> Result<[u64; 2], String> {
-    let expected = || format!("expected two numbers of steps, the second larger, found `{text}`");
+    let expected = || format!("expected two numbers of steps, with the second larger than the first, found `{text}`");
     let (short, long) = text.split_once(',').ok_or_else(expected)?;
     match (short.trim().parse(), long.trim().parse()) {
         (Ok(short), Ok(long)) if 0 < short && short < long => Ok([short, long]),
@@ -70,13 +70,13 @@ fn steps(text: &str) -> Result<[u64; 2], String> {
     }
 }
 
-/// Runs the benchmark and writes its table.
+/// Runs the benchmark and writes the table of throughputs.
 pub(crate) fn race(arguments: &Arguments) -> Outcome {
     let known = PAIRS.as_flattened();
     let (manifests, named): (Vec<&String>, Vec<&String>) =
         arguments.solver.iter().partition(|name| solver::is_manifest(name));
     if let Some(unknown) = named.iter().find(|name| !known.contains(&name.as_str())) {
-        return Err(Fault::unknown("a racer", unknown, known.iter().copied()));
+        return Err(Fault::unknown("a solver or program", unknown, known.iter().copied()));
     }
     check_writable(&arguments.out)?;
     let names: Vec<&str> = if arguments.tracks.is_empty() {
@@ -122,7 +122,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     Ok(if has_run { ExitCode::SUCCESS } else { ExitCode::from(RED) })
 }
 
-/// Returns a benchmark scene with grains, at the time step of its case for contact springs.
+/// Returns a benchmark scene with grains. Its time step is the default time step of its case, or 0.1 of the critical one.
 fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
     let (scene, case) = match SCENES.iter().find(|(known, _)| *known == name) {
         Some((known, text)) => (SceneSource::from_text(known, Path::new(""), text).scene(&read_grains)?, None),

@@ -1,4 +1,4 @@
-//! `grainbench reference`: makes stored runs of other programs, and checks that the installed programs reproduce them.
+//! `grainbench reference`: makes and verifies stored runs of other programs, and updates stored results and estimates.
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
@@ -21,23 +21,21 @@ use std::path::PathBuf;
 use std::process::ExitCode;
 use std::time::Instant;
 
-/// Subcommands of `grainbench reference`.
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
     /// Make stored runs with the installed programs.
     Build(Build),
-    /// Run the programs again and compare with the stored runs.
+    /// Repeat the runs with the installed programs and compare them with the stored runs.
     Verify(Verify),
-    /// Run the long simulations and store their results next to the cases. `run` judges the stored results.
+    /// Do the long runs and store their results with the cases. `run` judges the stored results.
     Keep(KeepArguments),
-    /// Estimate discretization errors from three levels of resolution, for each claim with an estimated tolerance.
+    /// Estimate discretization errors from three resolution levels, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
 }
 
-/// Arguments of `uncertainty`.
 #[derive(clap::Args)]
 pub(crate) struct Uncertainty {
-    /// Cases; all by default.
+    /// Cases whose claims are estimated. Default: all.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
     /// Include claims that take minutes. Without this option, their stored estimates stay unchanged.
@@ -45,24 +43,22 @@ pub(crate) struct Uncertainty {
     long: bool,
 }
 
-/// Arguments of `build`.
 #[derive(clap::Args)]
 pub(crate) struct Build {
-    /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.
+    /// Stored runs, by case or by folder name, with or without `lammps/` or `liggghts/`. Default: all.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
-    /// Directory for the stored runs; by default the source tree.
+    /// Directory for the stored runs. Default: the source tree.
     #[arg(long, value_name = "DIR")]
     out: Option<PathBuf>,
 }
 
-/// Arguments of `verify`.
 #[derive(clap::Args)]
 pub(crate) struct Verify {
-    /// Stored runs, by folder name with or without `lammps/` or `liggghts/`, or by case; all by default.
+    /// Stored runs, by case or by folder name, with or without `lammps/` or `liggghts/`. Default: all.
     #[arg(value_name = "ID")]
     ids: Vec<String>,
-    /// Directory for the report.
+    /// Directory of the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
     /// Print the results as JSON instead of a table.
@@ -70,7 +66,6 @@ pub(crate) struct Verify {
     json: bool,
 }
 
-/// Runs the subcommand.
 pub(crate) fn reference(command: &Command) -> Outcome {
     match command {
         Command::Build(arguments) => build(arguments),
@@ -136,7 +131,7 @@ fn build(arguments: &Build) -> Outcome {
     if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(ExitCode::SUCCESS) }
 }
 
-/// Estimates the discretization errors of some cases again, for claims with an estimated tolerance.
+/// Estimates the discretization errors of claims with an estimated tolerance, and stores the estimates.
 fn uncertainty(arguments: &Uncertainty) -> Outcome {
     let set = if arguments.long { Set::Long } else { Set::Tests };
     let known = || CASES.iter().map(|case| case.name);
@@ -180,7 +175,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Rule in the stored files, so that a file can be understood alone.
+/// Rule of the estimates, written to the stored files so that they can be read without the program.
 const RULE: &str = "three levels of resolution, each half as fine as the one before; observed order p, \
                     U = F_s |f1 - f2|/(2^p - 1) with F_s = 1.25 near the order of the method and 3 elsewhere (ASME V&V 20-2009)";
 
@@ -198,13 +193,13 @@ fn verify(arguments: &Verify) -> Outcome {
     drop(progress);
     let section = Section {
         name: "reference".to_owned(),
-        title: "Stored runs, run again".to_owned(),
+        title: "Stored runs, repeated".to_owned(),
         claim: "The installed programs reproduce the stored results.".to_owned(),
         derivation:
-            "Each program runs the deck of the current scene and is compared with the stored samples: sample by sample \
-             up to the predictability horizon, and by means over blocks afterwards."
+            "Each program runs the deck of the current scene. The result is compared with the stored run: sample by \
+             sample up to the predictability horizon, and by means over blocks after it."
                 .to_owned(),
-        weak: "An error of a program that already existed when the run was stored is not detected.".to_owned(),
+        weak: "An error is not detected if the program already had it when the run was stored.".to_owned(),
         verdicts,
         ..Section::default()
     };

@@ -21,38 +21,37 @@ use grainbench::store::refuse_mixed;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// Arguments of `grainbench report`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`, or directory of a plan.
+    /// Directory written by `run`, `cost`, `stability`, `effects` or `simulate`, or the directory of a plan.
     dir: PathBuf,
-    /// Show the numbers of finished, running and failed tasks of a plan.
+    /// Print the numbers of finished, running and failed tasks of a plan.
     #[arg(long)]
     progress: bool,
     #[command(flatten)]
     collect: CollectOptions,
-    /// Another directory written by `simulate`, compared with DIR at equal times; repeatable.
+    /// Further directory written by `simulate`, which is compared with DIR at equal times. Repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
-    /// Stress c of photoelastic fringes cos((σ₁ − σ₂)/c) in figures of a simulation; three fringes by default.
+    /// Stress c of the photoelastic fringes cos((σ₁ − σ₂)/c) in Pa, for figures of a simulation. Default: about three fringes.
     #[arg(long, value_name = "PA", value_parser = positive, allow_hyphen_values = true)]
     fringe_stress: Option<f64>,
-    /// Time interval (s), such as `.2..1`; each end is optional.
+    /// Time interval of the figures in seconds, such as `.2..1`. Each end is optional.
     #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
     window: Option<(f64, f64)>,
-    /// Largest number of frames of a film.
+    /// Largest number of frames of a film. Default: 60.
     #[arg(long, value_name = "N", value_parser = whole::<u16>(2, 500))]
     frames: Option<u16>,
 }
 
 impl Arguments {
-    /// Returns true if an option about figures is given.
+    /// Returns true if an option for figures is given.
     const fn is_of_pictures(&self) -> bool {
         !self.beside.is_empty() || self.fringe_stress.is_some() || self.window.is_some() || self.frames.is_some()
     }
 }
 
-/// Reads a time interval `FROM..TO`.
+/// Reads a time interval `FROM..TO` (s).
 fn window(text: &str) -> Result<(f64, f64), String> {
     let expected = || format!("expected two times in seconds with `..` between them, such as `.2..1`, found `{text}`");
     let (from, to) = text.split_once("..").ok_or_else(expected)?;
@@ -65,11 +64,11 @@ fn window(text: &str) -> Result<(f64, f64), String> {
         }
     };
     let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
-    if from <= to { Ok((from, to)) } else { Err(format!("expected a time and a later one, found `{text}`")) }
+    if from <= to { Ok((from, to)) } else { Err(format!("expected a later time after `..`, found `{text}`")) }
 }
 
-/// Reads a directory and writes page, figures and result files again. The exit code is that of the run. For a plan, makes the
-/// report of the finished tasks.
+/// Reads a directory and writes its page, figures and result files again. The exit code is that of the stored results.
+/// For a plan, makes the report of the finished tasks.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if Plan::is_in(&arguments.dir) {
         return if arguments.progress {
@@ -104,7 +103,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     if arguments.is_of_pictures() {
         let there = arguments.dir.display();
-        return Err(Fault::input(format!("{there}: expected {RECORD_FILE}of `simulate` for figures")));
+        return Err(Fault::input(format!("{there}: expected {RECORD_FILE} of `simulate` for figures")));
     }
     if holds(STUDY_FILE) {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;
@@ -118,7 +117,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     Ok(exit_code(&report, false))
 }
 
-/// Returns true if the study ended red: it is unfinished, or its own command ends red with these results.
+/// Returns true if a study is red: it is unfinished, or the command that made it would end red with these results.
 fn is_red(study: &Study) -> bool {
     let is_unfinished = study.provenance.options.iter().any(|words| words.starts_with("unfinished:"));
     let is_of_effects = !study.ledger.is_empty();
@@ -133,7 +132,7 @@ fn is_red(study: &Study) -> bool {
         }
 }
 
-/// Draws the figures of a simulation and of those compared with it.
+/// Draws the figures of a simulation and of the simulations compared with it.
 fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> =
@@ -150,15 +149,16 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
     if figures.is_empty() {
         let file = arguments.dir.join(RECORD_FILE);
         return Err(Fault::input(format!(
-            "{}: expected snapshots or samples of probes, found none to show (a large run keeps snapshots with `simulate --write \
-             parquet`)",
+            "{}: expected snapshots or samples of probes, found none (`simulate --write parquet` stores the snapshots \
+             of a large run)",
             file.display()
         )));
     }
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
 }
 
-/// Returns the name that distinguishes a record from the other records: none, the solver, or solver and resolution.
+/// Returns a name that distinguishes a record from all records: empty for a single record, else the solver, or the
+/// solver and the resolution.
 fn name(record: &Record, all: &[Record]) -> String {
     let from = &record.provenance;
     let alike = all.iter().filter(|other| other.provenance.solver == from.solver).count();

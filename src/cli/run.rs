@@ -1,4 +1,4 @@
-//! `grainbench run`: evaluates the claims of cases and writes the report.
+//! `grainbench run`: judges the claims of cases and writes the report.
 
 use super::cache;
 use super::campaign;
@@ -30,18 +30,17 @@ use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
-/// Arguments of `grainbench run`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases, patterns such as 'incline-*' or '*/60deg*', or folders with `scene.toml` and `claims.toml`; all built-in cases by
-    /// default.
+    /// Cases, patterns such as 'incline-*' or '*/60deg*', or folders with `scene.toml` and `claims.toml`. Default: all
+    /// built-in cases.
     #[arg(value_name = "CASE|CASE/VARIANT|FOLDER")]
     cases: Vec<String>,
     #[command(flatten)]
     options: ClaimOptions,
     #[command(flatten)]
     plan: PlanOptions,
-    /// Run the unfinished tasks of a plan.
+    /// Run the unfinished tasks of the plan in DIR.
     #[arg(
         long,
         value_name = "DIR",
@@ -72,10 +71,10 @@ pub(crate) fn command(arguments: &Arguments) -> Outcome {
     }
 }
 
-/// Runs the named cases; all cases if none is named.
+/// Runs the named cases, or all cases if none is named.
 fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let filters = Filters::read(&options.filter)?;
-    // Without names, the cases of the earlier run are repeated.
+    // With `--retry-failed` and without names, the cases of the earlier run are used.
     let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
     let of_before = before.as_ref().map(EarlierReport::cases).unwrap_or_default();
     let cases = if cases.is_empty() { &of_before[..] } else { cases };
@@ -126,7 +125,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
         Some(kept) => otherwise_than_kept(keep::program(selected)?, kept, &report),
         None => Vec::new(),
     };
-    report.red_because.extend(otherwise.iter().map(|line| format!("otherwise than kept: {line}")));
+    report.red_because.extend(otherwise.iter().map(|line| format!("differs from the stored results: {line}")));
     report.shown = filters.outcomes();
     let ClaimOptions { out, parquet, json, strict, .. } = options;
     let output = Output { parquet: *parquet, quiet: options.quiet, ..Output::new(out, *json, *strict) };
@@ -138,25 +137,25 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
         lines.iter().for_each(|line| exit::say("changed", line));
     }
     if kept.is_some() {
-        otherwise.iter().for_each(|line| exit::say("otherwise than kept", line));
+        otherwise.iter().for_each(|line| exit::say("differs from the stored results", line));
         return Ok(if report.red_because.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(RED) });
     }
     Ok(code)
 }
 
-/// Returns the reason why an interrupted run is red. [`EarlierReport`] reads it.
+/// Returns the reason why an interrupted run is red. [`EarlierReport`] recognizes this text.
 fn interrupted(left: usize) -> String {
     format!("interrupted: {left} checks left out")
 }
 
-/// Returns the differences from the stored results of an external solver.
+/// Returns the differences between a report and the stored results of an external solver, in words.
 fn otherwise_than_kept(program: &ExternalProgram, kept: &ExternalResults, report: &Report) -> Vec<String> {
     let mut otherwise = keep::other_program(program, kept);
     otherwise.extend(kept.otherwise(report));
     otherwise
 }
 
-/// Rejects a data directory if no claim uses it, if it contains none of the needed data, or if the data is damaged.
+/// Returns an error if no claim uses the data directory, if it contains none of the needed data, or if its data are damaged.
 fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), Fault> {
     let runs = selected.iter().flat_map(|selection| &selection.claims).flat_map(|claim| &claim.runs);
     let mut needed: Vec<&Data> = runs.filter_map(|run| run.data).collect();
@@ -178,8 +177,8 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     Ok(())
 }
 
-/// Performs all tasks in this process. Returns the sections of the finished tasks, and the number of tasks that an
-/// interrupt left out.
+/// Does all tasks in this process. Returns the sections of the finished tasks, and the number of tasks that were
+/// omitted because of an interrupt.
 fn perform(
     tasks: &ClaimTasks,
     options: &ClaimOptions,
@@ -196,12 +195,12 @@ fn perform(
     let do_task = |place: usize| {
         let place = order[place];
         progress.now(&tasks.name(all[place]));
-        // As in a plan, a panic is the result of its own task only.
+        // As in a plan, a panic affects only the result of its own task.
         let result = match catch_unwind(AssertUnwindSafe(|| desk.perform(all[place]))) {
             Ok((_, part)) => TaskResult::Out(part),
             Err(reason) => TaskResult::Crash(panic_words(&*reason).to_owned()),
         };
-        // An error may be due to the interrupt, and would count as a control that turned red.
+        // An error may be due to the interrupt. It would count as a control that failed as required, so the result is dropped.
         if has_ended_programs() {
             return;
         }

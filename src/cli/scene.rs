@@ -1,4 +1,4 @@
-//! `grainbench scene`: prints the resolved scene that external solvers receive, or the schema of scene files.
+//! `grainbench scene`: prints the resolved scene that external solvers get, or the schema of scene files.
 
 use super::exit::{Fault, Outcome, print_json, print_with};
 use super::step::Step;
@@ -8,46 +8,42 @@ use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneForm
 use grainbench::scene::solver::Resolution;
 use std::process::ExitCode;
 
-/// Arguments of `grainbench scene`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Case, variant of a case, or scene file.
     #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "schema")]
     scene: Option<String>,
-    /// Print the JSON schema of scene files, or of resolved scenes, instead of a scene.
+    /// Print the JSON schema of scene files or of resolved scenes, instead of a scene. Default: `file`.
     #[arg(long, value_enum, num_args = 0..=1, require_equals = true, default_missing_value = "file")]
     #[arg(conflicts_with_all = ["scene", "set", "format", "time_step", "time_step_fraction", "cells"])]
     schema: Option<Schema>,
-    /// Override one key of the scene; repeatable.
+    /// Override one key of the scene. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
-    /// Format of the output.
+    /// Format of the resolved scene.
     #[arg(long, value_enum, default_value = "json")]
     format: Format,
     #[command(flatten)]
     step: Step,
-    /// Number of cells per reference length, for solvers with deformable bodies. It replaces the time step.
+    /// Number of cells per reference length, instead of a time step, for solvers with deformable bodies.
     #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
     cells: Option<f64>,
 }
 
-/// Formats of the resolved scene.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum Format {
     Json,
     Toml,
 }
 
-/// Kinds of schemas.
 #[derive(Clone, Copy, clap::ValueEnum)]
 pub(crate) enum Schema {
     /// Scene files.
     File,
-    /// Resolved scenes, as external solvers receive them.
+    /// Resolved scenes, as external solvers get them.
     Resolved,
 }
 
-/// Arguments of the old command `schema`.
 #[derive(clap::Args)]
 pub(crate) struct SchemaArguments {
     /// Print the schema of resolved scenes.
@@ -55,7 +51,7 @@ pub(crate) struct SchemaArguments {
     resolved: bool,
 }
 
-/// Prints a schema as the old command `schema`.
+/// Prints a schema for the old command `schema`.
 pub(crate) fn old_schema(arguments: &SchemaArguments) -> Outcome {
     print_schema(if arguments.resolved { Schema::Resolved } else { Schema::File })
 }
@@ -68,7 +64,7 @@ fn print_schema(kind: Schema) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Prints the resolved scene, or a schema.
+/// Prints the resolved scene or a schema.
 pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let Some(name) = &arguments.scene else { return print_schema(arguments.schema.unwrap_or(Schema::File)) };
     let (scene, _) = subject::scene(name, &arguments.set)?;

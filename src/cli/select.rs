@@ -1,4 +1,4 @@
-//! Claims that the command line selects.
+//! Selection of claims by the command line.
 
 use super::exit::Fault;
 use super::names::{level_of, levels, push_new, row, solvers};
@@ -12,20 +12,20 @@ use grainbench::harness::run::{Run, Set};
 use grainbench::reference::outside::ExternalProgram;
 use std::sync::Arc;
 
-/// Selected claims of one case.
+/// Claims that are selected from one case.
 pub(crate) struct CaseSelection {
-    /// The case.
+    /// Case that contains the claims.
     pub(crate) case: &'static Case,
     /// Selected claims in the order of the case; never empty.
     pub(crate) claims: Vec<Claim>,
-    /// External solver that replaces the solvers of the claims.
+    /// External solver that runs the claims instead of the solvers named in them.
     pub(crate) stranger: Option<Arc<ExternalProgram>>,
-    /// True if some claims of the case were removed. Then only the figures of the remaining claims are drawn.
+    /// True if some claims of the case were left out. Only the figures of the selected claims are then drawn.
     pub(crate) is_part: bool,
 }
 
-/// Selects the claims of the named cases for the named solvers and levels. An external solver gets the
-/// solver-independent claims.
+/// Selects the claims of the named cases for the named solvers and levels. An external solver gets only the
+/// solver-independent claims that apply to it.
 pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let (manifests, names): (Vec<&String>, Vec<&String>) = solvers.iter().partition(|name| solver::is_manifest(name));
     let names: Vec<String> = names.into_iter().cloned().collect();
@@ -54,9 +54,9 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Cas
     Ok(selected)
 }
 
-/// Selects claims of the registry and of folders, in the order of the registry. The cases have the form `CASE`,
-/// `CASE/VARIANT` or a folder; none means the whole registry. A claim is selected if its result belongs to one of the
-/// solvers and it needs one of the levels.
+/// Selects claims of the registry and of folders, in the order of the registry. `cases` contains `CASE`, `CASE/VARIANT`
+/// or folders; if it is empty, the whole registry is selected. A claim is selected if its result belongs to one of the
+/// solvers, or if it compares with one of the named programs, and if one of its runs has one of the levels.
 fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let cases = pattern::expanded(cases)?;
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
@@ -80,7 +80,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     for CaseSelection { case, claims, .. } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
-            // A program also selects the claims that compare our solver with it.
+            // The name of a program also selects the claims that compare our solver with it.
             let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
             claims.retain(|claim| row(claim).is_some_and(wanted) || claim.runs.iter().any(asked));
         }
@@ -91,7 +91,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
-    // Without claims, the run would be green although nothing was checked.
+    // Without any claim, the run would be green although nothing was checked.
     if selected.is_empty() {
         return Err(Fault::input("expected at least one claim for the selected cases, solvers and levels, found none"));
     }
@@ -110,15 +110,15 @@ fn refuse_unknown_solvers(selected: &[CaseSelection], names: &[String]) -> Resul
     }
 }
 
-/// Selected levels.
+/// Resolution levels that are selected.
 enum Levels {
-    /// Claims of the quick tier, which the main CI job runs.
+    /// Only claims of the quick tier.
     Default,
     All,
     Named(Vec<String>),
 }
 
-/// Returns the selected levels; each must exist in a selected case.
+/// Returns the selected levels. Returns an error if no selected case has one of the named levels.
 fn wanted_levels(selected: &[CaseSelection], names: &[String]) -> Result<Levels, Fault> {
     if names.iter().any(|name| name == "all") {
         return Ok(Levels::All);
@@ -143,7 +143,7 @@ fn is_at(case: &Case, run: &Run, levels: &[String]) -> bool {
     [level_of(case, run), run.resolution.to_string()].iter().any(|name| levels.contains(&unified(name)))
 }
 
-/// Returns a unified spelling, because `dt=.1` and `dt=0.1` are the same level.
+/// Returns the name of a level in a unified spelling, because `dt=.1` and `dt=0.1` are the same level.
 fn unified(name: &str) -> String {
     match name.split_once('=') {
         Some((knob, value)) if value.starts_with('.') => format!("{knob}=0{value}"),

@@ -1,4 +1,4 @@
-//! `grainbench simulate`: simulates one scene with one solver and writes its record.
+//! `grainbench simulate`: simulates a scene with one solver and writes the record.
 
 use super::campaign;
 use super::campaign::collect::{CollectOptions, collect};
@@ -30,45 +30,44 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of `grainbench simulate`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Scene file, or file of a sweep over parameters, which names its solvers.
+    /// Scene file, or file of a parameter sweep, which names its solvers.
     #[arg(value_name = "SCENE.toml|SWEEP.toml")]
     scene: PathBuf,
-    /// Name of a solver, or manifest of an external solver.
+    /// Solver, by name or manifest.
     #[arg(long, value_name = "NAME|SOLVER.toml", default_value = "", hide_default_value = true)]
     solver: String,
-    /// Variant of the scene.
+    /// Name of a variant of the scene.
     #[arg(long)]
     variant: Option<String>,
-    /// Override one key of the scene, such as `contacts.all.friction=0.5`; repeatable.
+    /// Override one key of the scene, such as `contacts.all.friction=0.5`. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     #[command(flatten)]
     step: Step,
-    /// Cells per reference length of a solver with a grid, per radius for grains; 8 by default.
+    /// Number of cells per reference length (grains: per radius), for a solver with a grid. Default: 8.
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     cells: Option<f64>,
-    /// Material points per cell and axis of a solver with a grid; 3 by default.
+    /// Number of material points per cell along each axis, for a solver with a grid. Default: 3.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, 64))]
     points: Option<u32>,
-    /// Courant number c Δt/h of a solver with a grid; 0.4 by default.
+    /// Courant number c Δt/h, for a solver with a grid. Default: 0.4.
     #[arg(long, value_name = "NUMBER", value_parser = positive)]
     courant: Option<f64>,
-    /// Time steps per 1/60 s of a rigid-body solver; 8 by default.
+    /// Number of time steps per 1/60 s, for a rigid-body solver. Default: 8.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
     substeps: Option<u32>,
-    /// Iterations of the constraint solver per time step of a rigid-body solver; 4 by default.
+    /// Number of iterations of the constraint solver per time step, for a rigid-body solver. Default: 4.
     #[arg(long, value_name = "NUMBER", value_parser = whole::<u32>(1, u32::MAX))]
     iterations: Option<u32>,
-    /// Allow a time step at or above the critical one.
+    /// Accept a time step at or above the critical one.
     #[arg(long)]
     allow_unstable: bool,
-    /// Number of threads of `dem` and `mpm`; all cores by default. It does not change the record.
+    /// Number of threads of `dem` and `mpm`. Default: all cores. The record does not depend on it.
     #[arg(long, value_name = "N", value_parser = whole(1, MOST_THREADS))]
     threads: Option<u16>,
-    /// Write a checkpoint to this file at regular intervals; each one replaces the previous one.
+    /// Write a checkpoint to this file at regular intervals. Each checkpoint replaces the previous one.
     #[arg(long, value_name = "FILE")]
     checkpoint: Option<PathBuf>,
     /// Number of steps between checkpoints.
@@ -80,36 +79,36 @@ pub(crate) struct Arguments {
         requires = "checkpoint"
     )]
     checkpoint_every: u64,
-    /// Continue the run from this checkpoint. Except for run times, the record equals that of an uninterrupted run to
-    /// the bit.
+    /// Continue the run from this checkpoint. The record then equals that of an uninterrupted run to the bit, except
+    /// for the run times.
     #[arg(long, value_name = "FILE")]
     restart: Option<PathBuf>,
-    /// Write the final state with the contact history, as initial state of another scene (`grains.NAME.state`).
+    /// Write the final state with the contact history to this file. Another scene can start from it (`grains.NAME.state`).
     #[arg(long, value_name = "FILE")]
     state: Option<PathBuf>,
-    /// Round the state to half the size: positions to 2⁻³⁶ radii, all other numbers to 24 bits.
+    /// Halve the size of the state file by rounding: positions to 2⁻³⁶ radii, all other numbers to 24 bits.
     #[arg(long, requires = "state")]
     rounded: bool,
-    /// Directory for the record.
+    /// Directory of the record.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     out: PathBuf,
-    /// Formats of the snapshots; by default dump and vtk up to 200 000 rows of grains, contacts and points. Above that, Parquet
-    /// if the scene requests snapshots in addition to the first and the last, else none.
+    /// Formats of the snapshots. Default: `dump` and `vtk` for at most 200 000 rows of grains, contacts and points. For
+    /// more rows: `parquet` if the scene requests snapshots besides the first and the last, otherwise none.
     #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
     write: Option<Vec<SnapshotOption>>,
-    /// Print provenance, cost and the final state as JSON. For a sweep, print the results.
+    /// Print provenance, cost and final state as JSON. For a sweep, print its results as JSON.
     #[arg(long)]
     json: bool,
-    /// Write the sweep as a plan to this directory and run nothing. `run --resume DIR` runs the plan.
+    /// Write a plan of the sweep to this directory and run nothing. `run --resume DIR` runs the plan.
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     plan: Option<PathBuf>,
-    /// Number of shards of the plan; by default each shard lasts about a minute.
+    /// Number of shards of the plan. Default: shards take about a minute or more on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,
 }
 
 impl Arguments {
-    /// Rejects resolution options that belong to another kind of solver, because they would have no effect.
+    /// Returns an error if a resolution option is given that belongs to another kind of solver, because it would have no effect.
     fn refuse_others(&self, method: Method) -> Result<(), Fault> {
         let given = [
             ("--time-step or --time-step-fraction", !self.step.is_usual(), Method::Dem),
@@ -135,7 +134,7 @@ impl Arguments {
         )))
     }
 
-    /// Returns true if neither the command nor the scene requests snapshots. A large run then stores no rows.
+    /// Returns true if neither the command line nor the scene requests snapshots. A large run then stores no rows.
     fn asks_for_no_snapshots(&self, scene: &Scene) -> bool {
         self.write.as_ref().map_or_else(
             || scene.snapshots == 0 && scene.snapshot_times.is_empty(),
@@ -144,7 +143,7 @@ impl Arguments {
     }
 }
 
-/// Requested formats of snapshots.
+/// Format of the snapshots that the command line requests.
 #[derive(Clone, Copy, clap::ValueEnum)]
 enum SnapshotOption {
     Dump,
@@ -164,10 +163,10 @@ impl SnapshotOption {
     }
 }
 
-/// Largest number of scene keys that a command line may override.
+/// Largest number of scene keys that one command line may override.
 const MOST_OVERRIDES: usize = 1000;
 
-/// Simulates a scene and writes its record.
+/// Simulates a scene and writes the record.
 pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if arguments.plan.is_some() || Sweep::is_in(&arguments.scene) {
         return sweep(arguments);
@@ -241,7 +240,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         Ok(record) => record,
         Err(error) => return Err(left(&error, remains.as_ref(), snapshots, arguments)),
     };
-    // Some solvers return all snapshots at the end.
+    // Some solvers return all snapshots at the end of the run.
     for snapshot in record.snapshots.drain(..) {
         snapshots.add(snapshot).map_err(Fault::writing)?;
     }
@@ -262,7 +261,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     Ok(ExitCode::SUCCESS)
 }
 
-/// Plans a sweep. Without `--plan`, writes the plan to `--out`, runs all tasks and makes the report.
+/// Writes a plan of a sweep. Without `--plan`, the plan is written to `--out`, all its tasks are run, and the report is made.
 fn sweep(arguments: &Arguments) -> Outcome {
     let given = [
         ("--solver", !arguments.solver.is_empty()),
@@ -297,7 +296,7 @@ fn sweep(arguments: &Arguments) -> Outcome {
     collect(&out, &CollectOptions { json: arguments.json, ..CollectOptions::default() })
 }
 
-/// Returns the error of a run. The output of a crashed or interrupted run is written nevertheless.
+/// Returns the error of a failed or interrupted run, after writing the output that exists.
 fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore, arguments: &Arguments) -> Fault {
     let Some(series) = remains else { return fault(error, arguments) };
     let formats = formats(&snapshots, arguments);
@@ -315,7 +314,7 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
     })
 }
 
-/// Returns the requested formats, or the default ones.
+/// Returns the requested formats of the snapshots, or the default formats.
 fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format> {
     match &arguments.write {
         Some(asked) => asked.iter().filter_map(|format| format.format()).collect(),
@@ -323,8 +322,8 @@ fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format>
     }
 }
 
-/// Returns the requested resolution. A time step at or above the critical one is rejected unless it is allowed
-/// explicitly.
+/// Returns the requested resolution. Returns an error for a time step at or above the critical one, unless
+/// `--allow-unstable` is given.
 fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Result<Resolution, Fault> {
     if Method::from_name(&arguments.solver) == Some(Method::Rigid) {
         arguments.refuse_others(Method::Rigid)?;
@@ -334,7 +333,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
             iterations: arguments.iterations.unwrap_or(Resolution::RIGID_ITERATIONS),
         });
     }
-    // An external solver with springs too gets cells only if the scene needs deformable bodies.
+    // A solver with both springs and deformable bodies gets cells only if the scene needs deformable bodies.
     if solver.deforms() && (!solver.has_springs() || scene.needs_deformable().is_some()) {
         arguments.refuse_others(Method::Grid)?;
         let cells = arguments.cells.unwrap_or(Resolution::CELLS);
@@ -365,7 +364,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
     Ok(resolution)
 }
 
-/// Returns the error of a run without output. An error in an input file names the file.
+/// Returns the error of a run that left no output. For an error in an input file, the message names the file.
 fn fault(error: &RunError, arguments: &Arguments) -> Fault {
     match error {
         RunError::Broken(_)
@@ -386,12 +385,12 @@ fn in_file(path: &Path, error: &RunError) -> String {
     format!("{}: {error}", path.display())
 }
 
-/// Returns the information that is known before the first step.
+/// Returns the lines that are printed before the first step.
 fn header(scene: &Scene, solver: &dyn Solver) -> String {
     let effects = Effects::words(scene);
     let effects = match (effects.is_empty(), scene.grains.is_empty()) {
         (false, _) => effects.join(", "),
-        (true, true) => "none with deformation".to_owned(),
+        (true, true) => "deformation only".to_owned(),
         (true, false) => "contact springs only".to_owned(),
     };
     let count = |number: usize| number::count(number as u64);
@@ -402,13 +401,13 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
             Duration::Seconds(time) => comers.len() - scene.stays.entered_by(time),
             Duration::Cycles(_) => 0,
         };
-        // If all grains are poured, their number is not repeated.
+        // If all grains are poured, the number of poured grains is not printed again.
         let words = match (comers.len(), late) {
             (0, _) => String::new(),
             (some, 0) if some == scene.grains.len() => String::new(),
             (some, 0) => format!(", {} of them poured", count(some)),
             (some, late) => {
-                format!(", {} of them poured, of which {} would come after the end", count(some), count(late))
+                format!(", {} of them poured, of which {} after the end of the run", count(some), count(late))
             }
         };
         lines += &format!("grains     {}{words}\n", count(scene.grains.len()));
@@ -424,7 +423,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
     let evaluations = cost
         .contact_evaluations
         .map_or(String::new(), |count| format!(", {} contact evaluations", number::count(count)));
-    // Text output is easy to find, so only other formats are reported.
+    // Text files are easy to find, so only other formats are mentioned.
     let bulk = if formats.contains(&Format::Dump) || snapshots.is_empty() {
         String::new()
     } else {
@@ -441,7 +440,7 @@ fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>
     format!("took       {}{evaluations}\n{bulk}{}\n", number::seconds(cost.wall_seconds), arguments.out.display())
 }
 
-/// Observer that prints the header once the solver accepts the run, shows the progress, and stores the output.
+/// Observer of a run. It prints the header when the solver accepts the run, shows the progress, and stores the output.
 struct Watcher {
     threads: usize,
     method: Option<Method>,
@@ -450,35 +449,35 @@ struct Watcher {
     progress: Option<Progress>,
     store: Option<Store>,
     snapshots: SnapshotStore,
-    /// Time series of a crashed or interrupted run.
+    /// Time series of a failed or interrupted run.
     remains: Option<Series>,
-    /// True if the final state is requested.
+    /// True if the final state was requested by `--state`.
     wants_state: bool,
-    /// Final state.
+    /// Final state of the run.
     state: Option<EndState>,
-    /// True if time steps at or above the critical one are allowed.
+    /// True if time steps at or above the critical one are accepted.
     allow_unstable: bool,
     interrupt: Interrupt,
 }
 
 impl Watcher {
-    /// Returns the estimated duration of a run (s); `None` below 10 s.
+    /// Returns the estimated duration of a run (s); `None` if it is below 10 s.
     fn estimate(&self, ahead: RunOutline) -> Option<f64> {
         let seconds = ahead.steps as f64 * ahead.particles as f64 / A_SECOND;
         (seconds >= 10.0).then_some(seconds)
     }
 
-    /// Returns a warning about a long run, with its cause and possible remedies.
+    /// Returns a warning about a long run, with the reason and possible changes.
     fn warning(&self, ahead: RunOutline, seconds: f64) -> String {
         let shorter = match self.method {
             Some(Method::Grid) => {
-                "The step is the time of a wave through part of a cell: softer moduli or larger cells (--cells)"
+                "The time step is the time of a wave through part of a cell. Softer moduli or larger cells (--cells)"
             }
-            _ => "The step is a fraction of √(m/k): softer springs",
+            _ => "The time step is a fraction of √(m/k). Softer springs",
         };
         format!(
-            "warning: this takes about {}, {} steps of {:.3e} s for {} particles. {shorter} make it shorter; --checkpoint FILE \
-             stores the finished steps",
+            "warning: this takes about {}, {} steps of {:.3e} s for {} particles. {shorter} shorten the run. \
+             --checkpoint FILE stores the finished steps",
             rough(seconds),
             number::count(ahead.steps),
             ahead.time_step,
@@ -492,7 +491,7 @@ const A_SECOND: f64 = 1e7;
 /// Estimated duration above which the user is warned (s).
 const LONG: f64 = 3600.0;
 
-/// Returns a duration with two significant digits and a suitable unit.
+/// Returns a duration in words, with two significant digits and a suitable unit.
 fn rough(seconds: f64) -> String {
     let (size, unit) = match seconds {
         ..600.0 => (seconds, "s"),
@@ -525,7 +524,7 @@ impl Observer for Watcher {
             let fraction = number::significant(time_step / self.critical, 4);
             format!("{fraction} of the critical step {:.6e} s", self.critical)
         } else {
-            "no contact can occur, hence no critical step".to_owned()
+            "no critical step, because no contact can occur".to_owned()
         };
         if let Some(header) = self.header.take() {
             let estimate = self.estimate(ahead).map_or_else(String::new, |seconds| {
@@ -578,13 +577,13 @@ impl Observer for Watcher {
     }
 
     fn broke(&mut self, remains: PartialOutput) {
-        // A write error at this point is reported when the rest of the output is written.
+        // If this write fails, the error is reported when the remaining output is written.
         let _ = self.snapshots.add_last(remains.end);
         self.remains = Some(remains.series);
     }
 }
 
-/// JSON summary of a run.
+/// Summary of a run, printed as JSON.
 #[derive(Serialize)]
 struct Summary<'a> {
     provenance: &'a Provenance,

@@ -1,4 +1,4 @@
-//! Solver of a command line: one of the registry, or an external solver by its manifest.
+//! Solver named on the command line: a built-in solver, or an external solver by its manifest.
 
 use super::exit::Fault;
 use grainbench::cases::solvers;
@@ -7,7 +7,7 @@ use grainbench::scene::solver::Solver;
 use std::path::Path;
 use std::sync::Arc;
 
-/// Returns the solver with a name, or the external solver of a manifest.
+/// Returns the solver with this name, or the external solver of this manifest.
 pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
     if is_manifest(name) {
         return Ok(outside(name)?);
@@ -27,8 +27,7 @@ pub(crate) fn is_manifest(name: &str) -> bool {
     Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
 }
 
-/// Returns the external solver of a manifest. Its name must differ from those of our solvers, because names identify
-/// results.
+/// Returns the external solver of a manifest. Its name must not be the name of a built-in solver, because names identify results.
 pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
     let outside = ExternalProgram::read(Path::new(path)).map_err(Fault::input)?;
     let name = outside.manifest().name.as_str();

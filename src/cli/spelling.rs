@@ -1,4 +1,4 @@
-//! Old spellings of options and commands. They are accepted until the next version, with a note.
+//! Old spellings of options and commands. They are accepted until the next version, and a note is printed.
 
 use super::exit;
 use std::ffi::OsString;
@@ -18,8 +18,8 @@ const RENAMED: [(&str, &str); 11] = [
     ("--rungs", "--levels"),
 ];
 
-/// Returns the arguments in their present spelling, and prints a note for each old spelling. Arguments after `--` belong to
-/// another program.
+/// Returns the arguments in their present spelling, and prints a note for each old spelling. Arguments after `--` are
+/// unchanged, because they belong to another program.
 pub(super) fn present(arguments: impl Iterator<Item = OsString>) -> Vec<OsString> {
     let mut is_ours = true;
     let current = |argument: OsString| {
@@ -30,7 +30,7 @@ pub(super) fn present(arguments: impl Iterator<Item = OsString>) -> Vec<OsString
     arguments.map(current).collect()
 }
 
-/// Returns the present spelling of an argument with an old one, which may have its value after `=`.
+/// Returns the present spelling of an argument; none if its spelling is not old. The value may follow after `=`.
 fn renamed(argument: &str) -> Option<String> {
     let (option, value) = argument.split_at(argument.find('=').unwrap_or(argument.len()));
     let (old, new) = RENAMED.iter().find(|(old, _)| *old == option)?;
@@ -38,7 +38,7 @@ fn renamed(argument: &str) -> Option<String> {
     Some(format!("{new}{value}"))
 }
 
-/// Prints a note for an old command.
+/// Prints the note for the old spelling of a command.
 pub(super) fn say_command(old: &str, new: &str) {
     say(old, &format!("grainbench {new}"));
 }

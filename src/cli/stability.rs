@@ -22,30 +22,28 @@ use std::collections::BTreeMap;
 use std::path::PathBuf;
 use std::time::{Duration, Instant};
 
-/// Case in which the limit of the method with a grid is measured.
+/// Case in which the stability limit of grid methods is measured.
 const BAR: &str = "vibrating-bar";
-/// Numbers of cells along the bar.
+/// Numbers of cells along the bar, from coarse to fine.
 const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 /// Shortest time between two updates of the report.
 const EVERY: Duration = Duration::from_secs(5);
 
-/// Arguments of `grainbench stability`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Assemblies and difficult cases, by name or prefix; all by default.
+    /// Assemblies and hard cases, by name or by the beginning of the name. Default: all.
     #[arg(value_name = "CASE")]
     pub(crate) cases: Vec<String>,
-    /// Select a solver, by name or manifest; repeatable.
+    /// Test only this solver, by name or manifest. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Repeat finished parts.
+    /// Repeat the finished parts of the study.
     #[arg(long)]
     no_cache: bool,
-    /// Store the results in the source tree, for the first screen of the report. Requires all cases and all built-in
-    /// solvers.
+    /// Store the results in the source tree, for the first screen of the report. Needs all cases and all built-in solvers.
     #[arg(long, conflicts_with_all = ["cases", "solver"])]
     update_stored: bool,
-    /// Directory for the report and the finished parts.
+    /// Directory of the report and of the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     pub(crate) out: PathBuf,
     /// Print the results as JSON instead of text.
@@ -56,21 +54,21 @@ pub(crate) struct Arguments {
 }
 
 impl Arguments {
-    /// Returns the arguments of a plan; none if no plan is requested.
+    /// Returns the arguments of the plan; none without `--plan`.
     pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
         let planned = self.plan.arguments("stability", &self.cases, &self.solver)?;
         Some(arguments::Arguments { json: self.json, ..planned })
     }
 }
 
-/// Work item: a limit or a hard case with its solver.
+/// Work item of the study: a stability limit or a hard case, with its solver.
 pub(crate) enum WorkItem<'a> {
     Assembly(&'a Assembly, &'a str),
     Bar(&'static str, f64),
     Hard(&'a HardCase, &'a str),
 }
 
-/// Finds the limits, runs the hard cases and writes the report. The report is updated at intervals of [`EVERY`].
+/// Finds the stability limits, runs the hard cases and writes the report, which is updated at intervals of [`EVERY`].
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let assemblies = assembly::all()?;
     let hard = hard::all();
@@ -109,13 +107,13 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     publish_study(&study, output, is_red(&study))
 }
 
-/// Returns true if no solver gave a limit and no hard case holds. A run that fails measures nothing.
+/// Returns true if no stability limit was found and no hard case was solved.
 fn measures_nothing(study: &Study) -> bool {
     let holds = |row: &HardCaseResult| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
     study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(holds)
 }
 
-/// Returns the command and its options that differ from the default.
+/// Returns the command, the cases and the options that differ from the default, in words.
 pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     let mut words = vec!["stability".to_owned()];
     words.extend(arguments.cases.iter().cloned());
@@ -123,15 +121,15 @@ pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
     words
 }
 
-/// Returns the hashes of the sources of all solvers in the study.
+/// Returns the hashes of the sources of all solvers in the study, by solver name.
 pub(crate) fn sources_of(study: &Study) -> BTreeMap<String, String> {
     let limits = study.limits.iter().map(|row| row.solver.clone());
     let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
     sources(&asked)
 }
 
-/// Returns true if nothing was measured, or if a solver ends with a wrong result and no error. LAMMPS, LIGGGHTS and
-/// `rigid` do not count, because their errors are documented.
+/// Returns true if nothing was measured, or if a solver ends without an error and with a wrong result. LAMMPS, LIGGGHTS
+/// and `rigid` are exempt, because their errors are documented.
 pub(crate) fn is_red(study: &Study) -> bool {
     let red = |solver: &str| !grainbench::cases::solvers::is_program(solver) && solver != "rigid";
     measures_nothing(study) || study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver))
@@ -176,8 +174,8 @@ pub(crate) fn do_piece(
     }
 }
 
-/// Returns the selected work items. Cases are prefixes of names: of assemblies, with `-` for spaces, of the bar, and of
-/// hard cases. `solvers` holds the selected names, and `strangers` the external solvers.
+/// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of
+/// the bar and of hard cases. `solvers` contains the selected names, and `strangers` the names of the external solvers.
 pub(crate) fn select<'a>(
     cases: &[String],
     [solvers, strangers]: [&'a [String]; 2],

@@ -1,9 +1,9 @@
-//! Time step options.
+//! Options that set the time step.
 
 use super::value::positive;
 use grainbench::scene::solver::Resolution;
 
-/// A time step, as a fraction of the critical one or in seconds.
+/// Time step, as a fraction of the critical one or in seconds.
 #[derive(clap::Args)]
 pub(crate) struct Step {
     /// Time step as a fraction of the critical one, 2√(m_min/k_max).
@@ -22,7 +22,7 @@ pub(crate) struct Step {
 }
 
 impl Step {
-    /// Returns true if the time step is the default.
+    /// Returns true if the time step is the default fraction of the critical one.
     pub(crate) fn is_usual(&self) -> bool {
         self.resolution() == Resolution::CriticalFraction(Resolution::FRACTION)
     }

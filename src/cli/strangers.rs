@@ -1,4 +1,4 @@
-//! Solvers of the registry, and external solvers by their manifests.
+//! Built-in solvers, and external solvers by their manifests.
 
 use super::exit::Fault;
 use super::solver;
@@ -19,19 +19,19 @@ use std::process;
 use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
-/// Solvers that a command line may name.
+/// Solvers that a command line names.
 pub(crate) struct NamedSolvers {
     strangers: Vec<Arc<ExternalProgram>>,
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
-    /// results.
+    /// results were made.
     read: String,
-    /// True if an external solver is identified by the contents of its files; false if by the time of reading.
+    /// True to identify an external solver by the contents of its files; false to identify it by the time of reading.
     by_content: bool,
 }
 
 impl NamedSolvers {
-    /// Reads the manifests among some names. Returns the solvers, and the names with manifests replaced by solver
-    /// names.
+    /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with the solver's name instead
+    /// of each path.
     pub(crate) fn read(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
         let (mut strangers, mut known) = (Vec::new(), Vec::new());
         for name in names {
@@ -49,21 +49,21 @@ impl NamedSolvers {
         Ok((Self { strangers, read, by_content: false }, known))
     }
 
-    /// Reads the manifests for work that several processes share. The contents of its files identify an external
-    /// solver.
+    /// Reads the manifests for work that several processes share. An external solver is then identified by the contents
+    /// of its files.
     pub(crate) fn read_by_content(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
         let (solvers, known) = Self::read(names)?;
-        // A fingerprint that fails must not change from process to process.
+        // The identification must not differ between processes, so a file that cannot be read is an error.
         for stranger in &solvers.strangers {
             stranger.edition().map_err(Fault::input)?;
         }
         Ok((Self { by_content: true, ..solvers }, known))
     }
 
-    /// Returns the hashes of the files of the external solvers, by path. Paths in the current directory are relative.
+    /// Returns the hashes of the files of the external solvers, by path. Paths below the current directory are relative.
     pub(crate) fn inputs(&self) -> BTreeMap<String, String> {
         let here = env::current_dir().unwrap_or_default();
-        // A folder that cannot be read is reported when the solvers are read.
+        // A folder that cannot be read causes an error when the solvers are read.
         let files = self.strangers.iter().flat_map(|stranger| stranger.files().unwrap_or_default());
         let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).display().to_string();
         files.map(|path| (shown(&path), hash_of_file(&path))).collect()
@@ -86,7 +86,7 @@ impl Solvers for NamedSolvers {
     }
 
     fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
-        // The manifest of an external solver sets its time limit.
+        // The time limit of an external solver is in its manifest.
         if self.stranger(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
     }
 

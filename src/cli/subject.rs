@@ -1,4 +1,4 @@
-//! Scene of a command: from a case or from a file.
+//! Scene of a command, from a case or from a file.
 
 use super::exit::{self, Fault};
 use super::names::variants;
@@ -11,21 +11,24 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Case with an optional variant.
+/// Case and, optionally, a variant of it.
 #[derive(Clone, Copy)]
 pub(crate) struct Variant<'a> {
     pub(crate) case: &'static Case,
-    /// Name of the variant; `None` for the plain scene or, in [`exact_scene`], for the first suitable variant.
+    /// Name of the variant. `None` means the plain scene or, in [`exact_scene`], any variant.
     pub(crate) variant: Option<&'a str>,
 }
 
 impl<'a> Variant<'a> {
-    /// Reads `CASE`, `CASE/VARIANT`, or the path of a folder with a case.
+    /// Reads `CASE`, `CASE/VARIANT`, or the path of the folder of a case.
     pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
         let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
         if is_named || !Path::new(text).is_dir() {
             if is_named && Path::new(text).join(folder::CLAIMS).is_file() {
-                exit::say("warning", &format!("`{text}` means the built-in case; write ./{text} for the folder"));
+                exit::say(
+                    "warning",
+                    &format!("`{text}` selects the built-in case; write ./{text} to select the folder"),
+                );
             }
             return Self::read(text);
         }
@@ -49,7 +52,7 @@ impl<'a> Variant<'a> {
         Ok(Self { case, variant })
     }
 
-    /// Returns the scene's source text.
+    /// Returns the source text of the scene.
     pub(crate) fn source(&self) -> SceneSource {
         match self.variant {
             None | Some(PLAIN) => self.case.source(),
@@ -58,7 +61,7 @@ impl<'a> Variant<'a> {
     }
 }
 
-/// Reads the scene of `CASE`, `CASE/VARIANT` or a file that ends in `.toml`, with some of its keys overridden.
+/// Reads the scene of `CASE`, `CASE/VARIANT` or a file with the extension `.toml`, and overrides the keys in `set`.
 pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Option<&'static Case>), Fault> {
     let is_file = Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
     let (mut source, case) = if is_file {
@@ -73,7 +76,7 @@ pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Opti
     Ok((source.scene(&read_grains)?, case))
 }
 
-/// Returns the scene of the first solver-independent claim of a case or variant, and its resolution.
+/// Returns the scene and the resolution of the first solver-independent claim of a case or variant.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let named = Variant::read(text)?;
     let fair = |claim: &Claim| claim.scope.is_of_grains() && claim.runs.len() == 1;
@@ -82,7 +85,7 @@ pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
         .filter(fair)
         .filter_map(|claim| claim.runs.into_iter().next())
         .filter(|run| named.variant.is_none_or(|variant| variant == run.variant));
-    // Claims with a time step come first, because a deck cannot use the cells of a grid.
+    // Claims with a time step come first, because an input deck cannot use the cells of a grid.
     let run =
         run.min_by_key(|run| !matches!(run.resolution, Resolution::TimeStep(_) | Resolution::CriticalFraction(_)));
     let Some(run) = run else {

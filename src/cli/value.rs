@@ -1,9 +1,9 @@
-//! Parsers of option values, with their error messages.
+//! Parsers of option values.
 
 use std::fmt::Display;
 use std::str::FromStr;
 
-/// Reads a key and its value.
+/// Reads `PATH=VALUE`, a key of a scene and its value.
 pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
     let (path, value) = text.split_once('=').ok_or("expected path=value, found no `=`")?;
     Ok((path.trim().to_owned(), value.trim().to_owned()))

@@ -9,37 +9,37 @@ use std::path::PathBuf;
 /// Arguments of a plan.
 #[derive(Clone, Default, clap::Args)]
 pub(crate) struct Arguments {
-    /// Kind of plan: claims of cases, computing cost, stability limits, or a sweep file.
+    /// Kind of plan: `run`, `cost`, `stability`, or the path of a sweep file.
     #[arg(value_name = "run|cost|stability|SWEEP.toml")]
     pub(crate) what: String,
-    /// Cases, as for `run`, `cost` and `stability`; all by default.
+    /// Cases, as for `run`, `cost` and `stability`. Default: all.
     #[arg(value_name = "CASE|CASE/VARIANT")]
     pub(crate) cases: Vec<String>,
     /// Select a solver, by name or manifest; repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Resolution levels for `run`; for `cost`, `all` includes points that take more than twenty seconds.
+    /// Resolution levels, for `run`. For `cost`, `all` includes points that take more than 20 s.
     #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Filter for `run`, as its option `--filter`.
+    /// Filter, as `run --filter`.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…")]
     pub(crate) filter: Vec<String>,
     /// Skip the negative controls, for `run`.
     #[arg(long)]
     pub(crate) no_controls: bool,
-    /// Run `lammps` and `liggghts` even if a stored run exists, for `run`.
+    /// Run `lammps` and `liggghts` even if a stored run exists; for `run`.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Measure also the cost of the parts of a step, and of a step with one and with ten thousand grains, for `cost`.
+    /// Also measure the cost of the parts of a step, and of a step with one and with 10,000 grains; for `cost`.
     #[arg(long)]
     pub(crate) prices: bool,
-    /// Measure only errors and counts, for `cost`; without timing, tasks can share a machine.
+    /// Measure only errors and counts, for `cost`. Without timing, several tasks can run on one machine.
     #[arg(long, conflicts_with = "prices")]
     pub(crate) counts: bool,
-    /// Number of shards; by default each shard lasts about a minute.
+    /// Number of shards. Default: shards take about a minute or more on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST))]
     pub(crate) shards: Option<u32>,
-    /// Directory for the plan; finished tasks of an existing plan stay finished.
+    /// Directory of the plan. Finished tasks of an existing plan stay finished.
     #[arg(long, value_name = "DIR", default_value = "grainbench-plan")]
     pub(crate) out: PathBuf,
     /// Print the plan as JSON.
@@ -54,13 +54,13 @@ pub(crate) struct PlanOptions {
     /// plan stay finished.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
     pub(crate) plan: Option<PathBuf>,
-    /// Number of shards of the plan; by default each shard lasts about a minute.
+    /// Number of shards of the plan. Default: shards take about a minute or more on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,
 }
 
 impl PlanOptions {
-    /// Returns the arguments of a plan; none if no plan is requested.
+    /// Returns the arguments of the plan; none without `--plan`.
     pub(crate) fn arguments(&self, what: &str, cases: &[String], solver: &[String]) -> Option<Arguments> {
         let out = self.plan.clone()?;
         let (what, cases, solver) = (what.to_owned(), cases.to_vec(), solver.to_vec());
@@ -76,7 +76,7 @@ struct PlanParser {
 }
 
 impl Arguments {
-    /// Returns the command line that gives these arguments again.
+    /// Returns the words of a command line that gives these arguments.
     pub(super) fn words(&self) -> Vec<String> {
         let mut words = vec![self.what.clone()];
         words.extend(self.cases.iter().cloned());
@@ -102,7 +102,7 @@ impl Arguments {
         Ok(again.arguments)
     }
 
-    /// Rejects options that this kind of plan does not support.
+    /// Returns an error if an option is given that this kind of plan does not support.
     pub(crate) fn only(&self, heeded: &[&str]) -> Result<(), Fault> {
         let given = [
             ("CASE", !self.cases.is_empty()),

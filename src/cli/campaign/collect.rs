@@ -1,4 +1,4 @@
-//! `report` of a plan: the report of the finished tasks, as if one machine had run all of them.
+//! `report` of a plan. The report contains the results of all finished tasks, as if one machine had run them.
 
 use super::arguments::Arguments as Planned;
 use super::study::ReportOptions;
@@ -11,7 +11,6 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 
-/// Arguments of the old command `collect`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
@@ -24,8 +23,8 @@ pub(crate) struct Arguments {
 /// Options of the report of a plan.
 #[derive(Default, clap::Args)]
 pub(crate) struct CollectOptions {
-    /// Plot the trend of verdicts and counts from earlier reports, oldest first; repeatable. For a plan made by `cost`,
-    /// times are compared with the last of these reports.
+    /// Plot the trend of outcomes and counts from these earlier reports, oldest first. Repeatable. For a plan made by
+    /// `cost`, times are compared with the last of these reports.
     #[arg(long, value_name = "DIR|results.json")]
     pub(crate) against: Vec<PathBuf>,
     /// Treat amber results as red.
@@ -34,7 +33,7 @@ pub(crate) struct CollectOptions {
     /// Also write `rows.parquet` for a plan made by `run`. The report of a sweep always contains it.
     #[arg(long)]
     pub(crate) parquet: bool,
-    /// Directory for the report; by default inside the plan.
+    /// Directory of the report. Default: `report` in the directory of the plan.
     #[arg(long, value_name = "DIR")]
     pub(crate) out: Option<PathBuf>,
     /// Print the results as JSON.
@@ -43,7 +42,7 @@ pub(crate) struct CollectOptions {
 }
 
 impl CollectOptions {
-    /// Returns the name of an option that is given.
+    /// Returns the name of the first option that is given; none if no option is given.
     pub(crate) fn given(&self) -> Option<&'static str> {
         let given = [
             ("--against", !self.against.is_empty()),
@@ -59,8 +58,8 @@ impl CollectOptions {
 /// Writes the report of a plan.
 pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
-    // Paths of the command line are relative to the current directory, and paths of the plan to the directory in which
-    // it was made.
+    // Paths on the command line are relative to the current directory. Paths in the plan are relative to the directory
+    // in which the plan was made.
     let from_here = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
     let out = arguments.out.clone().unwrap_or_else(|| plan.join("report"));
     let out = from_here(&out);
@@ -92,26 +91,29 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
         write_trend(&out, &columns).map_err(Fault::writing)?;
     }
     if missing > 0 {
-        let what = format!("{missing} of {} tasks are not finished: the report holds the others", plan.tasks.len());
+        let what =
+            format!("{missing} of {} tasks are not finished; the report contains the finished tasks", plan.tasks.len());
         exit::say("warning", &what);
         return Ok(ExitCode::from(RED));
     }
     Ok(code)
 }
 
-/// Returns the number of finished tasks in words, if some are missing.
+/// Returns a text with the numbers of finished and of all tasks; none if all tasks are finished.
 fn unfinished(plan: &Plan, missing: usize) -> Option<String> {
     (missing > 0).then(|| format!("unfinished: {} of {} tasks", plan.tasks.len() - missing, plan.tasks.len()))
 }
 
-/// Returns the number of finished tasks if some are missing, the machines, and the system load during timed tasks.
+/// Returns texts for the report: the machines that ran the tasks, and the largest system load during timed tasks. If
+/// tasks are missing, the first text is the number of finished tasks.
 fn words(plan: &Plan, finished: &FinishedTasks, missing: usize) -> Vec<String> {
     let mut words: Vec<String> = unfinished(plan, missing).into_iter().collect();
     let used: BTreeSet<usize> =
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
     let mut machines: BTreeSet<String> = BTreeSet::new();
     for worker in used.into_iter().filter_map(|place| finished.workers.get(place)) {
-        let granted = worker.granted.map_or_else(String::new, |cores| format!(", {cores} of them its own"));
+        let granted =
+            worker.granted.map_or_else(String::new, |cores| format!(", of which {cores} were allotted to the job"));
         machines.insert(format!("{} ({}{granted})", worker.host, worker.machine));
     }
     if !machines.is_empty() {
@@ -130,7 +132,7 @@ fn results_of(path: &Path) -> PathBuf {
     if path.is_dir() { path.join("results.json") } else { path.to_owned() }
 }
 
-/// Reads a report as a column of the trend.
+/// Reads an earlier report as a column of the trend.
 fn read_column(path: &Path) -> Result<Column, Fault> {
     let file = results_of(path);
     let name = if path.is_dir() { path } else { path.parent().unwrap_or(path) };

@@ -8,7 +8,7 @@ use super::of_sweep::SweepStudy;
 use super::study::Study;
 use crate::cli::exit::Fault;
 
-/// Returns the study that the arguments ask for.
+/// Returns the study of the kind that the arguments name.
 pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Box<dyn Study>, Fault> {
     Ok(match arguments.what.as_str() {
         "run" => Box::new(ClaimStudy::new(arguments)?),

@@ -1,4 +1,5 @@
-//! Many runs from one plan, on this machine or through a batch system: `--plan DIR`, `run --resume DIR` and `report DIR`.
+//! Many runs from one plan, on this machine or through a batch system. Commands: `--plan DIR`, `run --resume DIR` and
+//! `report DIR`.
 
 pub(crate) mod arguments;
 pub(crate) mod collect;
@@ -22,14 +23,14 @@ impl From<campaign::Fault> for Fault {
         match fault {
             campaign::Fault::Input(words) => Self::input(words),
             campaign::Fault::Write(error) => Self::writing(error),
-            // An error of a batch system is not an input error.
+            // A failure of the batch system is not an input error.
             campaign::Fault::Batch(words) => Self::Broken(words),
         }
     }
 }
 
-/// Reads a plan and changes to the directory in which it was made, because its paths are relative to it. The path of
-/// the plan becomes absolute.
+/// Reads a plan and changes to the directory in which the plan was made, because paths in the plan are relative to it.
+/// The path of the plan becomes absolute.
 fn enter(path: &Path) -> Result<Plan, Fault> {
     let mut plan = Plan::read(path)?;
     let whole = std::fs::canonicalize(path).map_err(|error| Fault::input(format!("{}: {error}", path.display())))?;

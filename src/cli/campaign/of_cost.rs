@@ -1,4 +1,4 @@
-//! Plan of a cost study: one task per point, and one each for the parts of a step and for large scenes.
+//! Plan of a cost study. It has one task per point, one for the cost of the parts of a step, and one for large scenes.
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study};
@@ -25,9 +25,9 @@ use std::panic::{AssertUnwindSafe, catch_unwind};
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::Instant;
 
-/// Expected duration of the timing of the parts of a step (s).
+/// Expected duration of measuring the cost of the parts of a step (s).
 const PRICES: f64 = 40.0;
-/// Expected duration of the timing of a step with one and with ten thousand grains (s).
+/// Expected duration of measuring the cost of a step with one and with 10,000 grains (s).
 const LOADS: f64 = 90.0;
 
 /// Cost study of a plan.
@@ -66,7 +66,7 @@ impl CostStudy {
         NamedSolvers::read_by_content(&self.solver).map(|(solvers, _)| solvers)
     }
 
-    /// Returns the tasks that belong to no diagram. They measure the cost of the parts of a step, and of a step at
+    /// Returns the tasks that belong to no diagram: the cost of the parts of a step, and the cost of a step for
     /// different numbers of grains.
     fn beside(&self, program: &str) -> [(Id, &'static str, f64); 2] {
         [("prices", PRICES), ("loads", LOADS)]
@@ -74,12 +74,12 @@ impl CostStudy {
     }
 }
 
-/// Returns the task id of a point.
+/// Returns the task id of a point from the point's name.
 fn id_of(name: &str) -> Option<Id> {
     Id::of_hash(name)
 }
 
-/// Returns the duration of a point (s).
+/// Returns the duration of all repetitions of a point (s).
 fn seconds_of(point: &Point) -> f64 {
     point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
 }
@@ -124,7 +124,7 @@ impl Study for CostStudy {
                     what: subject.quantity.clone(),
                     repetitions: if self.wanted.counts { 1 } else { 5 },
                     seconds: point.seconds,
-                    // One worker measures the repetitions of one target quantity in alternation.
+                    // One worker measures all points of a target quantity, with their repetitions in alternation.
                     group: if self.wanted.counts { None } else { Some(number) },
                 });
             }
@@ -180,7 +180,7 @@ impl Study for CostStudy {
             })
             .filter(|(_, mine): &(usize, Vec<Id>)| !mine.is_empty())
             .collect();
-        // Without timing, each point is a separate item.
+        // Without timing, each point is a work item of its own.
         let pieces: Vec<(usize, Vec<Id>)> = if self.wanted.counts {
             pieces.into_iter().flat_map(|(at, mine)| mine.into_iter().map(move |id| (at, vec![id]))).collect()
         } else {
@@ -222,7 +222,7 @@ impl Study for CostStudy {
             words.push("--levels all".to_owned());
         }
         if self.wanted.counts {
-            words.push("--counts: times are from one run while others run".to_owned());
+            words.push("--counts: times come from single runs beside other runs".to_owned());
         }
         words.extend(how.words.iter().cloned());
         let mut study = Report::new(provenance(words, how.seconds));

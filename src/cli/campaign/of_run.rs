@@ -1,5 +1,5 @@
-//! Plan of claims. It has one task for each claim with its control, for the figures of each case, and for the
-//! conformance of each solver.
+//! Plan of claims. It has one task for each claim with its negative control, one for the figures of each case, and one
+//! for the conformance of each solver.
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study};
@@ -31,23 +31,23 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::Arc;
 
-/// Expected duration of the figures of a case beyond its runs (s).
+/// Expected duration of the figures of a case, without their runs (s).
 const FIGURES: f64 = 0.5;
 /// Expected duration of the conformance tests of one solver (s).
 const CONFORMANCE: f64 = 2.0;
-/// Expected duration of reading a stored result (s).
+/// Expected duration of loading a stored result (s).
 const KEPT: f64 = 0.1;
-/// Expected duration of starting a program (s).
+/// Expected duration of starting an external program (s).
 const START: f64 = 0.5;
 
-/// Claims of a plan.
+/// Claims, figures and conformance properties of a plan.
 pub(crate) struct ClaimStudy {
     tasks: ClaimTasks,
-    /// External solvers of the plan.
+    /// External solvers named in the plan.
     strangers: NamedSolvers,
     /// True if the plan covers the whole registry with all solvers.
     is_whole: bool,
-    /// Options in words, for the report.
+    /// Options for the report, in words.
     words: Vec<String>,
 }
 
@@ -113,7 +113,7 @@ impl ClaimStudy {
                 let programs = self.programs(selected.case, claim);
                 let words =
                     format!("{case}|{content}|{stranger}|{programs}|{runs}|{}|{}", claim.quantity, claim.control.name);
-                // Two claims may have equal descriptions.
+                // Two claims may have equal descriptions, so their ids contain a number.
                 let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
                 rows += &words;
                 ids.push(Id::of_words(program, &["row", &words, &number.to_string(), &settings]));
@@ -130,7 +130,7 @@ impl ClaimStudy {
     /// Returns the tasks of a plan.
     ///
     /// # Errors
-    /// The cases or programs have changed since the plan was written.
+    /// When the cases or programs have changed since the plan was written.
     fn planned(&self, plan: &Plan) -> Result<Vec<(Id, ClaimTask)>, Fault> {
         let tasks = self.with_ids(&plan.head.program)?;
         let known: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
@@ -143,13 +143,13 @@ impl ClaimStudy {
         )))
     }
 
-    /// Returns the hashes of the installed programs that a claim runs. Stored runs need no program.
+    /// Returns the hashes of the installed programs that a claim runs. A stored run needs no program.
     fn programs(&self, case: &Case, claim: &Claim) -> String {
         let runs = claim.runs.iter().filter(|run| self.tasks.live || !Registry.is_stored(case, run));
         runs.map(|run| Registry.edition(run.solver)).collect::<Vec<_>>().join(" ").trim().to_owned()
     }
 
-    /// Estimates the duration of a claim with its control (s).
+    /// Estimates the duration of a claim with its negative control (s).
     fn seconds(&self, runner: &Runner, claim: &Claim) -> f64 {
         let once = |run: &Run| {
             let start = if grainbench::cases::solvers::is_program(run.solver) { START } else { 0.0 };
@@ -223,7 +223,7 @@ impl Study for ClaimStudy {
     }
 
     fn inputs(&self) -> BTreeMap<String, String> {
-        // A folder that cannot be read is reported when the tasks are listed.
+        // If a folder cannot be read, the error is reported when the tasks are listed.
         let files = self.tasks.selected.iter().flat_map(|selected| files_of(selected).unwrap_or_default());
         let mut inputs = self.strangers.inputs();
         inputs.extend(files.map(|path| (path.display().to_string(), hash_of_file(&path))));

@@ -1,4 +1,4 @@
-//! Plan of a stability study: one task per limit or hard case.
+//! Plan of a stability study, with one task per stability limit or hard case.
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study};
@@ -23,14 +23,14 @@ use grainbench::studies::stability::limit;
 use std::collections::{BTreeMap, HashMap};
 use std::sync::{Arc, Mutex, PoisonError};
 
-/// Expected duration of a stability limit with contact springs (s).
+/// Expected duration of finding a stability limit with contact springs (s).
 const SPRINGS: f64 = 0.5;
-/// Expected duration of a stability limit with a grid, per cell (s).
+/// Expected duration of finding a stability limit with a grid (s per cell).
 const CELLS: f64 = 0.05;
-/// Factor on the expected duration of a hard case, because the case is repeated with smaller steps if it fails.
+/// Factor on the expected duration of a hard case. A failed case is repeated with smaller time steps.
 const TRIES: f64 = 3.0;
 
-/// Limits and hard cases of a plan.
+/// Stability limits and hard cases of a plan.
 pub(crate) struct StabilityStudy {
     assemblies: Vec<Assembly>,
     hard: Vec<HardCase>,
@@ -53,7 +53,7 @@ impl StabilityStudy {
     }
 }
 
-/// Returns the name of a work item in a result cache.
+/// Returns the name of a work item in the result cache.
 fn name(piece: &WorkItem<'_>, program: &str, solvers: &NamedSolvers) -> String {
     use grainbench::harness::solvers::Solvers;
     let by = |solver: &str| program.to_owned() + &solvers.edition(solver);
@@ -164,7 +164,7 @@ impl Study for StabilityStudy {
         let program = &plan.head.program;
         self.with(|pieces, solvers| {
             for piece in pieces {
-                // An unfinished item would otherwise be computed here.
+                // Unfinished items are left out, because they would be computed here.
                 if Id::of_hash(&name(piece, program, solvers)).is_some_and(|id| there.contains(&id)) {
                     stability::do_piece(piece, (program, solvers), &cache, &mut study, &mut Follower::none())?;
                 }

@@ -1,4 +1,4 @@
-//! `--plan DIR`: writes a plan with one task per line.
+//! `--plan DIR`: writes a plan as a file with one task per line.
 
 use super::arguments::Arguments;
 use super::kinds;
@@ -9,7 +9,7 @@ use serde::Serialize;
 use std::path::PathBuf;
 use std::process::ExitCode;
 
-/// JSON summary of a plan.
+/// Summary of a plan, printed as JSON.
 #[derive(Serialize)]
 struct Summary<'a> {
     tasks: usize,
@@ -19,7 +19,7 @@ struct Summary<'a> {
     out: &'a PathBuf,
 }
 
-/// Writes a plan.
+/// Computes the tasks of a plan, writes it to `--out` and returns it.
 pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
     let study = kinds::from_arguments(arguments)?;
@@ -38,7 +38,7 @@ pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     Ok(Plan::write(&arguments.out, head, tasks)?)
 }
 
-/// Writes a plan and prints its size.
+/// Writes a plan and prints the number of tasks and their expected duration.
 pub(crate) fn plan(arguments: &Arguments) -> Outcome {
     let plan = write(arguments)?;
     let Head { tasks, shards, seconds, timed, .. } = plan.head;

@@ -1,4 +1,4 @@
-//! `report --progress`: shows the progress of a plan.
+//! `report --progress`: prints the progress of a plan.
 
 use crate::cli::exit::{Outcome, print, print_json};
 use grainbench::campaign::plan::Plan;
@@ -9,7 +9,6 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Arguments of the old command `status`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
@@ -20,16 +19,16 @@ pub(crate) struct Arguments {
     pub(crate) json: bool,
 }
 
-/// JSON form of the progress.
+/// Progress of a plan, printed as JSON.
 #[derive(Serialize)]
 struct StatusJson<'a> {
     #[serde(flatten)]
     status: &'a Status,
-    /// Number of elements of job arrays that wait or run; null if the batch system does not answer.
+    /// Number of elements of job arrays that wait or run; null if the batch system cannot be queried.
     queued: Option<usize>,
 }
 
-/// Prints the progress of a plan.
+/// Prints how many tasks of a plan are in each state.
 pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
     let plan = Plan::read(plan)?;
     let status = Status::from_plan(&plan)?;
@@ -49,7 +48,7 @@ pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
         ("damaged", status.damaged),
     ];
     for (word, count) in lines {
-        // Counts that should be zero are reported only if they are not.
+        // Counts that should be zero are printed only if they are not zero.
         if count > 0 || !matches!(word, "crashed" | "twice" | "damaged") {
             text.push_str(&format!("{word:<9} {}\n", number::count(count as u64)));
         }

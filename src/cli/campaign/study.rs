@@ -1,4 +1,4 @@
-//! Kinds of plans: each lists its tasks, runs them, and makes the report.
+//! Interface of all kinds of plans: each kind lists its tasks, runs them and makes the report.
 
 use crate::cli::exit::{Fault, Outcome};
 use grainbench::campaign::finished::FinishedTasks;
@@ -11,35 +11,35 @@ use std::sync::Arc;
 
 /// Kind of plan.
 pub(crate) trait Study: Sync {
-    /// Returns the kind of plan that is stored in its file.
+    /// Returns the kind as stored in the file of the plan.
     fn kind(&self) -> Kind;
-    /// Returns true if times are measured.
+    /// Returns true if the tasks measure times.
     fn is_timed(&self) -> bool;
-    /// Returns all tasks for the program with this hash.
+    /// Returns all tasks. `program` is the hash of this program.
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault>;
-    /// Returns the hashes of the files that the tasks depend on.
+    /// Returns the hashes of the files on which the tasks depend, by path.
     fn inputs(&self) -> BTreeMap<String, String> {
         BTreeMap::new()
     }
-    /// Runs tasks, at most `jobs` at a time.
+    /// Runs tasks, at most `jobs` at the same time.
     fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault>;
     /// Writes the report of the finished tasks.
     fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
 }
 
-/// Output directory, format and comparison of a report.
+/// Directory, format and comparison of a report.
 pub(crate) struct ReportOptions<'a> {
     /// Directory of the report.
     pub(crate) out: &'a Path,
     pub(crate) strict: bool,
     pub(crate) parquet: bool,
     pub(crate) json: bool,
-    /// Results of the last earlier report.
+    /// `results.json` of the last earlier report.
     pub(crate) against: Option<&'a Path>,
-    /// Number of finished tasks in words, if some are missing.
+    /// Text with the number of finished tasks; none if all tasks are finished.
     pub(crate) unfinished: Option<String>,
-    /// Additional options that the report lists, in words.
+    /// Further lines that the report lists among its options.
     pub(crate) words: Vec<String>,
-    /// Total duration of all tasks (s).
+    /// Total duration of the finished tasks (s).
     pub(crate) seconds: f64,
 }

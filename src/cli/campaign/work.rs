@@ -1,4 +1,4 @@
-//! `run --resume DIR`: runs the tasks of a plan or of a shard, here or through a batch system.
+//! `run --resume DIR`: runs the tasks of a plan or of a shard, on this machine or through a batch system.
 
 use super::arguments::Arguments as Planned;
 use super::{enter, kinds};
@@ -23,7 +23,6 @@ use std::process::ExitCode;
 use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
-/// Arguments of the old command `work`.
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
     /// Directory of the plan.
@@ -31,7 +30,7 @@ pub(crate) struct Arguments {
     pub(crate) plan: PathBuf,
     #[command(flatten)]
     pub(crate) options: WorkOptions,
-    /// Number of simultaneous tasks; by default one for each core, and one if times are measured.
+    /// Number of simultaneous tasks. Default: the number of cores, or 1 if the plan measures times.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with = "on")]
     jobs: Option<u16>,
     /// Repeat failed tasks.
@@ -42,25 +41,25 @@ pub(crate) struct Arguments {
 /// Options of `run` that need `--resume`.
 #[derive(Default, clap::Args)]
 pub(crate) struct WorkOptions {
-    /// Shard and number of shards; by default the whole plan.
+    /// Run only shard K of N. Default: the whole plan.
     #[arg(long, value_name = "K/N", conflicts_with = "on")]
     pub(crate) shard: Option<Shard>,
-    /// Submit the shards to a batch system instead of running them here.
+    /// Submit the shards to this batch system instead of running them on this machine.
     #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
     pub(crate) on: Option<String>,
-    /// Submit the missing shards of a submitted plan.
+    /// Submit only the missing shards of a plan that was submitted before.
     #[arg(long, requires = "on")]
     pub(crate) resubmit: bool,
-    /// Options for `sbatch`, after `--`.
+    /// Options of `sbatch`.
     #[arg(value_name = "OPTIONS OF sbatch", last = true, requires = "on")]
     pub(crate) sbatch: Vec<String>,
-    /// Omits the counts on standard output.
+    /// True to print no counts on the standard output.
     #[arg(skip)]
     pub(crate) quiet: bool,
 }
 
 impl WorkOptions {
-    /// Rejects options that need `--resume` if it is absent.
+    /// Returns an error if an option is given that needs `--resume`.
     pub(crate) fn refuse_without_plan(&self) -> Result<(), Fault> {
         let given = [("--shard", self.shard.is_some()), ("--on", self.on.is_some())];
         match given.iter().find(|(_, is_given)| *is_given) {
@@ -70,12 +69,12 @@ impl WorkOptions {
     }
 }
 
-/// Runs a plan as the old command `work`.
+/// Runs a plan for the old command `work`.
 pub(crate) fn old(arguments: &Arguments) -> Outcome {
     work(&arguments.plan, &arguments.options, arguments.jobs, arguments.retry_failed)
 }
 
-/// Runs the tasks, or submits them.
+/// Runs the tasks of a plan or submits them to a batch system.
 pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_failed: bool) -> Outcome {
     let plan = enter(plan)?;
     plan.check_program()?;
@@ -85,7 +84,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     let study = kinds::from_arguments(&Planned::read(&plan)?)?;
     let jobs = match (jobs, plan.head.timed) {
         (Some(2..), true) => {
-            return Err(Fault::input("--jobs: expected 1, for times are measured, found more"));
+            return Err(Fault::input("--jobs: expected 1, because times are measured, found more"));
         }
         (_, true) => 1,
         (Some(jobs), false) => usize::from(jobs),
@@ -104,7 +103,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
         print(&words(&summary))?;
     }
     if summary.left > 0 {
-        exit::say("warning", &format!("{} tasks remain: the same command continues them", summary.left));
+        exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
         return Ok(ExitCode::from(RED));
     }
     Ok(ExitCode::SUCCESS)
@@ -127,7 +126,7 @@ fn words(summary: &Summary) -> String {
     format!("{} tasks: {} were finished, {} done now{failed}\n", count(tasks), count(before), count(done))
 }
 
-/// Describes this process as a worker.
+/// Returns a description of this process as a worker.
 fn worker() -> Worker {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let (host, process) = (machine::name(), std::process::id());
@@ -179,6 +178,6 @@ impl Watch for WorkObserver {
         let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
         let progress = progress.get_or_insert_with(|| Progress::new(0, "tasks"));
         let names: Vec<&str> = others.iter().map(|other| other.worker.as_str()).collect();
-        progress.now(&format!("the rest is at {}", names.join(", ")));
+        progress.now(&format!("other workers have the remaining tasks: {}", names.join(", ")));
     }
 }

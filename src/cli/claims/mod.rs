@@ -1,4 +1,4 @@
-//! Claims of a run: the options that select them, and the report of their results.
+//! Claims of a run: the options that select them, and their report.
 
 pub(crate) mod tasks;
 
@@ -16,24 +16,24 @@ use std::path::PathBuf;
 /// Options of `run`.
 #[derive(clap::Args)]
 pub(crate) struct ClaimOptions {
-    /// Select the claims of this solver; repeatable. A manifest runs the solver-independent claims with this program.
+    /// Judge only the claims of this solver. With a manifest, the external solver runs the solver-independent claims. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Select resolution levels: `default`, `all`, or names such as `dt=.1`.
+    /// Resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Select results by quantity, source (substring or pattern), evidence or outcome. Filters of one key are
-    /// alternatives. A filter by outcome still runs all claims, and all of them determine the exit code.
+    /// Select results by quantity, source (substring or pattern), evidence or outcome. Of several filters with the same
+    /// key, one must match. With a filter by outcome, all claims still run and determine the exit code.
     #[arg(long, value_name = "quantity=…|source=…|evidence=…|outcome=…")]
     pub(crate) filter: Vec<String>,
-    /// Repeat only the failed claims and controls of the report in `--out`, and the omitted parts of an interrupted
-    /// run; with `--resume`, the failed tasks of the plan.
+    /// Repeat only the failed claims and controls of the report in `--out`, and the missing ones of an interrupted run.
+    /// With `--resume`, repeat the failed tasks of the plan.
     #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
     pub(crate) retry_failed: bool,
-    /// Print the results and controls whose outcome differs from this earlier report.
+    /// Print the results and controls whose outcome has changed since this earlier report.
     #[arg(long, value_name = "DIR|results.json", conflicts_with_all = ["plan", "resume"])]
     pub(crate) against: Option<PathBuf>,
-    /// Directory for the report.
+    /// Directory of the report.
     #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
     pub(crate) out: PathBuf,
     /// Print the results as JSON instead of a table.
@@ -45,10 +45,10 @@ pub(crate) struct ClaimOptions {
     /// Run `lammps` and `liggghts` even if a stored run exists.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Directory with your copy of third-party data; without it the claims that need the data are `not-available`.
+    /// Directory with your copy of third-party data. Claims whose data are missing are `not-available`.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["plan", "resume"])]
     pub(crate) data: Option<PathBuf>,
-    /// Treat amber results as red, including programs that are not installed.
+    /// Treat amber results as red, including those of programs that are not installed.
     #[arg(long, conflicts_with_all = ["plan", "resume"])]
     pub(crate) strict: bool,
     /// Ignore the cache of finished runs.
@@ -57,13 +57,14 @@ pub(crate) struct ClaimOptions {
     /// Skip the negative controls.
     #[arg(long)]
     pub(crate) no_controls: bool,
-    /// Store the results of an external solver in `judged.json` next to its manifest; needs all cases and all controls.
+    /// Store the results of an external solver in `judged.json` in the directory of its manifest. Needs all cases and
+    /// all controls.
     #[arg(long, requires = "solver", conflicts_with = "no_controls")]
     pub(crate) update_stored: bool,
-    /// Compare the outcomes with those stored next to the manifest. Only a different outcome is red.
+    /// Compare the outcomes with those in `judged.json` in the directory of the manifest. Only a different outcome is red.
     #[arg(long, requires = "solver", conflicts_with_all = ["no_controls", "update_stored", "plan"])]
     pub(crate) expect_stored: bool,
-    /// Number of threads of each run. It does not change the results.
+    /// Number of threads of each run. The results do not depend on it.
     #[arg(
         long,
         value_name = "N",
@@ -72,7 +73,7 @@ pub(crate) struct ClaimOptions {
         conflicts_with_all = ["plan", "resume"]
     )]
     pub(crate) threads: u16,
-    /// Number of simultaneous runs or tasks; as many as the cores allow by default, and one if a plan measures times.
+    /// Number of simultaneous runs or tasks. Default: as many as the cores allow, or 1 if a plan measures times.
     #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with_all = ["plan", "on"])]
     pub(crate) jobs: Option<u16>,
     /// Print only the counts and the failed results.
@@ -83,8 +84,8 @@ pub(crate) struct ClaimOptions {
     pub(crate) verbose: bool,
 }
 
-/// Returns a report. If it covers the whole registry, it includes the stored results of external solvers and stored
-/// measurements.
+/// Returns a report. If `is_whole` is true, the report also contains the stored results of external solvers and the
+/// stored measurements.
 pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: bool) -> Result<Report, Fault> {
     let (judged, measured) = if is_whole {
         (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
@@ -94,8 +95,8 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     Ok(Report { judged, measured, ..Report::new(provenance, sections) })
 }
 
-/// Removes claims that the filters exclude. With `--retry-failed`, it also removes claims that were not red in the
-/// report in `--out`.
+/// Removes the claims that the filters exclude. With `--retry-failed`, also removes the claims that were not red in the
+/// report in `--out`, unless an interrupted run omitted them.
 pub(crate) fn narrow(
     selected: &mut Vec<CaseSelection>,
     options: &ClaimOptions,
@@ -121,13 +122,17 @@ pub(crate) fn narrow(
     }
     selected.retain(|of_case| !of_case.claims.is_empty());
     if selected.is_empty() {
-        let what = if options.retry_failed { "that failed there" } else { "that the filters mean" };
+        let what = if options.retry_failed {
+            "that was red or omitted in the earlier report"
+        } else {
+            "that matches the filters"
+        };
         return Err(Fault::input(format!("expected at least one claim {what}, found none")));
     }
     Ok(())
 }
 
-/// Returns the options that differ from the default, in words.
+/// Returns the cases, and the given options that select claims or change runs, for the provenance of the report.
 pub(crate) fn words(cases: &[String], options: &ClaimOptions) -> Vec<String> {
     let mut words = cases.to_vec();
     words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));

@@ -1,5 +1,5 @@
-//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` performs the tasks
-//! in one process, and a plan distributes them over machines. Both make the report from the same results.
+//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` does the tasks in
+//! one process, and a plan distributes them over several processes. Both make the report from the same results.
 
 use super::ClaimOptions;
 use crate::cli::conform::{self, ConformingSolver};
@@ -26,19 +26,19 @@ use std::sync::{Arc, OnceLock};
 /// Claims of cases and conformance properties of solvers.
 pub(crate) struct ClaimTasks {
     pub(crate) selected: Vec<CaseSelection>,
-    /// Solvers whose conformance is tested.
+    /// Solvers whose conformance properties are tested.
     pub(crate) conforming: Vec<ConformingSolver>,
-    /// True if the negative controls run.
+    /// True to run the negative controls.
     pub(crate) controls: bool,
-    /// True if external programs run even if a stored run exists.
+    /// True to run external programs even if a stored run exists.
     pub(crate) live: bool,
-    /// True if all resolution levels run.
+    /// True to run all resolution levels.
     pub(crate) thorough: bool,
     data: Option<PathBuf>,
     threads: usize,
 }
 
-/// Task, with the index of the case, of the claim within the case, or of the solver.
+/// Task of a run. The numbers are indices of the case, of the claim within the case, and of the solver.
 #[derive(Clone, Copy)]
 pub(crate) enum ClaimTask {
     /// A claim and its control.
@@ -49,19 +49,19 @@ pub(crate) enum ClaimTask {
     Conformance(usize),
 }
 
-/// Result of a task: part of a section, and the keys that order its runs.
+/// Result of a task: part of a section, and the keys by which its runs are ordered.
 #[derive(Serialize, Deserialize)]
 pub(crate) struct Part {
     keys: Vec<String>,
     pub(crate) section: Section,
-    /// Error if the figures could not be drawn.
+    /// Error message if the figures could not be drawn.
     #[serde(default, skip_serializing_if = "Option::is_none")]
     without: Option<String>,
 }
 
 impl ClaimTasks {
-    /// Returns the tasks of selected claims. The conformance of the solvers belongs to the whole registry at its default
-    /// levels or at all levels.
+    /// Returns the tasks of the selected claims. The conformance of solvers is included if the whole registry is
+    /// selected (`is_whole`) at its default levels or at all levels.
     pub(crate) fn new(
         selected: Vec<CaseSelection>,
         options: &ClaimOptions,
@@ -90,9 +90,9 @@ impl ClaimTasks {
         of_cases.chain((0..self.conforming.len()).map(ClaimTask::Conformance)).collect()
     }
 
-    /// Returns a key by which `run` sorts its tasks. Claims that need a new run come before claims that only need
-    /// earlier runs. All cases progress evenly, so two threads are seldom at one case, where they would wait for the
-    /// same scene or run. Figures come last, because they use finished runs.
+    /// Returns for each task a key by which `run` sorts the tasks. Claims that need a new run come first, and claims
+    /// that need only runs of earlier claims follow. All cases progress evenly. Two threads therefore seldom work on
+    /// one case, where they would wait for the same scene or run. Figures come last, because they use finished runs.
     pub(crate) fn turns(&self) -> Vec<f64> {
         let mut turns = Vec::new();
         for selected in &self.selected {
@@ -109,12 +109,12 @@ impl ClaimTasks {
         turns
     }
 
-    /// Returns true if an external solver is judged.
+    /// Returns true if the results of an external solver are judged.
     pub(crate) fn has_stranger(&self) -> bool {
         self.selected.iter().any(|selected| selected.stranger.is_some())
     }
 
-    /// Returns the name of the case or solver of a task.
+    /// Returns the name of the case or solver to which a task belongs.
     pub(crate) fn name(&self, task: ClaimTask) -> String {
         match task {
             ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => self.selected[case].case.name.to_owned(),
@@ -122,7 +122,7 @@ impl ClaimTasks {
         }
     }
 
-    /// Returns the runner of a case.
+    /// Returns a runner for the selected case with index `case`, set up by the command's options.
     pub(crate) fn runner(&self, case: usize, solvers: Arc<dyn Solvers>) -> Runner {
         let selected = &self.selected[case];
         let runner = Runner::new(selected.case, solvers).live(self.live).thorough(self.thorough);
@@ -203,7 +203,8 @@ impl CaseResults {
         Self { verdicts, controls: Vec::new(), figures: Vec::new(), runs: BTreeMap::new() }
     }
 
-    /// Returns the section of the case. Failed results name the mistake that explains them.
+    /// Returns the section of the case. The detail of a failed result names a known mistake that gives the same error,
+    /// if there is one.
     fn section(mut self, selected: &CaseSelection, solvers: &Arc<dyn Solvers>) -> Section {
         mistake::explain(selected.case, solvers, &selected.claims, &mut self.verdicts);
         Section {
@@ -216,7 +217,7 @@ impl CaseResults {
     }
 }
 
-/// Runners of all cases, which share finished runs.
+/// Runners of all cases. Tasks of the same case share finished runs.
 pub(crate) struct Desk<'a> {
     tasks: &'a ClaimTasks,
     solvers: Arc<dyn Solvers>,
@@ -237,7 +238,7 @@ impl<'a> Desk<'a> {
         self.runners[case].get_or_init(|| self.tasks.runner(case, Arc::clone(&self.solvers)))
     }
 
-    /// Performs a task and returns its state and result.
+    /// Does a task and returns its state and result.
     pub(crate) fn perform(&self, task: ClaimTask) -> (State, Part) {
         match task {
             ClaimTask::Claim(case, claim) => self.claim(case, claim),
@@ -250,12 +251,12 @@ impl<'a> Desk<'a> {
         }
     }
 
-    /// Judges a claim and its control.
+    /// Judges a claim and its negative control.
     fn claim(&self, case: usize, claim: usize) -> (State, Part) {
         let (selected, runner) = (&self.tasks.selected[case], self.runner(case));
         let claim = &selected.claims[claim];
         let (verdict, control) = runner.judge_and_control(claim, self.tasks.controls);
-        // A solver that is missing now may be available in a later attempt.
+        // A solver that is not installed now may be installed later, so the task can be repeated.
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
         let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
         part.section.verdicts.push(verdict);
@@ -278,7 +279,7 @@ impl<'a> Desk<'a> {
 }
 
 impl Part {
-    /// Adds the cost of finished runs.
+    /// Adds the cost of the finished runs that `is_meant` selects by their keys.
     fn add_runs(&mut self, runner: &Runner, is_meant: impl Fn(&str) -> bool) {
         for (run, done) in runner.done() {
             let key = run.key();
@@ -290,7 +291,7 @@ impl Part {
     }
 }
 
-/// Removes the texts that the report takes from the case.
+/// Removes the texts that the report can copy from the case.
 fn in_short(part: Part) -> Part {
     let nothing = String::new;
     let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
@@ -303,13 +304,13 @@ fn in_short(part: Part) -> Part {
 /// When a run of a figure fails.
 fn draw(selected: &CaseSelection, runner: &Runner) -> Result<Vec<Figure>, RunError> {
     if selected.stranger.is_some() || selected.is_part {
-        // The case's own figures may need runs that none of these claims uses.
+        // The case's own figures may need runs that none of the selected claims uses.
         return course::figures(runner, &selected.claims);
     }
     course::of_case(selected.case, runner, &selected.claims)
 }
 
-/// Returns the section of a case without results.
+/// Returns the section of a case before any result is added.
 fn blank(selected: &CaseSelection) -> Section {
     let case = selected.case;
     Section {
