@@ -1,5 +1,5 @@
-//! All claims of the registry and their negative controls, one test each. Claims of the long tier, which take minutes,
-//! are included with `GRAINBENCH_LONG=1`. `GRAINBENCH_PROCESSOR` selects the processor path of our solvers.
+//! One test for each claim of the registry, and one for each negative control. `GRAINBENCH_LONG=1` adds the claims of
+//! the long tier, which take minutes. `GRAINBENCH_PROCESSOR` selects the instruction set of our solvers.
 
 use grainbench::cases::registry::CASES;
 use grainbench::cases::runner;
@@ -13,7 +13,7 @@ use libtest_mimic::{Arguments, Failed, Trial};
 use std::sync::Arc;
 
 fn main() -> std::process::ExitCode {
-    // Falling back to another path would test the wrong one, so a path that this processor lacks is an error.
+    // If this processor lacks the selected instruction set, the test program must not run with another one.
     if let Err(reason) = Processor::forced() {
         eprintln!("error: {reason}");
         return std::process::ExitCode::from(2);
@@ -45,8 +45,8 @@ fn trial(
     Trial::test(name, move || test(&runner, &claim))
 }
 
-/// Checks the expected outcome of a claim: pass, unsupported with a reason, or a known deviation that still exists. If
-/// its external solver is not installed, the result must report that.
+/// Checks the expected outcome of a claim: passed, unsupported with a reason, or a known error that still exists. If an
+/// external solver of the claim is not installed, the outcome must state it.
 fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     let verdict = runner.judge(claim);
     let expected = match claim.standing() {
@@ -55,12 +55,12 @@ fn accept(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
         ExpectedOutcome::Refused => Outcome::Unsupported,
         ExpectedOutcome::Known(_) => Outcome::Known,
     };
-    // A stored result of other solver sources is amber until somebody repeats the run.
+    // A stored result of older solver sources stays amber until the run is repeated.
     let is_expected = verdict.outcome == expected || (expected, verdict.outcome) == (Outcome::Pass, Outcome::Outdated);
     if is_expected { Ok(()) } else { Err(grainbench::reports::line::verdict(&verdict).into()) }
 }
 
-/// Checks that the claim fails under its negative control in the required way: by value or by error.
+/// Checks that a claim fails under its negative control in the required way, by value or by error.
 fn refuse(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     if !runner.is_available(claim) {
         return Ok(());
@@ -69,7 +69,7 @@ fn refuse(runner: &Runner, claim: &Claim) -> Result<(), Failed> {
     if !control.turned_red {
         return Err(grainbench::reports::line::control(&control).into());
     }
-    // The wrong physics must be the reason for the failure, and not the coarser resolution of the control.
+    // The wrong physics must cause the failure, not the coarser resolution of the control.
     if let (Some(resolution), Some(wrong)) = (claim.control.resolution, control.error) {
         let same = Control::scene("right physics", |_| ()).coarser(resolution);
         let right = runner.control(&Claim { control: same, ..claim.clone() }).error;

@@ -1,4 +1,4 @@
-//! Runs numbered items in separate processes, so that a crash or a hang of one item is found and reported.
+//! Runs numbered items in separate processes. A crash or hang of an item is then found and reported.
 
 use std::env;
 use std::fs;
@@ -14,42 +14,42 @@ use std::{ops, thread};
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 
-/// Environment variable with the items to run: `scenes:SEED:FROM:COUNT`, or `files:…`.
+/// Environment variable that selects the items to run: `scenes:SEED:FROM:COUNT`, or `files:…`.
 const ASKED: &str = "GRAINBENCH_FUZZ";
-/// Environment variable with the folder in which the process that runs items writes its progress and findings.
+/// Environment variable with the folder to which the process that runs the items writes its progress and findings.
 const NOTES: &str = "GRAINBENCH_FUZZ_NOTES";
 /// Number of items per process.
 const CHUNK: u64 = 2500;
-/// Memory limit of this process (kB). A scene that is too large must be rejected before memory runs out.
+/// Memory limit of the process that runs the items (kB). A scene that needs more must be rejected before memory runs out.
 const MEMORY: u64 = 4 << 20;
-/// Time with one item after which a process counts as hanging.
+/// Time on one item after which a process counts as hanging.
 const PATIENCE: Duration = Duration::from_secs(120);
 /// Number of findings after which the search ends.
 const ENOUGH: usize = 40;
 
-/// A kind of items.
+/// Kind of items.
 pub(crate) struct Kind {
-    /// Name, equal to the name of the test.
+    /// Name of the kind, equal to the name of its test.
     pub(crate) name: &'static str,
-    /// Number of items by default.
+    /// Default number of items.
     pub(crate) few: u64,
-    /// Number of items with `GRAINBENCH_LONG`.
+    /// Number of items if `GRAINBENCH_LONG` is set.
     pub(crate) many: u64,
-    /// Function that runs the item of a random draw and reports what is wrong.
+    /// Function that makes an item from random draws, runs it, and returns an error if the result is wrong.
     pub(crate) try_out: fn(&mut RandomSource) -> Result<(), String>,
 }
 
-/// Random draws for one item, with its description.
+/// Random draws for one item, and the description of the item.
 pub(crate) struct RandomSource {
     runner: TestRunner,
-    /// Description of the item.
+    /// Description of the item, which a finding contains.
     shown: String,
-    /// File with the description, in case the item ends the process.
+    /// File to which the description is also written, because the item may end the process.
     beside: Option<PathBuf>,
 }
 
 impl RandomSource {
-    /// Gives the same draws for the same seed and number, independent of earlier draws.
+    /// Creates the draws of an item. They depend only on the seed and on the number of the item.
     fn new(seed: u64, number: u64, beside: Option<PathBuf>) -> Self {
         let mut bytes = [0; 32];
         bytes[..8].copy_from_slice(&seed.to_le_bytes());
@@ -58,7 +58,7 @@ impl RandomSource {
         Self { runner: TestRunner::new_with_rng(Config::default(), rng), shown: String::new(), beside }
     }
 
-    /// Adds text in front of the description.
+    /// Adds text at the beginning of the description.
     pub(crate) fn show(&mut self, words: &str) {
         self.shown.insert_str(0, &format!("{words}\n"));
         if let Some(beside) = &self.beside {
@@ -66,7 +66,6 @@ impl RandomSource {
         }
     }
 
-    /// Draws a value.
     pub(crate) fn draw<S: Strategy>(&mut self, strategy: S) -> S::Value {
         strategy.new_tree(&mut self.runner).expect("nothing is filtered").current()
     }
@@ -77,7 +76,7 @@ impl RandomSource {
     }
 }
 
-/// Range of items.
+/// Range of item numbers.
 #[derive(Clone, Copy)]
 struct Range {
     seed: u64,
@@ -86,7 +85,7 @@ struct Range {
 }
 
 impl Range {
-    /// Returns the requested items, or some by default. `None` if items of another kind are requested.
+    /// Returns the requested items of this kind, or the default items. `None` if items of another kind are requested.
     fn from_kind(kind: &Kind) -> Option<Self> {
         let Ok(asked) = env::var(ASKED) else {
             let count = if env::var_os("GRAINBENCH_LONG").is_some() { kind.many } else { kind.few };
@@ -100,7 +99,7 @@ impl Range {
     }
 }
 
-/// Runs the requested items of a kind.
+/// Runs the requested items of a kind in child processes. In a child process, where [`NOTES`] is set, runs the items itself.
 pub(crate) fn go(kind: &Kind) {
     let Some(range) = Range::from_kind(kind) else { return };
     match env::var_os(NOTES) {
@@ -109,11 +108,11 @@ pub(crate) fn go(kind: &Kind) {
     }
 }
 
-/// Notes of a process: the present item and its findings.
+/// Files of a process that runs items: the present item and the findings.
 struct Notes {
     at: PathBuf,
     found: PathBuf,
-    /// Description of the item.
+    /// File with the description of the item.
     shown: PathBuf,
 }
 
@@ -123,7 +122,7 @@ impl Notes {
     }
 }
 
-/// Runs items one after the other, in this process.
+/// Runs items one after another in this process.
 fn work(kind: &Kind, range: Range, folder: &Path) {
     static PANIC: Mutex<String> = Mutex::new(String::new());
     set_hook(Box::new(|panic| {
@@ -135,7 +134,7 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
     let mut at = fs::File::create(&notes.at).expect("notes");
     let mut found = fs::File::create(&notes.found).expect("notes");
     for number in range.from..range.from + range.count {
-        // At a fixed position in the file, so that the last number overwrites the earlier ones.
+        // The number is written at a fixed position of the file, so that it replaces the previous number.
         std::io::Seek::rewind(&mut at).expect("notes");
         write!(at, "{number:020}").expect("notes");
         let mut lot = RandomSource::new(range.seed, number, (range.count == 1).then(|| notes.shown.clone()));
@@ -151,11 +150,11 @@ fn work(kind: &Kind, range: Range, folder: &Path) {
     }
 }
 
-/// Runs items in separate processes, in chunks, and reports their findings.
+/// Runs items in separate processes and reports the findings. Each process runs at most [`CHUNK`] items.
 fn watch(kind: &Kind, range: Range) {
     let Range { seed, from, count } = range;
     let (done, begun) = (AtomicU64::new(0), Instant::now());
-    // Each core runs its part of the items.
+    // Each core runs its own part of the items.
     let cores = thread::available_parallelism().map_or(1, |cores| cores.get() as u64).min(count.max(1));
     let share = |core: u64| from + count * core / cores..from + count * (core + 1) / cores;
     let go_through = |share: ops::Range<u64>| {
@@ -181,14 +180,14 @@ fn watch(kind: &Kind, range: Range) {
     assert!(wrong.is_empty(), "{} of {count} {}:\n{}", wrong.len(), kind.name, findings.join("\n"));
 }
 
-/// Returns the findings of a process in a chunk, and the next item: the one after the item that ended the process.
+/// Runs items in a separate process. Returns the findings, and the first item that was not run.
 fn in_a_process(kind: &Kind, range: Range) -> (Vec<String>, u64) {
     let Range { seed, from, count } = range;
     let folder = tempfile::tempdir().expect("a place for notes");
     let notes = Notes::open(folder.path());
     let output = folder.path().join("said");
     let mut child = Command::new("sh")
-        // On a system without this limit, there is no limit.
+        // If the system does not support this limit, memory is not limited.
         .args(["-c", &format!("ulimit -v {MEMORY} 2>/dev/null; exec \"$@\""), "sh"])
         .arg(env::current_exe().expect("this program"))
         .args([kind.name, "--exact", "--nocapture", "--test-threads=1"])

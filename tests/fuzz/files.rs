@@ -1,4 +1,4 @@
-//! Damaged files and their readers. A reader returns the contents or an error that names the place.
+//! Damaged files and their readers. A reader must return the contents, or an error that names the position.
 
 use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
 use crate::driver::RandomSource;
@@ -33,18 +33,17 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use tempfile::TempDir;
 
-/// Largest number of rows in a snapshot of the case below.
+/// Largest accepted number of rows in a snapshot of the scene below.
 const MOST_ROWS: u64 = 1000;
 
 type Answer = Result<(), String>;
 
-/// A reader of a file: its name, its weight in the draw, and its test.
+/// A reader of a file: its name, its weight in the random choice, and its test.
 type Reader = (&'static str, usize, fn(&mut RandomSource) -> Answer);
 
-/// Files with their names.
 type Files = Vec<(String, Vec<u8>)>;
 
-/// Readers of files with their weights. Readers that draw, simulate or read many files have smaller weights.
+/// Readers with their weights. Slow readers, which draw, simulate or read many files, have smaller weights.
 const READERS: [Reader; 12] = [
     ("dump", 4, of_dump),
     ("log", 4, of_log),
@@ -60,7 +59,7 @@ const READERS: [Reader; 12] = [
     ("stored run", 1, of_stored),
 ];
 
-/// Damages a file and reads it.
+/// Chooses a reader at random, damages a file and reads it.
 pub(crate) fn try_out(lot: &mut RandomSource) -> Answer {
     let mut drawn = lot.draw(0..READERS.iter().map(|(_, weight, _)| weight).sum());
     for (name, weight, reader) in READERS {
@@ -73,20 +72,20 @@ pub(crate) fn try_out(lot: &mut RandomSource) -> Answer {
     Ok(())
 }
 
-/// Returns a folder for readers that need a file name. It exists as long as the process.
+/// Returns a folder for readers that need a file name. It exists until the process ends.
 fn folder() -> &'static Path {
     static FOLDER: OnceLock<TempDir> = OnceLock::new();
     FOLDER.get_or_init(|| tempfile::tempdir().unwrap()).path()
 }
 
-/// Writes a file to the folder.
+/// Writes a file to the folder and returns its path.
 fn left(name: &str, bytes: &[u8]) -> PathBuf {
     let path = folder().join(name);
     fs::write(&path, bytes).unwrap();
     path
 }
 
-/// Damages bytes at random. Adds the list of changes to the description of this fuzz case.
+/// Damages bytes at random. Adds the changes to the description of the item.
 fn damaged(lot: &mut RandomSource, bytes: &[u8]) -> Vec<u8> {
     let damages = lot.draw(damages());
     let bytes = apply(bytes, &damages);
@@ -98,7 +97,7 @@ fn refused(error: &ReadError) -> Answer {
     damage::well_said(error).map_err(|error| error.to_string())
 }
 
-/// Checks an error of another kind: one line that names the file.
+/// Checks an error message: it must be one line and name the file.
 fn one_line_of(path: &Path, error: &dyn ToString) -> Answer {
     let message = error.to_string();
     let names = message.contains(&*path.to_string_lossy());
@@ -151,7 +150,7 @@ fn packed(bytes: &[u8], zstd: bool) -> Vec<u8> {
     out.finish().unwrap()
 }
 
-/// Damages a dump before or after its compression.
+/// Damages a compressed dump, before or after its compression.
 fn of_packed_dump(lot: &mut RandomSource) -> Answer {
     let text = lot.one(&DUMPS).as_bytes();
     let (zstd, before) = lot.draw(any::<(bool, bool)>());
@@ -183,7 +182,7 @@ fn scene() -> Scene {
 const SOLVER: Convention = Convention::LAMMPS;
 const RESOLUTION: Resolution = Resolution::CriticalFraction(0.1);
 
-/// Returns a record and a checkpoint of its run.
+/// Returns the record of a short run and a checkpoint of the run.
 fn run() -> &'static (Record, Vec<u8>) {
     static RUN: OnceLock<(Record, Vec<u8>)> = OnceLock::new();
     RUN.get_or_init(|| {
@@ -193,7 +192,7 @@ fn run() -> &'static (Record, Vec<u8>) {
     })
 }
 
-/// Damages a checkpoint, with its old length and hash or with those of the damaged bytes.
+/// Damages the body of a checkpoint and computes its length and hash again, or damages the whole file.
 fn of_checkpoint(lot: &mut RandomSource) -> Answer {
     let whole = &run().1;
     let line = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
@@ -227,7 +226,7 @@ fn of_record(lot: &mut RandomSource) -> Answer {
     }
 }
 
-/// Draws figures or checks their errors.
+/// Draws figures. If a figure cannot be drawn, checks the error message.
 fn draw(figures: &[Figure]) -> Answer {
     for figure in figures {
         if let Err(error) = plot::draw(figure) {
@@ -238,7 +237,7 @@ fn draw(figures: &[Figure]) -> Answer {
     Ok(())
 }
 
-/// Returns a report with results, controls and figures.
+/// Returns the text of a report with results, controls and figures.
 fn report() -> &'static Vec<u8> {
     static REPORT: OnceLock<Vec<u8>> = OnceLock::new();
     REPORT.get_or_init(|| {
@@ -280,7 +279,7 @@ fn report() -> &'static Vec<u8> {
     })
 }
 
-/// Reads a report and renders it again, as `grainbench report` does.
+/// Reads a report and writes its files again, as `grainbench report` does.
 fn of_report(lot: &mut RandomSource) -> Answer {
     let path = left("report.json", &damaged(lot, report()));
     let report = match Report::load(folder()) {
@@ -330,7 +329,7 @@ fn of_results(lot: &mut RandomSource) -> Answer {
     points_of(&path).map_or_else(|error| one_line_of(&path, &error), |_| Ok(()))
 }
 
-/// Compares two files, or reads them as output of a scene.
+/// Compares two files, or reads one file as output of a scene.
 fn of_two(lot: &mut RandomSource) -> Answer {
     let text = *lot.one(&[DUMPS[0], DUMPS[1], DUMPS[3], TABLE]);
     let first = left("first", &damaged(lot, text.as_bytes()));
@@ -358,7 +357,7 @@ fn of_two(lot: &mut RandomSource) -> Answer {
     }
 }
 
-/// Damages one file of a stored run, with or without its original hash.
+/// Damages one file of a stored run, with or without a new hash for the file.
 fn of_stored(lot: &mut RandomSource) -> Answer {
     static RUN: OnceLock<(PathBuf, Files)> = OnceLock::new();
     let (folder, files) = RUN.get_or_init(|| {
@@ -378,7 +377,7 @@ fn of_stored(lot: &mut RandomSource) -> Answer {
         (to, files)
     });
     let (name, bytes) = lot.one(files);
-    // The provenance is damaged more often than the other files, because their hashes reveal the damage.
+    // The provenance is damaged more often than all other files. Damage of any other file is found by its hash.
     let (name, bytes) = if lot.draw(any::<bool>()) {
         files.iter().find(|(name, _)| name == "provenance.toml").map_or((name, bytes), |(name, bytes)| (name, bytes))
     } else {

@@ -1,8 +1,8 @@
-//! Scenes and files with random mistakes. Each gives an error with its place, or numbers: never a panic, an end of the
-//! process, a hang, or more memory than a limit. The default is a few items. `GRAINBENCH_LONG=1` runs a hundred
-//! thousand scenes and a million files. `GRAINBENCH_FUZZ=scenes:SEED:FROM:COUNT` (or `files:…`) runs any range, and
-//! `--nocapture` shows the progress. An item depends only on the seed and its number, so the words at the start of a
-//! finding reproduce it. A range of one item is always described.
+//! Scenes and files with random mistakes. Each item must give valid results, or an error with its position. It must not
+//! panic, end the process, hang, or exceed the memory limit. A few items run by default. `GRAINBENCH_LONG=1` runs a
+//! hundred thousand scenes and a million files. `GRAINBENCH_FUZZ=scenes:SEED:FROM:COUNT` (or `files:…`) runs a given
+//! range, and `--nocapture` shows the progress. An item depends only on the seed and on its number, which are at the
+//! beginning of each finding. A range of one item always prints the description of the item.
 
 #![allow(clippy::unwrap_used, clippy::panic, clippy::print_stderr, reason = "a test fails by panicking")]
 
@@ -55,7 +55,7 @@ fn every_strange_value_in_every_place() {
                 Err(error) => scenes::well_said(&error.to_string()).unwrap(),
                 Ok(mut scene) => {
                     scene.duration = Duration::Cycles(4);
-                    // Any result is accepted; the test is that there is one.
+                    // Any result is accepted. The test only requires that there is one.
                     let _ = Dem::new(Convention::LAMMPS).run(&scene, &Resolution::CriticalFraction(0.1), &mut ());
                 }
             }

@@ -1,4 +1,4 @@
-//! A scene with mistakes and any solver: an error that names its place, or a record of finite numbers.
+//! A scene with mistakes, run by any solver. The result must be an error that names the position, or a record of finite numbers.
 
 use crate::driver::RandomSource;
 use crate::mistakes::{PLANE, SPACE, make, mistake, two_grains};
@@ -16,18 +16,18 @@ use nalgebra::Vector3;
 use proptest::prelude::*;
 use std::path::Path;
 
-/// Number of steps of a scene.
+/// Number of steps of a run.
 const STEPS: u64 = 12;
-/// Number of grains, or of material points and nodes, above which a scene is too large to be stepped here.
+/// Number of grains above which a scene is not run.
 const BIG: f64 = 1.5e3;
-const MANY: f64 = 1e4;
-/// Number above which no machine has enough memory, so the solver itself must reject the scene.
+const MANY: f64 = 1e4; // estimated number of material points above which a scene is not run
+/// Number of grains, points or nodes above which no machine has enough memory. The solver itself must reject such scenes.
 const ABSURD: f64 = 1e12;
-/// Cells per reference length, and points per cell and axis.
+/// Number of cells per reference length.
 const CELLS: f64 = 2.0;
-const POINTS: u32 = 2;
+const POINTS: u32 = 2; // material points per cell along each axis
 
-/// Observer that ends a run after some steps by rejecting its checkpoint.
+/// Observer that ends a run at its first checkpoint, by returning an error.
 struct Brief;
 
 impl Observer for Brief {
@@ -39,7 +39,7 @@ impl Observer for Brief {
     }
 }
 
-/// Makes a scene and runs it.
+/// Makes a scene with random mistakes and runs it.
 pub(crate) fn try_out(lot: &mut RandomSource) -> Result<(), String> {
     let which = lot.draw(0..2 * CASES.len());
     let mistakes = lot.draw(prop::collection::vec(mistake(), 1..4));
@@ -65,14 +65,14 @@ pub(crate) fn try_out(lot: &mut RandomSource) -> Result<(), String> {
     }
 }
 
-/// Checks an error message about a scene.
+/// Checks an error message about a scene: it must be one line, name the file, and contain "expected" and "found".
 pub(crate) fn well_said(message: &str) -> Result<(), String> {
     let one_line = !message.chars().any(char::is_control);
     let named = message.starts_with("scene.toml") && message.contains("expected ") && message.contains("found ");
     if one_line && named { Ok(()) } else { Err(format!("badly said: {message:?}")) }
 }
 
-/// Runs a few steps of a scene, by its own short run or by ending the run early.
+/// Runs a scene for a few steps. Either the duration is shortened, or the observer ends the run.
 fn run(lot: &mut RandomSource, mut scene: Scene, solver: &dyn Solver, brief: bool) -> Result<(), String> {
     if scene.grains.iter().any(|grain| !(grain.mass > 0.0 && grain.inertia > 0.0)) {
         return Err("a grain has no mass".to_owned());
@@ -93,7 +93,7 @@ fn run(lot: &mut RandomSource, mut scene: Scene, solver: &dyn Solver, brief: boo
             let step = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
             scene.duration = Duration::Seconds(steps * step);
         }
-        // The rigid solver has no checkpoints, so its run cannot be ended early.
+        // The rigid-body solver writes no checkpoints, so only its duration can be shortened.
         Some(Method::Rigid) => scene.duration = Duration::Seconds(steps / 2.0 * Resolution::RIGID_STEP),
         _ if brief => scene.duration = Duration::Cycles(STEPS),
         _ => {}
@@ -112,8 +112,7 @@ fn run(lot: &mut RandomSource, mut scene: Scene, solver: &dyn Solver, brief: boo
     }
 }
 
-/// Shortens the relaxation of bodies to a few steps. A relaxation beyond the solver's limit of steps is unchanged,
-/// because the solver itself must reject it.
+/// Shortens the relaxation of bodies to a few steps. A relaxation with too many steps is unchanged: the solver must reject it.
 fn shorten_settling(scene: &mut Scene) {
     const REFUSED: f64 = 4e15;
     let courant = Resolution::COURANT * scene.crossing_time(scene.reference_length / CELLS);
@@ -124,7 +123,7 @@ fn shorten_settling(scene: &mut Scene) {
     }
 }
 
-/// Returns true if a scene is too large for a short test, although a machine may have enough memory for it.
+/// Returns true if a scene is too large for a short test but not too large for a machine.
 fn is_big(scene: &Scene, resolution: &Resolution) -> bool {
     let between = |count: f64, low: f64| count > low && count < ABSURD;
     if between(scene.grains.len() as f64, BIG) {
@@ -141,7 +140,7 @@ fn is_big(scene: &Scene, resolution: &Resolution) -> bool {
     between(nodes * f64::from(POINTS).powi(dimensions as i32), MANY)
 }
 
-/// Checks that a record contains only finite numbers and is unchanged after writing and reading.
+/// Checks that a record contains only finite numbers, and that it is unchanged after writing and reading.
 fn sound(record: &Record) -> Result<(), String> {
     let finite = |vector: &Vector3<f64>| vector.iter().all(|value| value.is_finite());
     let series = &record.series;

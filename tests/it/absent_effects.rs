@@ -1,7 +1,6 @@
-//! An absent effect costs almost nothing. It is not part of the selected kernel, as the kernel's type shows. The
-//! instructions of the kernel for undamped, frictionless discs are compared with those of a hand-written loop without
-//! any other effect. Valgrind counts them if it is installed. Counts do not depend on the load of the machine, and no
-//! test measures time.
+//! An absent effect costs almost nothing, because it is not part of the selected kernel. Valgrind, if installed, counts
+//! the instructions of the kernel for undamped, frictionless discs. They are compared with those of a hand-written loop
+//! without any other effect. Counts do not depend on the load of the machine; no test measures time.
 
 #[path = "../../benches/minimal/mod.rs"]
 mod minimal;
@@ -16,16 +15,16 @@ use minimal::Minimal;
 use std::path::Path;
 use std::process::Command;
 
-/// Environment variable with the loop and the number of steps for a process under valgrind.
+/// Environment variable that tells the process under valgrind which loop to run and for how many steps.
 const TASK: &str = "GRAINBENCH_COUNTED_LOOP";
 const SIDE: u32 = 24;
 const STEP: f64 = 0.05;
-/// Largest ratio of the kernel's instructions to those of the hand-written loop.
+/// Largest accepted ratio of the kernel's instructions to those of the hand-written loop.
 const ALLOWED: f64 = 1.02;
-/// Smallest ratio of instructions of dense shear with friction that has no effect to those without friction.
+/// Smallest accepted ratio of instructions in dense shear: friction without effect, divided by no friction.
 const FRICTION: f64 = 1.3;
 
-/// Returns a square lattice of overlapping discs that starts to expand at its rim, without rebuilding the neighbour list.
+/// Returns a square lattice of overlapping discs. It expands at its rim without rebuilding the neighbour list.
 fn lattice() -> Scene {
     let text = format!(
         "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\
@@ -37,14 +36,14 @@ fn lattice() -> Scene {
     source.scene(&|_| Err("no data files here".to_owned())).unwrap()
 }
 
-/// Returns dense shear of ten thousand discs without friction.
+/// Returns dense shear of 10,000 discs without friction.
 fn dense_shear() -> Scene {
     let mut scene = registry::by_name("plane-shear").unwrap().variant("plain").unwrap();
     scene.change_laws(|law| (law.friction, law.tangential_damping) = (0.0, 0.0));
     scene
 }
 
-/// Body of the process under valgrind. It does nothing as an ordinary test.
+/// Loop that runs under valgrind. As an ordinary test, it does nothing.
 #[test]
 fn counted_loop() {
     let Ok(task) = std::env::var(TASK) else { return };
@@ -68,7 +67,7 @@ fn counted_loop() {
     assert_eq!(simulation.counts().neighbour_builds, 1);
 }
 
-/// Counts the instructions of a number of steps.
+/// Counts the instructions of a process that runs a loop for a number of steps.
 fn instructions(name: &str, steps: u64) -> Option<f64> {
     let output = Command::new("valgrind")
         .args(["--tool=callgrind", "--callgrind-out-file=/dev/null"])
@@ -83,8 +82,7 @@ fn instructions(name: &str, steps: u64) -> Option<f64> {
     line.split(':').nth(1)?.trim().parse().ok()
 }
 
-/// Returns the instructions per step: the difference between many and few steps, so that the set-up cancels. `None` if
-/// valgrind is absent, which is an error in CI.
+/// Returns the instructions per step, from the difference between many and few steps. `None` without valgrind, an error in CI.
 fn a_step(name: &str, [few, many]: [u64; 2]) -> Option<f64> {
     let counted = instructions(name, many).zip(instructions(name, few));
     assert!(counted.is_some() || std::env::var_os("CI").is_none(), "valgrind is not installed: nothing was counted");
@@ -99,11 +97,11 @@ fn what_is_absent_costs_next_to_nothing() {
     let idle = a_step("with-idle-friction", STEPS).unwrap();
     println!("instructions a step: by hand {by_hand}, kernel {kernel}, friction that does nothing {idle}");
     assert!(kernel <= ALLOWED * by_hand, "the kernel takes {kernel} instructions a step, a loop by hand {by_hand}");
-    // Control: if an effect is compiled in, the count shows it.
+    // Control: the count increases if an effect is compiled in.
     assert!(idle > 1.1 * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
 }
 
-/// A step of dense shear without friction takes fewer instructions than with friction that has no effect.
+/// In dense shear, a step without friction takes fewer instructions than a step with friction that has no effect.
 #[test]
 fn dense_shear_without_friction_takes_fewer_instructions() {
     const STEPS: [u64; 2] = [2, 12];
@@ -113,7 +111,7 @@ fn dense_shear_without_friction_takes_fewer_instructions() {
     assert!(idle >= FRICTION * kernel, "friction that does nothing takes {idle} instructions, none {kernel}");
 }
 
-/// The selected kernel has a friction stage if and only if the scene has friction, even if it has no effect.
+/// The selected kernel contains friction if and only if the scene has friction, even if friction has no effect.
 #[test]
 fn what_is_absent_is_no_part_of_the_kernel() {
     let kernel = |scene: &Scene| Dem::new(Convention::DEFAULT).start(scene, 1e-4).unwrap().layout();

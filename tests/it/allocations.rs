@@ -1,4 +1,4 @@
-//! Loops over grains, contacts, points and nodes allocate no memory: counts for each kernel of our solvers.
+//! Loops over grains, contacts, points and nodes allocate no memory. Allocations are counted for each kernel of our solvers.
 
 use allocation_counter::measure;
 use grainbench::cases::solvers;
@@ -12,23 +12,21 @@ use rayon::prelude::*;
 use std::fs;
 use std::path::Path;
 
-/// Steps before the counted ones.
+/// Number of steps before the counted steps.
 const WARM: u64 = 100;
-/// Steps in which grains come to rest.
+/// Number of steps in which grains come to rest.
 const SETTLED: u64 = 20_000;
-/// Counts of a bed of grains, whose least is taken.
+/// Number of repetitions for a bed of grains. The smallest count is used.
 const COUNTS: u64 = 50;
-/// Counted steps.
 const STEPS: u64 = 100;
 
-/// Returns the allocations of the last hundred steps: those of a long run without those of a run that is shorter by
-/// these steps. The set-up is part of both.
+/// Returns the allocations of 100 steps: the difference between two runs, in which the set-up cancels.
 fn counted(run: impl Fn(u64)) -> i64 {
     let [few, many] = [WARM, WARM + STEPS].map(|steps| measure(|| run(steps)).count_total as i64);
     many - few
 }
 
-/// Reads a scene without output between its start and its end.
+/// Reads a scene, and removes all output between its start and its end.
 fn scene(directory: &Path, text: &str) -> Scene {
     let source = SceneSource::from_text("scene", directory, text);
     let mut scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"));
@@ -36,12 +34,12 @@ fn scene(directory: &Path, text: &str) -> Scene {
     scene
 }
 
-/// Returns the allocations of the material point method in a hundred steps.
+/// Returns the allocations of the material point method in 100 steps.
 fn of_points(solver: &str, scene: &Scene) -> i64 {
     let at = |courant| Resolution::Grid { cells: 2.0, points: 2, courant };
     let mpm = Mpm::named(solver.split('+').next().unwrap_or_default()).unwrap();
     let crossing = mpm.plan(scene, &at(0.2)).unwrap_or_else(|error| panic!("{solver}: {error}")).critical;
-    // A power of two, so that runs of any number of steps have this step to the bit.
+    // The step is a power of two, so that the duration of any number of steps gives exactly this step.
     let step = (0.2 * crossing).log2().floor().exp2();
     counted(|steps| {
         let scene = Scene { duration: Duration::Seconds(step * steps as f64), ..scene.clone() };
@@ -51,13 +49,12 @@ fn of_points(solver: &str, scene: &Scene) -> i64 {
     })
 }
 
-/// Returns the allocations of grains at rest in a hundred steps. (A step that builds a neighbour list or gains a contact
-/// allocates: lists are sorted into new memory, and the list of contacts grows from it.)
+/// Returns the allocations of grains at rest in 100 steps. Rebuilds of the neighbour list and new contacts allocate memory.
 fn of_grains(convention: Convention, scene: &Scene) -> u64 {
     let mut simulation = Dem::new(convention).start(scene, 0.05 * scene.critical_time_step()).unwrap();
     simulation.advance(SETTLED).unwrap_or_else(|error| panic!("{error}"));
     let before = simulation.counts();
-    // Grains that still creep build a list now and then, so the least of some counts is taken.
+    // Grains that still creep cause a rebuild now and then. The smallest of several counts is therefore used.
     let found =
         (0..COUNTS).map(|_| measure(|| simulation.advance(STEPS).unwrap()).count_total).min().unwrap_or(u64::MAX);
     let contacts = (simulation.counts().contact_evaluations - before.contact_evaluations) / COUNTS;
@@ -68,11 +65,11 @@ fn of_grains(convention: Convention, scene: &Scene) -> u64 {
     found
 }
 
-/// Largest number of allocations in a step of the material point method. Its threads share nodes and contacts by lists
-/// that are new in each step. Their number does not depend on the points, of which there are hundreds.
+/// Largest accepted number of allocations per step of the material point method. In each step, lists of nodes and contacts are
+/// allocated for the threads. Their number does not depend on the number of points, which is in the hundreds.
 const OF_THREADS: i64 = 4;
 
-/// Control: a step that allocates once is counted once.
+/// Control: a step with one allocation is counted as one allocation.
 #[test]
 fn a_step_that_allocates_is_counted() {
     let run = |steps: u64| (0..steps).for_each(|step| drop(std::hint::black_box(vec![step])));
@@ -90,7 +87,8 @@ const LAWS: [&str; 8] = [
     "law = 'hertz', friction = 0.4, rolling_friction = 0.1",
 ];
 
-/// Discs, or spheres for Hertz contacts, between two periods, on an uneven floor, below a moving wall, with a driven group.
+/// Returns a scene of discs, or of spheres for Hertz contacts, between periodic sides. It has an uneven floor, a moving
+/// wall above, and a group with prescribed motion.
 fn discs(law: &str) -> String {
     format!(
         "title = 'discs'\ndimension = 2\nduration = 1.0\ngravity = [0.0, -10.0]\nglobal_damping = 20.0\n\
@@ -108,7 +106,7 @@ fn discs(law: &str) -> String {
     )
 }
 
-/// Spheres with each kind of wall: planes, a rectangle, a cylinder, a cone, triangles and a piston. Some are removed.
+/// Returns a scene of spheres with each kind of wall. Some spheres are removed during the run.
 fn spheres(law: &str) -> String {
     format!(
         "title = 'spheres'\ndimension = 3\nduration = 1.0\ngravity = [0.0, 0.0, -10.0]\nglobal_damping = 20.0\n\
@@ -156,7 +154,7 @@ fn steps_of_grains_allocate_nothing() {
     assert!(found.is_empty(), "allocations in {STEPS} steps:\n{}", found.join("\n"));
 }
 
-/// A body on a wall and a body above it, in two or three dimensions.
+/// Returns a scene of a body on a wall and a body above it, in two or three dimensions.
 fn bodies(material: &str, dimension: usize) -> String {
     let (place, up, low, high) = match dimension {
         2 => ("[0.5, 0.99]", "[0.0, 1.0]", "[0.0, 0.0]", "[1.0, 0.5]"),

@@ -1,4 +1,5 @@
-//! Runs of a scene that `tests/refusals` edits: the scene itself, with an unstable step, and until it breaks.
+//! Runs of the scene that the tables in `tests/refusals` edit: unchanged, with an unstable time step, and until it
+//! becomes unstable.
 
 use crate::common::{files, grainbench};
 
@@ -27,7 +28,7 @@ fn step_above_the_critical_one_is_taken_when_it_is_meant() {
         "--out",
         "out",
     ];
-    // The discs fall freely for the first ten milliseconds, so no spring can be unstable.
+    // Without contact in the first 10 ms, no spring can be unstable.
     let answer =
         grainbench(directory.path(), &[&arguments[..], &["--set", "grains.lower.position=[1.0, 0.5]"]].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.err);
@@ -43,7 +44,7 @@ fn a_run_that_blows_up_says_when_where_why_and_what_would_have_been_stable() {
     let long = ["--set", "duration=100", "--set", "grains.upper.position=[0.0, 0.295]"];
     let answer = grainbench(directory.path(), &[&arguments[..], &long].concat());
     assert_eq!((answer.code, answer.out.as_str()), (Some(1), ""));
-    // The run leaves its partial output, but no record.
+    // The run leaves incomplete output, but no record.
     let left = files(directory.path());
     assert!(left.contains(&"out/broken.json".to_owned()) && left.contains(&"out/series.csv".to_owned()), "{left:?}");
     assert!(!left.contains(&"out/record.json".to_owned()), "{left:?}");

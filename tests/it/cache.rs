@@ -1,23 +1,23 @@
-//! The cache of finished runs: a result from it equals the result of a run, and it returns no other results.
+//! The cache of finished runs: a result from the cache equals the result of a run, and other results are never used.
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
-/// Runs of half a second in total, with points and with grains.
+/// Command with runs of 0.5 s in total, of material points and of grains.
 const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
 
-/// Returns the program with a separate cache.
+/// Returns a command that uses a separate cache.
 fn program(directory: &Path, out: &str) -> Command {
     let mut command = crate::common::program();
     command.env("GRAINBENCH_CACHE", directory.join("cache")).current_dir(directory).args(RUN).args(["--out", out]);
-    // Runs of external solvers are not cached, and their start takes time.
+    // LAMMPS and LIGGGHTS are hidden, because their runs are not cached and take time to start.
     command.envs([("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")]);
     command.stdin(Stdio::null());
     command
 }
 
-/// Returns the exit code and the number of runs from the cache, from the report and its page.
+/// Returns the exit code and the number of runs taken from the cache, as stated in the report and on its page.
 fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u64) {
     let code = command.stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
     let results = fs::read_to_string(directory.join(out).join("results.json")).unwrap();
@@ -45,22 +45,22 @@ fn what_was_finished_is_taken_and_says_so() {
     let directory = tempfile::tempdir().unwrap();
     let here = directory.path();
     assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
-    // A run that was too short for the cache may take longer the next time.
+    // A run that was too short for the cache may take longer when it is repeated.
     let kept = entries(here).len() as u64;
     let (code, again) = taken(&mut program(here, "second"), here, "second");
     assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
     assert_eq!(again, kept, "each is taken once");
     assert!(again > 5, "{again}");
-    // With `--no-cache`, or without a cache, no run comes from it.
+    // With `--no-cache`, or if the cache is off, no run is taken from the cache.
     assert_eq!(taken(program(here, "fresh").arg("--no-cache"), here, "fresh"), (Some(0), 0));
     assert_eq!(taken(program(here, "off").env("GRAINBENCH_CACHE", "off"), here, "off"), (Some(0), 0));
     assert_eq!(rows(here, "fresh"), rows(here, "off"));
-    // Runs of another processor path do not come from the cache. The results have the same bits.
+    // Runs with another instruction set are not taken from the cache, but their results have the same bits.
     let portable = taken(program(here, "portable").env("GRAINBENCH_PROCESSOR", "portable"), here, "portable");
     assert_eq!((portable, rows(here, "portable")), ((Some(0), 0), rows(here, "first")));
 }
 
-/// A folder that every user can write is not trusted, and a CI job has no cache unless a folder is named.
+/// A folder that every user can write is not used. In CI there is no cache, unless a folder is named.
 #[cfg(unix)]
 #[test]
 fn a_folder_of_everybody_is_not_used() {
@@ -118,7 +118,7 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
     assert_eq!(spoil(&older), (Some(0), 0), "an older format");
     let of_next = |at: usize, _: &[u8]| whole[(at + 1) % whole.len()].1.clone();
     assert_eq!(spoil(&of_next), (Some(0), 0), "the run of another name");
-    // The repeated runs are cached again.
+    // The repeated runs are in the cache again.
     let (code, again) = taken(&mut program(here, "last"), here, "last");
     assert!(code == Some(0) && 2 * again > count, "{again} of {count}");
 }
@@ -136,7 +136,7 @@ fn two_at_once_share_it() {
     assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
 }
 
-/// Ctrl-C is sent at ten different times. Finished runs are kept, and at the end no result is missing.
+/// Ctrl-C is sent at ten different times. Finished runs stay in the cache, and in the end no result is missing.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_goes_on_from_what_was_finished() {
@@ -149,7 +149,7 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
     for moment in 0..10 {
         let child = program(here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(20).max(long.mul_f64(f64::from(moment) / 10.0)));
-        // The process may have ended already.
+        // The process may already have ended.
         Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
         let ended = child.wait_with_output().unwrap();
         let message = String::from_utf8(ended.stderr).unwrap();

@@ -1,4 +1,4 @@
-//! `check` and `compare` on output of the external solvers, and on output without a possible verdict.
+//! `check` and `compare` with output of external solvers, and with output that cannot be judged.
 
 use crate::common::{Answer, grainbench};
 use serde_json::Value;
@@ -55,7 +55,7 @@ fn half_the_friction_is_red() {
     assert_eq!((code, count(&rows, "fail")), (1, 6));
 }
 
-/// Walls of a released LAMMPS, from its output alone: friction is wrong by parts in ten thousand, or NaN.
+/// Output of a released LAMMPS version whose walls are wrong: the friction is wrong by about 10⁻⁴, or values are NaN.
 #[test]
 fn a_released_defect_is_red() {
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-incline.dump.gz", &[]);
@@ -64,7 +64,8 @@ fn a_released_defect_is_red() {
     assert!(analytic.into_iter().all(|row| row["verdict"] == "fail" && row["error"].as_f64().unwrap().abs() < 1e-3));
 }
 
-/// The same defect for an oblique impact on the wall. The other walls of this LAMMPS are right.
+/// Output of the LAMMPS version with wrong walls, for an oblique impact. Walls of the kind `granular` are correct in
+/// this version.
 #[test]
 fn a_released_defect_is_red_in_an_oblique_impact_too() {
     for (dump, code, red) in [
@@ -74,11 +75,11 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
     ] {
         let (found, rows) = check("oblique-impact/damped", dump, &[]);
         assert_eq!((found, count(&rows, "fail"), rows.len()), (code, red, 11), "{dump}");
-        // No exact solution is a reference, because solutions of damped impacts depend on the dashpot.
+        // There is no exact reference, because the solution of a damped impact depends on the dashpot.
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run of 20"));
         assert_eq!(stored.count(), 5, "{dump}");
     }
-    // The velocity along the wall is 3.8878 m/s; LAMMPS itself has 3.1267 m/s.
+    // The velocity along the wall is 3.8878 m/s. The stored LAMMPS run has 3.1267 m/s.
     let (_, rows) = check("oblique-impact/damped", "lammps-2025-oblique.dump.gz", &[]);
     let of_stored = |row: &&Value| row["quantity"].as_str().unwrap().contains("stored samples");
     let along =
@@ -91,22 +92,22 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
 fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let log = data("liggghts-backspin.log");
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
-    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
+    // Damping conventions change the velocities of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "2e-4"]);
-    // Damping conventions change the speeds of this impact by more than 5 %, so these results are amber.
+    // Damping conventions change the velocities of this impact by more than 5 %, so these results are amber.
     assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
-    // Another time step gives another motion.
+    // With another time step, the times of the output belong to another motion.
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "3e-4"]);
     assert!(code == 1 && count(&rows, "fail") > 2);
 }
 
-/// A table with its own column names is compared too.
+/// A table with other column names is compared too.
 #[test]
 fn a_table_is_judged_too() {
     let directory = tempfile::tempdir().unwrap();
     let mut text = "time;way;speed\n".to_owned();
-    // A rigid disc on this slope: v = (2/3) g sin 60° t.
+    // A rigid disc that rolls down this slope has v = (2/3) g sin 60° t.
     for step in 0..=100 {
         let (t, a) = (f64::from(step) * 0.01, 2.0 / 3.0 * 9.8 * 60_f64.to_radians().sin());
         text.push_str(&format!("{t};{:e};{:e}\n", 0.5 * a * t * t, a * t));
@@ -128,12 +129,12 @@ fn a_table_is_judged_too() {
     let rows = results["verdicts"].as_array().unwrap();
     let row_of =
         |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
-    // The rigid solution has the same mean motion as the scene's soft contact, but not its oscillation.
+    // The rigid solution has the same mean motion as the soft contacts of the scene, but lacks their oscillation.
     assert_eq!((&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
     assert_eq!((rows.len(), answer.code), (5, Some(1)));
 }
 
-/// Column mapping for contact forces from a contact dump and from wall columns with foreign names.
+/// Names of columns for contact forces, from a contact dump and from wall columns with other names.
 const CONTACTS: &str =
     "id1=c_2[1],id2=c_2[2],force_x=c_1[3],force_y=c_1[4],bottom.force_x=f_wall3[2],bottom.force_y=f_wall3[3]";
 
@@ -147,12 +148,12 @@ fn forces_at_contacts_are_judged_where_a_dump_tells_them() {
         let of_forces = |row: &&Value| row["evidence"] == "analytic" && row["unit"] == "N";
         rows.iter().filter(of_forces).filter(|row| row["verdict"] == verdict).count()
     };
-    // Three snapshots show the end alone.
+    // Three snapshots show only the end of the run.
     let (code, rows) = judged("lammps-nine-static", &["--map", CONTACTS, "--partial"]);
     assert_eq!((code, forces(&rows, "pass"), count(&rows, "fail")), (0, 4, 0), "{rows:#?}");
     let (code, rows) = judged("lammps-nine-static-stiffer", &["--map", CONTACTS]);
     assert_eq!((code, forces(&rows, "fail")), (1, 4));
-    // A dump of grains alone has no forces.
+    // A dump of grains only contains no forces.
     let (_, rows) = check("nine-discs/static-0", "lammps-nine-static.dump.gz", &[]);
     assert_eq!(forces(&rows, "no-reference"), 4, "{rows:#?}");
 }
@@ -165,10 +166,10 @@ fn two_outputs_against_each_other() {
         let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
         results["verdicts"].as_array().unwrap().clone()
     };
-    // Scaled and rounded to six digits, it is the same motion.
+    // A file that is scaled and rounded to six digits contains the same motion.
     let same = compare("lammps-incline.dump.gz", "lammps-incline-six-digits.dump.gz");
     assert_eq!((same.code, count(&rows(&same), "pass"), count(&rows(&same), "fail")), (Some(0), 8, 0));
-    // Columns that only the first file has are listed.
+    // Columns that exist only in the first file are listed.
     let alone = |row: &Value| row["detail"].as_str().is_some_and(|words| words.starts_with("only "));
     assert_eq!(rows(&same).iter().filter(|row| alone(row)).count(), rows(&same).len() - 8);
     let other = compare("lammps-incline.dump.gz", "lammps-incline-half-friction.dump.gz");
@@ -177,7 +178,7 @@ fn two_outputs_against_each_other() {
     assert!(directory.path().join("grainbench-out/index.html").is_file());
 }
 
-/// `check` reports a dump that contains only its first snapshots as incomplete.
+/// `check` reports a dump with only the first half of the snapshots as incomplete.
 #[test]
 fn half_a_run_is_not_judged_as_the_whole() {
     let directory = tempfile::tempdir().unwrap();
@@ -210,14 +211,14 @@ fn half_a_run_is_not_judged_as_the_whole() {
     assert_eq!(checked(&["--partial", "--strict"]).0, Some(1));
 }
 
-/// The first and the last snapshot alone are not enough to judge a run; a tenth of the snapshots is enough.
+/// The first and the last snapshot are not enough to judge a run. Every tenth snapshot is enough.
 #[test]
 fn samples_far_apart_judge_no_course() {
     let directory = tempfile::tempdir().unwrap();
     let whole = unpacked("lammps-incline.dump.gz");
     let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
     let checked = |kept: &dyn Fn(usize) -> bool, more: &[&str]| {
-        // Each part ends with the first line of the next snapshot; the first part has no snapshot.
+        // Each part ends with the first line of the next snapshot. The first part contains no snapshot.
         let kept: String = (1..snapshots.len()).filter(|at| kept(at - 1)).map(|at| snapshots[at]).collect();
         let text = format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n"));
         fs::write(directory.path().join("thinned"), text).unwrap();
@@ -230,20 +231,20 @@ fn samples_far_apart_judge_no_course() {
     let is_end = move |at: usize| at == 0 || at == last;
     let (code, rows) = checked(&is_end, &[]);
     assert_eq!((code, count(&rows, "pass")), (Some(1), 4), "{rows:#?}");
-    // Values at the end are still judged, because no sample in between can change them.
+    // Values at the end are still judged, because missing samples in between do not change them.
     assert!(rows[1..].iter().all(|row| (row["evidence"] == "analytic") == (row["verdict"] == "pass")), "{rows:#?}");
     let detail = rows.iter().find(|row| row["verdict"] == "fail").unwrap()["detail"].as_str().unwrap();
-    assert!(detail.starts_with("no sample for 1 s from t = 0 s, above 0.1"), "{detail}");
+    assert!(detail.starts_with("no sample for 1 s from t = 0 s; at most 0.1"), "{detail}");
     let (code, rows) = checked(&is_end, &["--partial"]);
     assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 5), "{rows:#?}");
     let (code, rows) = checked(&|at| at % 10 == 0, &[]);
     assert_eq!((code, count(&rows, "fail")), (Some(0), 0), "{rows:#?}");
-    // Two tenths of the samples are missing in the middle of a dense run.
+    // Two tenths of the samples are missing in the middle of the run.
     let (code, rows) = checked(&|at| !(31..50).contains(&at), &[]);
     assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
 }
 
-/// A sampling interval of the caller does not replace that of the case.
+/// A sampling interval set by the user does not replace the sampling interval of the case.
 #[test]
 fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
     let directory = tempfile::tempdir().unwrap();
@@ -262,7 +263,7 @@ fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
     }
 }
 
-/// A sample between two steps has no counterpart in our runs. It is red, because it hides all other samples.
+/// A sample between two steps has no counterpart in our runs. The result is red, because all other samples are then not compared.
 #[test]
 fn a_time_between_two_steps_is_red() {
     let directory = tempfile::tempdir().unwrap();
@@ -288,7 +289,7 @@ fn a_time_between_two_steps_is_red() {
     }
 }
 
-/// A mass may be rounded to six digits. A snapshot or a row may occur twice with the same numbers.
+/// Masses may be rounded to six digits, and a snapshot or a row may occur twice with the same numbers.
 #[test]
 fn rounded_and_repeated_numbers_are_judged() {
     let directory = tempfile::tempdir().unwrap();
@@ -307,7 +308,7 @@ fn rounded_and_repeated_numbers_are_judged() {
     }
 }
 
-/// With three digits, the file agrees with two possible starts of the variant. The nearer one has the exact answers.
+/// With three digits, the file agrees with two initial states of the variant. The nearer one is used for the exact solutions.
 #[test]
 fn few_digits_take_no_other_start() {
     let directory = tempfile::tempdir().unwrap();
@@ -338,7 +339,7 @@ fn unpacked(name: &str) -> String {
     whole
 }
 
-/// A result with a tolerance as large as its value is amber, and a run without a verdict is not a success.
+/// A result is amber if its tolerance exceeds a twentieth of the scale. A check without any judged result is not a success.
 #[test]
 fn what_cannot_be_told_is_amber() {
     let directory = tempfile::tempdir().unwrap();
@@ -380,11 +381,11 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     };
     let (code, rows) = compared(&["a.csv", "b.csv", "--tolerance", "1e-5"]);
     assert_eq!((code, count(&rows, "pass")), (0, 4), "{rows:#?}");
-    // Linear interpolation between samples has an error of h² x''/8 = 9 h²/8; the shift is about 100 times as large.
+    // Linear interpolation between samples has an error of h² x''/8 = 9 h²/8. The tested shift is about 100 times as large.
     assert!(rows[2]["allowed"].as_f64().unwrap() < 1.2 * (1e-5 + 9.0 * 0.003 * 0.003 / 8.0), "{}", rows[2]);
     let (code, rows) = compared(&["a.csv", "off.csv", "--tolerance", "1e-5", "--columns", "x"]);
     assert_eq!((code, count(&rows, "fail"), rows.len()), (1, 1, 3), "{rows:#?}");
-    // `0.0` in a file with more digits elsewhere is a whole number, not a number of one digit.
+    // In a file with more digits elsewhere, `0.0` is a whole number and not a number with one digit.
     let (code, rows) = compared(&["a.csv", "off.csv", "--columns", "f"]);
     assert_eq!((code, &rows[2]["verdict"]), (1, &"fail".into()), "{rows:#?}");
     let (code, rows) = compared(&["a.csv", "short.csv"]);
@@ -394,7 +395,7 @@ fn outputs_are_compared_in_time_where_their_steps_differ() {
     assert_eq!(compared(&["a.csv", "named.csv", "--tolerance", "1e-5", "--map", "x=way,f=g,time=t"]).0, 0);
 }
 
-/// The digits of each row count: few digits cannot hide a difference in another row, and never hide a row.
+/// The digits of each row count. Few digits in one row do not hide a difference in another row, and no row is left out.
 #[test]
 fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     let directory = tempfile::tempdir().unwrap();
@@ -410,25 +411,25 @@ fn a_difference_is_judged_by_half_a_unit_of_the_last_digit() {
     // Whole numbers are exact.
     let (code, rows) = compared("step,n\n0,3\n1,3\n", "step,n\n0,3\n1,4\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
-    // The digits of the small value count for it, independent of those of the large value beside it.
+    // The digits of a small value determine its uncertainty, whatever the digits of a large value in the column are.
     let (code, rows) = compared("step,v\n0,1.2e6\n1,0.02\n", "step,v\n0,1.2e6\n1,3.5\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["fail".to_owned()]), "{rows:#?}");
-    // Digits with an uncertainty above 5 % of the scale are reported and do not count as a success.
+    // If the digits of a column have an uncertainty above 5 % of the scale, this is reported and is not a success.
     let (code, rows) = compared("step,v\n0,0.1\n1,0.4\n", "step,v\n0,0.1\n1,0.44\n", &[]);
     assert_eq!((code, verdicts(&rows)), (1, vec!["no-reference".to_owned()]), "{rows:#?}");
     assert!(rows[0]["detail"].as_str().unwrap().starts_with("inconclusive: "), "{rows:#?}");
-    // Columns that only one file has are listed. Grain types alone are no comparison.
+    // Columns that exist in only one file are listed. Equal grain types alone do not count as a comparison.
     let (code, rows) = compared("step,type,v\n0,1,2.5\n", "step,type,w\n0,1,2.5\n", &[]);
     assert_eq!(
         (code, verdicts(&rows)),
         (1, ["pass", "no-reference", "no-reference"].map(str::to_owned).to_vec()),
         "{rows:#?}"
     );
-    assert_eq!(rows[1]["detail"], "only a.csv has it");
-    // Sizes and masses alone are no comparison either, because no run changes them.
+    assert_eq!(rows[1]["detail"], "only a.csv has this column");
+    // Equal sizes and masses alone do not count as a comparison, because no run changes them.
     let table = |name: &str| format!("step,n,radius,mass,{name}\n0,1,0.5,2,1\n1,1,0.5,2,3\n");
     assert_eq!(compared(&table("v").replace(",n,", ",id,"), &table("w").replace(",n,", ",id,"), &[]).0, 1);
     assert_eq!(compared(&table("v"), &table("w"), &[]).0, 0);
-    // An option that takes one value does not consume the next argument.
+    // An option with one value does not take the next argument as a second value.
     assert_eq!(compared("step,v\n0,0.512345\n", "step,v\n0,0.512345\n", &["--time-step", "1e-5", "--partial"]).0, 0);
 }

@@ -1,4 +1,4 @@
-//! `check` on a scene that is not a case, on a case with other parameters, on VTK files, and on a folder of many runs.
+//! `check` with a scene file, with a case with other parameters, with VTK files, and with a folder of many outputs.
 
 use crate::common::grainbench;
 use grainbench::cases::registry::read_grains;
@@ -7,7 +7,7 @@ use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Returns the folder of a LIGGGHTS run with a hand-written deck.
+/// Returns the folder of a LIGGGHTS run whose input was written by hand.
 fn slope() -> PathBuf {
     [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "liggghts-slope"].iter().collect()
 }
@@ -16,7 +16,7 @@ fn file(name: &str) -> String {
     slope().join(name).display().to_string()
 }
 
-/// Returns the VTK files of the run with those of its box, as a shell pattern gives them.
+/// Returns all VTK files of the run, including those of its box, in the order of a shell pattern.
 fn vtk() -> Vec<String> {
     let mut files: Vec<String> = fs::read_dir(slope())
         .unwrap()
@@ -42,7 +42,6 @@ const NUMBERS: [&str; 11] = [
     "grains.sphere={radius=.005,position=[0,0,.005]}",
 ];
 
-/// Returns the exit code and the results.
 fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
     let directory = tempfile::tempdir().unwrap();
     let answer = grainbench(directory.path(), &[&["check"], words, &["--json"]].concat());
@@ -50,7 +49,7 @@ fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
     (answer.code, results["verdicts"].as_array().unwrap().clone())
 }
 
-/// Returns exit code and results at the parameters of the run, with some of them changed.
+/// Returns the exit code and the results at the parameters of the run, with further changes.
 fn at_numbers(files: &[&str], others: &[&str]) -> (Option<i32>, Vec<Value>) {
     let set = NUMBERS.iter().chain(others).flat_map(|set| ["--set", set]);
     let words = [&["incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump"], files].concat();
@@ -61,7 +60,7 @@ fn count(rows: &[Value], condition: impl Fn(&Value) -> bool) -> usize {
     rows.iter().filter(|row| condition(row)).count()
 }
 
-/// A hand-written deck, from its dump and from its VTK files. The time step comes from the log beside them.
+/// Checks the dump and the VTK files of a run whose input was written by hand. The time step is in its log.
 #[test]
 fn a_scene_of_ones_own_is_compared_with_our_solvers() {
     let dump = file("sphere.dump");
@@ -71,7 +70,7 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
         let scene = file("slope.toml");
         let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
         let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
-        // All found quantities are right. Changes that the output cannot reveal are amber.
+        // All compared quantities pass. Changes of the scene that the output does not reveal are amber.
         let is_told = |row: &Value| row["verdict"] == "pass" || row["quantity"].as_str().unwrap().contains("reveals");
         assert_eq!((code, count(&rows, is_told)), (Some(0), rows.len()), "{rows:#?}");
         assert!(count(&rows, nearest) >= 9, "{rows:#?}");
@@ -79,7 +78,7 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
     }
 }
 
-/// Exact solutions and their tolerances follow the parameters of the scene. Another slope or shape is red.
+/// Exact solutions and their tolerances follow the parameters of the scene. Another slope or grain shape is red.
 #[test]
 fn exact_answers_follow_other_numbers() {
     let dump = file("sphere.dump");
@@ -87,8 +86,8 @@ fn exact_answers_follow_other_numbers() {
     for files in [vec![dump.as_str()], vtk().iter().map(String::as_str).collect()] {
         let (code, rows) = at_numbers(&files, &[]);
         assert_eq!((code, count(&rows, is_exact)), (Some(0), 3), "{rows:#?}");
-        // v = (5/7) g t sin θ at half a second. The tolerance is Hertz's overlap over the radius, plus the oscillation
-        // of the spring.
+        // v = (5/7) g t sin θ at t = 0.5 s. The tolerance is the Hertz overlap divided by the radius, plus the
+        // oscillation of the contact spring.
         let velocity = rows.iter().find(|row| row["quantity"] == "velocity at the end").unwrap();
         let expected = 5.0 / 7.0 * 9.81 * 0.5 * 0.5;
         assert!((velocity["expected"].as_f64().unwrap() - expected).abs() < 1e-12 * expected, "{velocity}");
@@ -106,7 +105,7 @@ fn exact_answers_follow_other_numbers() {
     }
 }
 
-/// A folder with a subfolder for each case and variant is checked in one call. Other files in it are reported.
+/// A folder with a subfolder for each case or variant is checked with one command. Other files in it are reported.
 #[test]
 fn a_folder_of_outputs_is_judged_together() {
     let directory = tempfile::tempdir().unwrap();
@@ -126,7 +125,7 @@ fn a_folder_of_outputs_is_judged_together() {
     let (code, rows) = judged(&["--all", &runs]);
     let passes = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
     assert!(code == Some(0) && passes("incline-disc") == 9 && passes("backspin") > 5, "{rows:#?}");
-    // The content of a file decides, not its name; what is not judged is red unless it is ignored by name.
+    // The content of a file decides if it is output, not its name. A file that is not judged is red, unless its name is ignored.
     let place = directory.path().join("runs/incline-disc/60deg-mu.9");
     fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
     for input in ["in.lammps", "data.grains"] {
@@ -153,7 +152,7 @@ fn a_folder_of_outputs_is_judged_together() {
         assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
     };
     refused(&directory.path().join("nowhere"), "expected a folder that can be read");
-    // A folder of a case without output is red, also if only its log is there or if no case has its name.
+    // The folder of a case without output is red, also if it contains only a log, or if no case has its name.
     let partly = directory.path().join("partly");
     for place in ["incline-disc/60deg-mu.9", "oblique-impact", "backspin/sphere", "incline-dics", "nine-discs/kappa"] {
         fs::create_dir_all(partly.join(place)).unwrap();
@@ -173,18 +172,18 @@ fn a_folder_of_outputs_is_judged_together() {
     let words = [&["--all", partly.to_str().unwrap()], &ignored.collect::<Vec<_>>()[..]].concat();
     assert_eq!(judged(&words).0, Some(0));
     fs::create_dir(directory.path().join("empty")).unwrap();
-    refused(&directory.path().join("empty"), "expected outputs in `CASE` or `CASE/VARIANT` of it, found none");
+    refused(&directory.path().join("empty"), "expected outputs in its folders `CASE` or `CASE/VARIANT`, found none");
     into("backspinn", "liggghts-backspin.dump.gz");
     refused(&directory.path().join("runs"), "did you mean `backspin`?");
 }
 
-/// Returns a file of the ball that bounces along a floor.
+/// Returns the path of a file about a ball that bounces along a floor.
 fn of_ball(name: &str) -> String {
     let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "ball", name].iter().collect();
     path.display().to_string()
 }
 
-/// Returns the exit code, the results and the messages of `check` on files of the ball.
+/// Returns the exit code, the results and the messages of `check` with files of the ball.
 fn ball(files: &[&str], more: &[&str]) -> (Option<i32>, Vec<Value>, String) {
     let directory = tempfile::tempdir().unwrap();
     let scene = of_ball(if files[0].starts_with("same-ids") { "two-balls.toml" } else { "ball.toml" });
@@ -200,7 +199,8 @@ fn fails(rows: &[Value]) -> usize {
     count(rows, |row| row["verdict"] == "fail")
 }
 
-/// Two runs of one log with their own time steps: by the log, by the times of the file, and by both.
+/// A log contains two runs with different time steps. `check` finds the time steps in the log, in the times of the
+/// dump, or in both.
 #[test]
 fn each_run_of_a_log_has_its_own_time_step() {
     let log = of_ball("twosteps.log.gz");
@@ -213,7 +213,7 @@ fn each_run_of_a_log_has_its_own_time_step() {
         assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
         assert_eq!(rows[1]["resolution"], "dt=0.00001 s to 0.00002 s", "{}", rows[1]);
     }
-    // The same number of steps with one time step throughout is another motion.
+    // With one time step for all steps, the output belongs to another motion.
     assert_eq!(ball(&["twosteps.dump.gz"], &["--time-step", "2e-5"]).0, Some(1));
 }
 
@@ -224,7 +224,7 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
     assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
 }
 
-/// A difference between log and table that is within the printed digits of the times does not count.
+/// A difference between the times of log and table is accepted if it is within their printed digits.
 #[test]
 fn a_rounded_time_step_in_a_log_is_accepted() {
     let directory = tempfile::tempdir().unwrap();
@@ -249,7 +249,7 @@ fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
     }
 }
 
-/// In ParaView's tables, `TimeStep` is the number of a frame and `Time` is in seconds. One table per time contains no times.
+/// In tables of ParaView, `TimeStep` is the number of a frame, and `Time` is in seconds. A table for one time contains no time.
 #[test]
 fn tables_of_grains_are_read_as_grains() {
     let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--time-step", "1e-5"]);
@@ -262,7 +262,7 @@ fn tables_of_grains_are_read_as_grains() {
     assert!(code == Some(1) && fails(&rows) > 0);
 }
 
-/// Units other than SI are refused. Two files in the same units can be compared.
+/// Output in other units than SI is rejected. Two files in the same units can be compared.
 #[test]
 fn units_are_those_of_the_scene_or_of_the_other_file() {
     let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
@@ -273,7 +273,7 @@ fn units_are_those_of_the_scene_or_of_the_other_file() {
     assert_eq!(grainbench(tempfile::tempdir().unwrap().path(), &["compare", &cgs, &cgs]).code, Some(0));
 }
 
-/// Rejects a time step above the critical one, at which our own solvers are unstable and give no reference.
+/// Rejects a time step at or above the critical one, because our solvers would be unstable and give no reference.
 #[test]
 fn a_time_step_above_the_critical_one_is_refused() {
     let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
@@ -281,7 +281,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
     fs::write(directory.path().join("coarse.csv"), text).unwrap();
     let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", "2e-3", "--partial"];
     assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
-    // The critical time step itself is refused too, as by `simulate`.
+    // The critical time step itself is rejected too, as in `simulate`.
     let scene = SceneSource::read(Path::new(&of_ball("ball.toml"))).unwrap().scene(&read_grains).unwrap();
     let critical = format!("{:?}", scene.critical_time_step());
     let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", &critical, "--partial"];
@@ -293,7 +293,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
     );
 }
 
-/// The ball sticks to the floor during contact, so friction has almost no effect; its dashpot and spring have one.
+/// The ball sticks to the floor during contact. Friction therefore has almost no effect, but dashpot and spring have.
 #[test]
 fn a_check_says_which_changes_the_output_would_reveal() {
     let directory = tempfile::tempdir().unwrap();
@@ -317,7 +317,7 @@ fn a_check_says_which_changes_the_output_would_reveal() {
     assert_eq!(checked("off").1.len(), 10);
 }
 
-/// Three discs that fly apart, in a scene that has no probe of a grain.
+/// Three discs that fly apart, in a scene without a probe of a grain.
 const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n\
     domain = { low = [0.0, -2.0], high = [4.0, 2.0], periodic = [true, false] }\n\
     materials.m = { density = 1.0 }\n\
@@ -327,12 +327,12 @@ const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n
     [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [3.0, 1.0]\nvelocity = [0.0, -0.5]\nspin = -1.0\n\
     [output]\nevery = 0.01\n[probes]\nall = { system = true }\n";
 
-/// A row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
+/// Row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
 type Row = [f64; 9];
-/// Change of the three rows of a sample.
+/// Function that changes the three rows of a sample. The first argument is the number of the sample.
 type Change<'a> = &'a dyn Fn(u32, &mut [Row; 3]);
 
-/// Returns a dump of the three discs with steps of 1 ms from step `from` on. `change` changes the rows of a snapshot.
+/// Returns a dump of the discs with a time step of 1 ms. `from` is the first step; `change` changes the rows of each sample.
 fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
     let mut text = String::new();
     for sample in 0..=10 {
@@ -356,7 +356,7 @@ fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
     text
 }
 
-/// Checks a dump of the three discs. Returns the answer.
+/// Checks a dump of the three discs, and returns the output of the command.
 fn checked_flight(dump: &str, more: &[&str]) -> crate::common::Answer {
     checked_scene(FLIGHT, dump, more)
 }
@@ -369,12 +369,12 @@ fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> crate::common::Answe
     grainbench(directory.path(), &[&words[..], more].concat())
 }
 
-/// The first sample shows the start of all grains, with or without probes.
+/// The first sample is compared with the initial state of all grains, with or without probes.
 #[test]
 fn every_grain_starts_as_in_the_scene() {
     let right: [(u32, Change<'_>); 3] = [
         (0, &|_, _| {}),
-        // A run that starts late, and a grain outside its periodic axis.
+        // A run whose steps do not begin at zero, and a grain that is shifted by one period.
         (700, &|_, _| {}),
         (0, &|_, rows| rows[1][0] += 4.0),
     ];
@@ -396,34 +396,34 @@ fn every_grain_starts_as_in_the_scene() {
             assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
         }
     }
-    // Six digits are enough for numbers that have no more.
+    // Six digits are enough if the numbers have no more digits.
     let six =
         flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
     assert_eq!(checked_flight(&six, &[]).code, Some(0));
 }
 
-/// Grains of a scene in the plane stay in it.
+/// Grains of a two-dimensional scene must stay in their plane.
 #[test]
 fn motion_out_of_the_plane_is_refused() {
     let wrong: [(Change<'_>, &str); 4] = [
         (
             &|sample, rows| rows[1][2] = 1e-3 * f64::from(sample),
-            "grain 2 in the plane of the scene, `z` 0.0, found 0.001",
+            "grain 2 in the plane of the scene, with `z` = 0.0, found 0.001",
         ),
-        (&|_, rows| rows[2][5] = 3.0, "grain 3 in the plane of the scene, `vz` 0.0, found 3.0"),
-        (&|sample, rows| rows[0][6] = f64::from(sample), "`omegax` 0.0, found 1.0"),
-        (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` 0.0, found 1.0"),
+        (&|_, rows| rows[2][5] = 3.0, "grain 3 in the plane of the scene, with `vz` = 0.0, found 3.0"),
+        (&|sample, rows| rows[0][6] = f64::from(sample), "`omegax` = 0.0, found 1.0"),
+        (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` = 0.0, found 1.0"),
     ];
     for (change, message) in wrong {
         let answer = checked_flight(&flight(0, change), &[]);
         assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
     }
-    // The plane may have any position, and rounding errors do not count as motion out of it.
+    // The plane may be at any height, and rounding errors do not count as motion out of the plane.
     let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
     assert_eq!(checked_flight(&right, &[]).code, Some(0));
 }
 
-/// The sampling interval of the scene file limits the distance between samples, and no option replaces it.
+/// The sampling interval in the scene file limits the interval between samples. No option replaces it.
 #[test]
 fn no_option_allows_samples_far_apart() {
     let whole = flight(0, &|_, _| {});
@@ -439,7 +439,7 @@ fn no_option_allows_samples_far_apart() {
     assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
 }
 
-/// A sample at a time between two steps counts as missing, and a message reports it.
+/// A sample at a time between two steps counts as missing and is reported.
 #[test]
 fn a_sample_between_steps_is_missing() {
     let directory = tempfile::tempdir().unwrap();
@@ -448,7 +448,7 @@ fn a_sample_between_steps_is_missing() {
          position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
     fs::write(directory.path().join("s.toml"), scene).unwrap();
     let judged = |time: &str| {
-        // The interval of 20 samples is 2000 steps. The sample after one step makes our run sample each step.
+        // 20 samples are 2000 steps apart. A further sample after one step makes our run sample every step.
         let row = |step: u32, time: &str| format!("{step},{time},{:.6},1.000000\n", f64::from(step) * 1e-6);
         let other = |step: u32| row(step, &format!("{:.6}", f64::from(step) * 1e-6));
         let rows: String =
@@ -468,10 +468,10 @@ fn a_sample_between_steps_is_missing() {
     };
     assert_eq!(judged("0.020000")["verdict"], "pass");
     let row = judged("0.02000002");
-    assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are missing"), "{row}");
+    assert!(row["verdict"] != "pass" && row["detail"].to_string().contains("1 samples are not compared"), "{row}");
 }
 
-/// A file equals itself, for any number of digits.
+/// A file agrees with itself, whatever its number of digits is.
 #[test]
 fn a_file_is_equal_to_itself() {
     let directory = tempfile::tempdir().unwrap();

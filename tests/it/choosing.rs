@@ -1,4 +1,4 @@
-//! Selection of the claims of a run and comparison with an earlier run: patterns, filters, `--retry-failed`, `--against`.
+//! Selection of claims by patterns, filters and `--retry-failed`, and comparison with an earlier report by `--against`.
 
 use crate::common::{Answer, grainbench};
 use serde_json::Value;
@@ -20,7 +20,7 @@ fn rows<'a>(results: &'a Value, key: &str) -> Vec<&'a str> {
     results["verdicts"].as_array().unwrap().iter().map(|row| row[key].as_str().unwrap()).collect()
 }
 
-/// Writes an earlier report with a change in it.
+/// Writes a changed copy of the report as an earlier report.
 fn changed(directory: &Path, change: impl FnOnce(&mut Value)) {
     let mut earlier = results(directory, "grainbench-out");
     change(&mut earlier);
@@ -44,11 +44,11 @@ fn rows_are_chosen_by_what_they_are() {
     let none = run(here, &[CASE, "--filter", "quantity=nothing of the kind"]);
     assert_eq!(
         (none.code, none.err.trim()),
-        (Some(2), "error: expected at least one claim that the filters mean, found none")
+        (Some(2), "error: expected at least one claim that matches the filters, found none")
     );
 }
 
-/// The outcome of a claim is known only after its run. A filter on the outcome hides no failure from the exit code.
+/// The outcome of a claim is known only after its run, so a filter by outcome removes no failure from the exit code.
 #[test]
 fn rows_are_shown_by_how_they_end_and_judged_all() {
     let directory = tempfile::tempdir().unwrap();
@@ -60,7 +60,7 @@ fn rows_are_shown_by_how_they_end_and_judged_all() {
     assert_eq!((passes.code, &passes.out), (all.code, &all.out), "all of them pass");
     assert_eq!(rows(&results(here, "grainbench-out"), "verdict").len(), count);
     let failed = run(here, &[CASE, "--filter", "outcome=fail"]);
-    // The filter changes the view, and no count.
+    // The filter changes the results that are shown, but no count.
     assert_eq!((failed.code, &failed.out), (all.code, &all.out));
     assert_eq!(rows(&results(here, "grainbench-out"), "verdict").len(), count);
     let page = fs::read_to_string(here.join("grainbench-out/index.html")).unwrap();
@@ -102,7 +102,7 @@ fn what_failed_is_run_again_alone() {
     let none = again();
     assert_eq!(
         (none.code, none.err.trim()),
-        (Some(2), "error: expected at least one claim that failed there, found none")
+        (Some(2), "error: expected at least one claim that was red or omitted in the earlier report, found none")
     );
     changed(here, |old| old["verdicts"][3]["verdict"] = "fail".into());
     let wanted = results(here, "grainbench-out")["verdicts"][3].clone();
@@ -117,7 +117,7 @@ fn what_failed_is_run_again_alone() {
     assert!(rows(&results(here, "old"), "quantity").iter().all(|quantity| wanted == **quantity));
 }
 
-/// Results that an interrupted run did not reach are run with the failed ones.
+/// The results that an interrupted run omitted are run together with the failed ones.
 #[test]
 fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     let directory = tempfile::tempdir().unwrap();
@@ -135,7 +135,7 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     });
     assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
     assert!(!quantities("old").is_empty() && quantities("old").iter().all(|quantity| *quantity == all[0]));
-    // A control that was left out is run with its claim.
+    // A control that was omitted is run together with its claim.
     let control = results(here, "grainbench-out")["controls"][0]["quantity"].clone();
     changed(here, |old| {
         interrupt(old);
@@ -144,7 +144,7 @@ fn what_an_interrupted_run_left_out_is_run_with_what_failed() {
     assert_eq!(run(here, &[CASE, "--retry-failed", "--out", "old"]).code, Some(0));
     let again = quantities("old");
     assert!(!again.is_empty() && again.iter().all(|quantity| control == **quantity), "{again:?}");
-    // Without names, the cases of the interrupted run are repeated, and not the whole registry.
+    // Without named cases, the cases of the interrupted run are used, not the whole registry.
     changed(here, |old| {
         interrupt(old);
         drop(old["controls"].as_array_mut().unwrap().remove(0));
@@ -168,7 +168,7 @@ fn shells_and_readers_of_manuals_are_served() {
     assert!(run.contains(".TH grainbench-run") && run.contains("retry"), "{run}");
 }
 
-/// The shell steps of the GitHub action, as a job runs them.
+/// The shell steps of the GitHub action, run as in a job.
 #[cfg(unix)]
 #[test]
 fn a_job_is_told_in_its_own_way() {
@@ -198,13 +198,13 @@ fn a_job_is_told_in_its_own_way() {
     assert!(summary.starts_with("## grainbench: ") && summary.contains("| oblique-impact |"), "{summary}");
     assert_eq!(fs::read_to_string(here.join("output")).unwrap(), "report=judged\n");
     assert!(here.join("judged/badge.svg").is_file());
-    // Every line of an input counts, and none is dropped.
+    // Every line of an input is used; none is dropped.
     for (cases, arguments) in
         [("no-such-case", ""), ("oblique-impact\nno-such-case", ""), ("oblique-impact", "--quiet\n--no-such")]
     {
         assert_eq!(job(cases, arguments).status.code(), Some(2), "{cases} {arguments}");
     }
-    // Help and versions judge nothing, and the directory is one line.
+    // Help and version options are rejected, because nothing would be judged. The directory must be one line.
     for word in ["-h", "--help", "-V", "--version", "-qh"] {
         assert_eq!(job(word, "").status.code(), Some(2), "{word}");
         assert_eq!(job("oblique-impact", &format!("--quiet\n{word}")).status.code(), Some(2), "{word}");

@@ -1,4 +1,4 @@
-//! The command line as a user sees it: help, tables, files, JSON, exit codes.
+//! The command line: help, tables, files, JSON and exit codes.
 
 use crate::common::{files, grainbench};
 use grainbench::cases::registry::CASES;
@@ -37,7 +37,7 @@ snapshots = 2
 left = { grain = "left" }
 "#;
 
-/// Returns the standard output of a command that succeeds without messages.
+/// Returns the standard output of a command that must succeed without messages.
 fn printed(directory: &Path, arguments: &[&str]) -> String {
     let answer = grainbench(directory, arguments);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{}", answer.out);
@@ -48,7 +48,7 @@ fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
-/// Returns a help text without trailing blanks, which clap writes and editors remove.
+/// Returns a help text without spaces at the ends of lines. clap prints such spaces, and editors remove them.
 fn help(arguments: &[&str]) -> String {
     let directory = tempfile::tempdir().unwrap();
     printed(directory.path(), arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
@@ -77,7 +77,7 @@ fn list_tells_of_every_case() {
     for case in CASES {
         assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
     }
-    // One case represents all cases, so that a new case does not change this file. Column widths follow the longest name.
+    // One case represents all cases, so that a new case does not change the snapshot. Column widths depend on the longest name.
     let squash: Vec<String> = text
         .lines()
         .skip_while(|line| !line.starts_with("squash "))
@@ -114,7 +114,7 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
     if let Some(properties) = schema.get("properties").and_then(Value::as_object) {
         for (name, property) in properties {
             let description = property.get("description").and_then(Value::as_str).unwrap_or_default();
-            // A tag with a single value is explained with its alternative.
+            // A property with a single constant value is described together with its alternative.
             if description.trim().is_empty() && property.get("const").is_none() {
                 found.push(format!("{path}.{name}"));
             }
@@ -138,7 +138,7 @@ fn schema_documents_every_key() {
     assert!(found.is_empty(), "without a description: {found:?}");
 }
 
-/// The schema in the repository, which editors read, equals the schema of the program.
+/// The schema file in the repository, which editors use, equals the schema that the program prints.
 #[test]
 fn the_schema_in_the_tree_is_that_of_the_program() {
     let directory = tempfile::tempdir().unwrap();
@@ -149,7 +149,7 @@ fn the_schema_in_the_tree_is_that_of_the_program() {
 fn run_leaves_its_files_and_a_summary() {
     let directory = tempfile::tempdir().unwrap();
     let text = printed(directory.path(), &["run", "squash", "--out", "deep/out"]);
-    // The worst claim and with it the column widths depend on rounding, which differs between mathematical libraries.
+    // The worst claim depends on rounding, which differs between mathematical libraries. Column widths depend on it too.
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.path().join("deep/out");
@@ -185,7 +185,7 @@ fn run_leaves_its_files_and_a_summary() {
     assert_eq!(files(&out), expected);
 }
 
-/// Returns a line of the summary without its worst claim and without column widths.
+/// Returns a line of the summary without the worst claim and without column widths.
 fn without_worst(line: &str) -> String {
     let cells = line.split("  ").map(str::trim).filter(|cell| !cell.is_empty());
     let cells = cells.map(|cell| match cell {
@@ -206,7 +206,7 @@ fn run_prints_what_it_writes_as_json() {
     assert_eq!(results["controls"], json("[]"));
 }
 
-/// Old spellings are accepted with a note until the next version.
+/// Old spellings are accepted until the next version, and a note is printed.
 #[test]
 fn an_old_spelling_is_reported() {
     let directory = tempfile::tempdir().unwrap();
@@ -233,7 +233,7 @@ fn a_red_report_ends_with_one() {
         assert_eq!(answer.code, Some(1), "{red}");
         assert!(answer.out.contains('✗'), "{}", answer.out);
     }
-    // An amber result is neither a pass nor a failure.
+    // An amber result counts neither as passed nor as failed.
     std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
     assert_eq!(grainbench(directory.path(), &["report", "out"]).code, Some(0));
 }
@@ -281,7 +281,7 @@ fn simulate_prints_the_run_as_json() {
     assert_eq!(run["provenance"]["time_step"], 1e-4);
     assert_eq!((run["cost"]["steps"].as_u64(), run["end"]["step"].as_u64()), (Some(400), Some(400)));
     assert_eq!((run["end"]["grains"].as_u64(), run["snapshots"].as_u64()), (Some(2), Some(4)));
-    // One disc hits another of the same mass. An elastic impact conserves the energy ρπR² v²/2.
+    // The impact of two equal discs is elastic and conserves the energy ρπR² v²/2.
     let energy = run["end"]["kinetic_energy"].as_f64().unwrap();
     assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
     assert!(directory.path().join("grainbench-out/record.json").is_file());
@@ -297,12 +297,12 @@ fn report_makes_pictures_of_simulations() {
     }
     printed(path, &["report", "one", "--beside", "two", "--fringe-stress", "1e3"]);
     let page = std::fs::read_to_string(path.join("one/index.html")).unwrap();
-    // One picture of the speed with both solvers side by side.
+    // The page has one picture of the speed, with both solvers side by side.
     let svg = std::fs::read_to_string(path.join("one/figures/speed.svg")).unwrap();
     assert!(page.contains(&svg) && svg.matches("data:image/png;base64,").count() == 2, "{}", svg.len());
     assert!(page.contains("Two discs collide") && svg.contains(">dem, t") && svg.contains(">dem:lammps, t"), "{svg}");
 
-    // A contact with a missing grain is not drawn. An invalid record is an error with file and place.
+    // A contact with a missing grain is not drawn. An invalid record is an error that names file and position.
     let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
     std::fs::write(path.join("one/record.json"), record.replace("\"grain\":1,", "\"grain\":900,")).unwrap();
     printed(path, &["report", "one"]);

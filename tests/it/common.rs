@@ -1,6 +1,6 @@
-//! Helpers that run the program as a user runs it.
+//! Helpers that run the program as a separate process.
 
-// Each test file uses a part of these helpers.
+// Each test program uses only some of these helpers.
 #![allow(dead_code)]
 
 use grainbench::scene::kept_record;
@@ -8,7 +8,6 @@ use grainbench::scene::record::{Cost, Record};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 
-/// Result of a command.
 pub(crate) struct Answer {
     /// Exit code; `None` if the process was killed.
     pub(crate) code: Option<i32>,
@@ -18,13 +17,13 @@ pub(crate) struct Answer {
     pub(crate) err: String,
 }
 
-/// Returns all bits of a record except its times. (Printed numbers would take longer than most runs.)
+/// Returns a record as bytes, without its run time. Comparing printed numbers would take longer than most runs.
 pub(crate) fn bits(record: Record) -> Vec<u8> {
     let untimed = Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record };
     kept_record::body("", &untimed).expect("a record can be kept")
 }
 
-/// Returns the program with its cache of runs switched off, so that each test does its own runs.
+/// Returns a command that runs the program without its cache, so that each test does its own runs.
 pub(crate) fn program() -> Command {
     let mut command = Command::new(env!("CARGO_BIN_EXE_grainbench"));
     command.env("GRAINBENCH_CACHE", "off");
@@ -36,7 +35,7 @@ pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
     grainbench_in(directory, arguments, &[])
 }
 
-/// Runs the program in a directory without LAMMPS and LIGGGHTS.
+/// Runs the program in a directory, with LAMMPS and LIGGGHTS hidden from it.
 pub(crate) fn grainbench_alone(directory: &Path, arguments: &[&str]) -> Answer {
     let absent = [("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")];
     grainbench_in(directory, arguments, &absent)
@@ -54,7 +53,7 @@ fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &st
     Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
 }
 
-/// Returns the largest resident memory (kB) of a run, as reported by the system.
+/// Returns the largest resident memory of a run (kB), as the operating system reports it.
 #[cfg(target_os = "linux")]
 pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
     let mut child = program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
@@ -69,7 +68,7 @@ pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
     peak
 }
 
-/// Returns all files below a directory as sorted relative paths. An empty directory is its path with `/`.
+/// Returns the relative paths of all files below a directory, sorted. An empty directory is listed with `/` at its end.
 pub(crate) fn files(directory: &Path) -> Vec<String> {
     let mut found = Vec::new();
     let mut open = vec![directory.to_path_buf()];
@@ -95,7 +94,7 @@ pub(crate) fn root(path: &str) -> PathBuf {
     Path::new(env!("CARGO_MANIFEST_DIR")).join(path)
 }
 
-/// Compares a file with its expected contents, or writes it if `UPDATE_README` is set.
+/// Checks that a file has the expected contents. If `UPDATE_README` is set, writes the file first.
 pub(crate) fn expect_file(path: &str, wanted: &str) {
     let path = root(path);
     if std::env::var_os("UPDATE_README").is_some() {
@@ -106,7 +105,7 @@ pub(crate) fn expect_file(path: &str, wanted: &str) {
     assert!(found == wanted, "{} is out of date: UPDATE_README=1 cargo test --test it writes it", path.display());
 }
 
-/// Returns a text with the text between two marks replaced.
+/// Returns a text in which the part between two marks is replaced.
 pub(crate) fn with_generated(readme: &str, mark: &str, table: &str) -> String {
     let open = format!("<!-- generated: {mark} -->\n");
     let start = readme.find(&open).unwrap() + open.len();

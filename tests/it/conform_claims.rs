@@ -1,4 +1,4 @@
-//! Claims about friction between grains, springs that turn and rolling memories see planted defects of a small solver by value.
+//! Claims about friction, rotating springs and rolling moments fail by value for a small solver with planted mistakes.
 
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
@@ -50,7 +50,7 @@ fn planted_defects_fail_claims_by_value() {
     }
 }
 
-/// Our solver, given a wrong scene.
+/// Solver that runs our solver with a changed scene.
 struct MisledSolver(fn(&mut Scene));
 
 impl Solver for MisledSolver {
@@ -65,7 +65,7 @@ impl Solver for MisledSolver {
     }
 }
 
-/// A failed result of a solver with a mistake has the hint for this mistake, and no other hint.
+/// A failed result of a solver with a mistake names this mistake and no other.
 #[test]
 fn a_failed_result_names_the_mistake() {
     type Wrong = (&'static str, &'static str, fn(&mut Scene));
@@ -105,7 +105,7 @@ fn a_failed_result_names_the_mistake() {
     }
 }
 
-/// Defects in Mindlin's law have no effect on linear springs.
+/// Mistakes in Mindlin's law have no effect on linear springs.
 #[test]
 fn claims_with_linear_springs_do_not_see_mindlins() {
     for mistake in [MethodMistake::SecantSpring, MethodMistake::NotRescaled] {

@@ -1,4 +1,4 @@
-//! Tests of the conformance suite with solvers that have defects. The solver crates apply the suite to their solvers.
+//! Tests of the conformance properties with defective solvers. The solver crates test their own solvers.
 
 use grainbench::cases::solvers;
 use grainbench::harness::conformance::ALL;
@@ -8,7 +8,7 @@ use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
 use grainbench::scene::terms::{Order, Terms};
 
-/// Each property detects its own defect, and does not fail for every other defect.
+/// Each property detects its own flaw, and does not fail for all flaws.
 #[test]
 fn a_property_sees_its_own_flaw_and_not_every_other() {
     use grainbench::harness::conformance::{Flaw, FlawedSolver};
@@ -27,7 +27,7 @@ fn a_property_sees_its_own_flaw_and_not_every_other() {
     assert_eq!(red(Flaw::Irreproducible), ["rerun"]);
 }
 
-/// Two properties of the same name could be confused, and their controls too.
+/// If two results had the same name, they and their controls could be confused.
 #[test]
 fn every_row_has_a_name_of_its_own() {
     let solver = solvers::by_name("dem").unwrap();
@@ -36,7 +36,7 @@ fn every_row_has_a_name_of_its_own() {
     assert_eq!(names.len(), rows.len());
 }
 
-/// A claim that the runs do not confirm fails, and only this claim.
+/// A claimed order that the runs do not confirm makes the property `order` fail, and no other property.
 #[test]
 fn an_order_that_is_not_there_is_not_believed() {
     let solver = solvers::by_name("dem").unwrap();
@@ -59,6 +59,6 @@ fn a_solver_that_runs_nothing_does_not_pass() {
         }
     }
     let refused = grainbench::conform(&IdleSolver, &Terms::at(Resolution::TimeStep(1e-4))).require().unwrap_err();
-    assert!(refused.to_string().contains("no row passed"));
+    assert!(refused.to_string().contains("no result passed"));
     assert!(grainbench::judge(IdleSolver, &["backspin"]).unwrap().require().is_err());
 }

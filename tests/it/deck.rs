@@ -1,4 +1,4 @@
-//! Decks for external solvers: their contents, reasons of unsupported scenes, and files of the command line.
+//! Input decks for external programs: their contents, messages about unsupported scenes, and the files that the command writes.
 
 use crate::common::{files, grainbench};
 use grainbench::cases::registry::{CASES, by_name};
@@ -12,12 +12,12 @@ use grainbench::scene::solver::Resolution;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 
-/// Returns the files of a deck, one below the other.
+/// Returns the text of all files of a deck, one below another.
 fn shown(case: &str, variant: &str, program: Program) -> String {
     shown_of(case, variant, program, |_| {})
 }
 
-/// Returns the files of a deck for a changed scene.
+/// Returns the text of all files of the deck of a changed scene.
 fn shown_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
@@ -41,13 +41,13 @@ fn moving_walls_for_liggghts_are_meshes() {
     insta::assert_snapshot!(shown("nine-discs", "kappa-0", Program::LIGGGHTS));
 }
 
-/// A dashpot proportional to stiffness becomes one proportional to effective mass if all grains have the same mass.
+/// A dashpot proportional to stiffness is written as one proportional to effective mass, if all grains have the same mass.
 #[test]
 fn a_dashpot_of_another_kind_for_liggghts() {
     insta::assert_snapshot!(shown("collision", "beta-zeta.1", Program::LIGGGHTS));
 }
 
-/// Hertz contacts with and without a coefficient of restitution. LAMMPS has it in `granular`, LIGGGHTS with moduli.
+/// Hertz contacts with and without a coefficient of restitution. LAMMPS uses `granular`, and LIGGGHTS uses moduli.
 #[test]
 fn hertz_spheres() {
     for program in Program::ALL {
@@ -64,7 +64,7 @@ fn rolling_resistance() {
     }
 }
 
-/// Walls that first move and then rotate: formulas in LAMMPS, and intervals in LIGGGHTS, whose grains are spheres.
+/// Walls that first move and then rotate. LAMMPS gets formulas, and LIGGGHTS gets intervals; its grains are spheres.
 #[test]
 fn walls_that_turn() {
     for program in Program::ALL {
@@ -78,7 +78,7 @@ fn walls_that_turn() {
     }
 }
 
-/// Walls of finite extent: an oblique rotating wall in two dimensions, and an oblique moving wall in three.
+/// Walls of finite extent: an oblique rotating wall in two dimensions, and an oblique moving wall in three dimensions.
 #[test]
 fn walls_of_finite_extent_are_flat_blocks() {
     let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
@@ -99,7 +99,7 @@ fn walls_of_finite_extent_are_flat_blocks() {
     insta::assert_snapshot!(format!("{segment}\n{rectangle}"));
 }
 
-/// LAMMPS gets a sine and a ramp as formulas, and agrees with dem:lammps. LIGGGHTS gets intervals of constant velocity.
+/// LAMMPS gets a sine and a ramp as formulas, and agrees with `dem:lammps`. LIGGGHTS gets intervals of constant velocity.
 #[test]
 fn a_wall_that_moves_by_functions() {
     let (x, y) = (Vector3::x(), Vector3::y());
@@ -132,7 +132,7 @@ fn every_case_has_a_deck_or_a_reason() {
                         written += 1;
                     }
                     Err(DeckError::Unsupported { reason, .. }) => assert!(!reason.is_empty()),
-                    // Cases of rigid engines have their own steps.
+                    // Cases of rigid-body solvers have time steps that a deck cannot use.
                     Err(DeckError::Resolution(reason)) => assert!(!reason.is_empty()),
                 }
             }
@@ -143,7 +143,7 @@ fn every_case_has_a_deck_or_a_reason() {
     assert!(written > 30, "{written}");
 }
 
-/// Returns the reason why an external solver does not support a changed scene.
+/// Returns the message about a changed scene that an external program does not support.
 fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();
@@ -188,7 +188,7 @@ fn refusals_give_the_reason() {
     insta::assert_snapshot!(messages.join("\n"));
 }
 
-/// A title cannot become a command.
+/// The title of a scene must not become a command of the script.
 #[test]
 fn a_title_is_no_part_of_the_script() {
     let case = by_name("squash").unwrap();
@@ -218,7 +218,7 @@ fn the_command_leaves_a_whole_deck() {
     );
 }
 
-/// The first solver-independent claim has a resolution in grid cells, which gives no time step.
+/// The first solver-independent claim of this case has a resolution in grid cells, which is not a time step.
 #[test]
 fn an_exact_scene_is_stepped_in_time() {
     let directory = tempfile::tempdir().unwrap();
@@ -229,7 +229,7 @@ fn an_exact_scene_is_stepped_in_time() {
     assert!(script.contains("timestep"), "{script}");
 }
 
-/// A second deck replaces the first one, whose files belong to another scene.
+/// A second deck replaces the first one, because the files of the first deck belong to another scene.
 #[test]
 fn a_directory_holds_one_deck() {
     let directory = tempfile::tempdir().unwrap();

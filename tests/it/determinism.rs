@@ -1,4 +1,4 @@
-//! The same scene, solver and step give the same bits, on repetition and with other runs in parallel.
+//! The same scene, solver and time step give the same bits when a run is repeated, also while other runs are in progress.
 
 use crate::common::bits;
 use grainbench::cases::registry::CASES;
@@ -11,12 +11,12 @@ fn a_rerun_gives_the_same_bits() {
     CASES.par_iter().for_each(|case| {
         let variant = &case.variants().unwrap()[0];
         let mut scene = case.variant(variant).unwrap();
-        // Long runs are shortened, because bits differ at once or not at all.
+        // Long runs are shortened, because bits that differ do so from the beginning.
         if scene.grains.len() > 100 {
             scene.duration = grainbench::scene::scene::Duration::Cycles(200);
             scene.snapshots = 5;
         }
-        // For the slow method, only short scenes that were made for it.
+        // The material point method is slow, so it runs only short scenes of deformable grains.
         let deformable = ["incline-disc", "two-discs"].contains(&case.name);
         for solver in solvers::all().into_iter().filter(|solver| deformable || !solver.name().starts_with("mpm")) {
             let resolution = match solver.name().split(':').next() {
@@ -24,7 +24,7 @@ fn a_rerun_gives_the_same_bits() {
                 Some("mpm") => Resolution::grid(2.0, 2),
                 _ => Resolution::CriticalFraction(0.05),
             };
-            // A run that crashes must crash in the same way.
+            // If a run crashes, its repetition must crash in the same way.
             let run =
                 |threads| solver.run(&scene, &resolution, &mut RunOptions { threads, ..RunOptions::DEFAULT }).map(bits);
             let (first, second) = std::thread::scope(|scope| {
@@ -36,7 +36,7 @@ fn a_rerun_gives_the_same_bits() {
     });
 }
 
-/// Sixteen hundred discs that fall on one another and roll across a periodic boundary.
+/// 1600 discs that fall on each other and roll across a periodic boundary.
 const MANY: &str = "title = 't'\ndimension = 2\nduration = 2.0\ngravity = { magnitude = 9.8, slope_deg = 20.0 }\n\
                     domain = { low = [0.0, 0.0], high = [30.0, 60.0], periodic = [true, false] }\n\
                     materials.m = { density = 1000.0 }\n\
@@ -46,7 +46,7 @@ const MANY: &str = "title = 't'\ndimension = 2\nduration = 2.0\ngravity = { magn
                     [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
                     [probes]\nall.system = true\n";
 
-/// Two oscillating blocks, one fixed and one that falls onto a slope beside it, with the energy budget.
+/// Two oscillating blocks, one fixed and one that falls onto a slope, with the energy budget.
 const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_length = 1.0\ngravity = [0.5, -2.0]\n\
                       materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
                       contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3, \
@@ -57,8 +57,8 @@ const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_leng
                       [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -0.01], normal = [0.0, 1.0] }\n\
                       [probes]\nall.system = true\n";
 
-/// The number of threads has no effect on any output: series, snapshots, contacts and checkpoints. A run can be
-/// continued with another number of threads.
+/// The number of threads changes no output: series, snapshots, contacts and checkpoints. A run can continue from a
+/// checkpoint with another number of threads.
 #[test]
 fn threads_leave_no_trace() {
     for (scene, solver) in [(MANY, "dem"), (BLOCKS, "mpm"), (BLOCKS, "mpm:no-slip"), (BLOCKS, "mpm+usf")] {
@@ -87,7 +87,7 @@ fn threads_leave_no_trace() {
     }
 }
 
-/// Random discs on a slope with restitution under a rotating wall, and a neo-Hookean block.
+/// Random discs with restitution on a slope under a rotating wall, and a neo-Hookean block.
 const SCENES: [(&str, &str); 2] = [
     (
         "dem",
@@ -109,8 +109,8 @@ const SCENES: [(&str, &str); 2] = [
     ),
 ];
 
-/// The system library uses other functions if it may not use all features of the processor. Our solvers have their own
-/// functions, so nothing changes.
+/// The system library uses other functions if some features of the processor are masked. Our solvers have their own
+/// functions, so their results do not change.
 #[test]
 fn the_library_of_the_system_has_no_part_in_the_bits() {
     let directory = tempfile::tempdir().unwrap();

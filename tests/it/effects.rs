@@ -1,4 +1,4 @@
-//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result is the same.
+//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result does not change.
 
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
@@ -9,7 +9,7 @@ use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
 use grainbench::scene::solver::{Resolution, Solver};
 
-/// Adds an unused material, so that the selected kernels include friction and rolling resistance without an effect.
+/// Adds an unused material with friction and rolling resistance. The selected kernels then include both, but they have no effect.
 fn with_idle_friction(scene: &Scene) -> Scene {
     let mut scene = scene.clone();
     let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
@@ -41,8 +41,7 @@ fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
     same_without(&scene, Resolution::TimeStep(1e-4));
 }
 
-/// Checks that a frictionless scene has the same final state with the frictionless kernel and with ineffective
-/// friction.
+/// Checks that a frictionless scene has the same final state with the frictionless kernel and with friction that has no effect.
 fn same_without(scene: &Scene, resolution: Resolution) {
     let idle = with_idle_friction(scene);
     assert!(
@@ -54,7 +53,7 @@ fn same_without(scene: &Scene, resolution: Resolution) {
     let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
     assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));
     for (a, b) in without.grains.iter().zip(&with.grains) {
-        // Equality of numbers is equality of bits except for the sign of zero.
+        // Equal numbers have equal bits, except for the sign of zero.
         assert!(a.position == b.position && a.velocity == b.velocity && a.force == b.force, "grain {}", a.id);
     }
 }

@@ -1,4 +1,4 @@
-//! Grains as a continuum on the command line: for our runs, for dumps of external solvers, and for invalid files.
+//! Continuum fields on the command line, from our runs, from dumps of external programs, and from invalid files.
 
 use crate::common::grainbench;
 use grainbench::cases::solvers;
@@ -12,7 +12,7 @@ use grainbench::scene::source::SceneSource;
 use std::fmt::Write;
 use std::path::Path;
 
-/// Scene of spheres that are dropped into a box without a lid and come to rest.
+/// Scene of spheres that fall into a box without a lid and come to rest.
 const SCENE: &str = r#"title = "Spheres in a box"
 dimension = 3
 duration = 20.0
@@ -56,7 +56,7 @@ every = 5.0
 snapshots = 3
 "#;
 
-/// Returns the packing at rest.
+/// Returns the snapshot of the packing at rest.
 fn packing() -> Snapshot {
     let source = SceneSource::from_text("packing", Path::new(""), SCENE);
     let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
@@ -65,9 +65,9 @@ fn packing() -> Snapshot {
     record.snapshots.into_iter().next_back().unwrap()
 }
 
-/// At rest, ΣF = −m g. The sum of lever arm ⊗ force over contacts between grains is Σ_walls x_c ⊗ F − Σ_grains x ⊗ ΣF.
-/// Both sides are measured independently. A wall's lever arm is R − δ/2; with R, the identity would be wrong by δ/2 at
-/// each wall contact.
+/// At rest, the contact forces on a grain sum to ΣF = −m g. The sum of lever arm ⊗ force over contacts between grains
+/// is therefore Σ_walls x_c ⊗ F − Σ_grains x ⊗ ΣF. Both sides are computed independently. The lever arm at a wall is R
+/// − δ/2 with the overlap δ. With the lever arm R, the identity would be wrong by δ/2 at each wall contact.
 #[test]
 fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     let packing = packing();
@@ -84,7 +84,7 @@ fn the_stress_of_a_packing_at_rest_carries_its_weight() {
         packing.grains.iter().map(|grain| grain.position * grain.force.unwrap().transpose()).sum();
     let exact = outer - of_grains;
     assert!((inner - exact).norm() < 1e-12 * exact.norm(), "{inner} {exact}");
-    // With the lever arm R at the wall, the identity is wrong.
+    // Control: with the lever arm R at walls, the identity is wrong.
     assert!((inner - (shifted - of_grains)).norm() > 1e-5 * exact.norm());
     // At rest: Σ Δz F_z = −Σ m g z + Σ_walls z F_z.
     let weight: f64 = packing.grains.iter().map(|grain| -10.0 * grain.mass * grain.position.z).sum();
@@ -93,7 +93,7 @@ fn the_stress_of_a_packing_at_rest_carries_its_weight() {
     assert!(weight < -1000.0);
 }
 
-/// Returns a dump of the grains as another program writes it, with another order of columns.
+/// Returns a dump of the grains in the form of another program, with the columns in another order.
 fn dump(packing: &Snapshot) -> String {
     let mut text = String::new();
     let (low, high) = packing.bounds;
@@ -108,7 +108,7 @@ fn dump(packing: &Snapshot) -> String {
     text
 }
 
-/// Returns a dump of its contacts with separate normal and tangential parts. Each pair is given from the second grain.
+/// Returns a dump of the contacts with separate normal and tangential parts. Forces are given for the second grain of each pair.
 fn contacts(packing: &Snapshot) -> String {
     let between: Vec<_> =
         packing.told_contacts().iter().filter(|contact| matches!(contact.partner, Partner::Grain(_))).collect();
@@ -124,7 +124,6 @@ fn contacts(packing: &Snapshot) -> String {
 
 const MAP: &str = "id1=a,id2=b,force_x=nx,force_y=ny,force_z=nz,tangential_x=tx,tangential_y=ty,tangential_z=tz";
 
-/// Returns the values of a column of a table.
 fn column(folder: &Path, file: &str, name: &str) -> Vec<Option<f64>> {
     let mut table = csv::Reader::from_path(folder.join(file)).unwrap();
     let at = table.headers().unwrap().iter().position(|head| head == name).unwrap_or_else(|| panic!("no {name}"));
@@ -145,7 +144,7 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
     assert!(untold.out.contains("No contacts were recorded, so there is no stress."), "{}", untold.out);
 
-    // Result of the library without wall contacts, which this dump does not contain.
+    // Expected values: the fields from the library without wall contacts, which the dump does not contain.
     let mut alone = packing;
     alone.contacts.as_mut().unwrap().retain(|contact| matches!(contact.partner, Partner::Grain(_)));
     let grid = Grid::filling(alone.bounds, Vector3::new(1.25, 2.5, 1.25));
@@ -172,14 +171,14 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     }
     same("told", "stress_zz (Pa)", &|cell| exact[cell].stress.map(|stress| stress.m33));
     same("told", "sine_of_friction (1)", &|cell| exact[cell].sine_of_friction());
-    // Stress without data is missing, and never zero.
+    // If the contacts are unknown, the stress is missing and not zero.
     same("untold", "stress_zz (Pa)", &|_| None);
     same("untold", "pressure (Pa)", &|_| None);
     let image = std::fs::read_to_string(path.join("untold/elements/elements-000000.vti")).unwrap();
     assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "an undefined pressure is written as NaN");
 }
 
-/// For a dump without velocities and times, packing and stress are known, but no motion. Its time is the step.
+/// A dump without velocities and times gives packing fraction and stress, but no motion. Its step number serves as time.
 #[test]
 fn what_a_dump_does_not_tell_is_nowhere() {
     let directory = tempfile::tempdir().unwrap();
@@ -220,14 +219,14 @@ fn a_run_of_ours_becomes_tables_images_films_and_trails() {
     assert_eq!(column(&path.join("seen"), "means.csv", "x (m)").len(), 4 * 8);
     let strains = column(&path.join("seen"), "tracers.csv", "hencky_strain (1)");
     assert!(strains.iter().flatten().any(|&strain| strain > 0.05) && strains[0].is_some_and(|strain| strain < 1e-12));
-    // Repeating the command gives the same file.
+    // A repeated command writes the same file.
     let again = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "again"];
     grainbench(path, &again);
     let bytes = |folder: &str| std::fs::read(path.join(folder).join("elements.csv")).unwrap();
     assert!(bytes("seen") == bytes("again"));
 }
 
-/// Grains outside the cells are counted and reported. A radius that the file lacks can be given as an option.
+/// Grains outside the cells are counted and reported. An option gives the radius if the file lacks it.
 #[test]
 fn grains_outside_are_counted() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,15 +1,15 @@
-//! Claims that start from third-party data: with the data, without it, and with wrong data.
+//! Claims with an initial state from third-party data: with the data, without the data, and with wrong data.
 
 use crate::common::grainbench;
 use serde_json::Value;
 use std::path::Path;
 
-/// Claims that start from the published start of the drum.
+/// Command for the claims that use the published initial state of the drum.
 const ROWS: [&str; 4] = ["run", "drum-mixing", "--filter", "quantity=zone 2"];
-/// Claims that start from the shared beds of the impact.
+/// Command for the claims that use the shared beds of the impact.
 const BEDS: [&str; 6] = ["run", "impact-bed", "--filter", "quantity=the shared bed", "--levels", "all"];
 
-/// Returns outcome and text of each result of a report.
+/// Returns the outcome and the text of each result of a report.
 fn rows(directory: &Path) -> Vec<(String, String)> {
     let results = std::fs::read_to_string(directory.join("grainbench-out/results.json")).unwrap();
     let results: Value = serde_json::from_str(&results).unwrap();
@@ -21,7 +21,7 @@ fn rows(directory: &Path) -> Vec<(String, String)> {
 fn without_it_rows_say_where_it_is_to_be_had() {
     let directory = tempfile::tempdir().unwrap();
     let answer = grainbench(directory.path(), &ROWS);
-    // No claim has a verdict.
+    // Without the data, no claim is judged.
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let rows = rows(directory.path());
     assert_eq!(rows.len(), 7);
@@ -31,7 +31,7 @@ fn without_it_rows_say_where_it_is_to_be_had() {
     }
 }
 
-/// The stored result belongs to the published start and is not used for another start.
+/// The stored result belongs to the published initial state, and is not used for another initial state.
 #[test]
 fn another_start_is_told_from_the_published_one() {
     let directory = tempfile::tempdir().unwrap();
@@ -44,7 +44,7 @@ fn another_start_is_told_from_the_published_one() {
     assert!(rows.len() == 7 && rows.iter().all(|(outcome, _)| outcome == "stale"), "{rows:?}");
 }
 
-/// Without the beds nothing is run, not even the figures of the case, which would take minutes.
+/// Without the beds, nothing is run. The figures of the case, which take minutes, are not run either.
 #[test]
 fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     let directory = tempfile::tempdir().unwrap();
@@ -55,7 +55,7 @@ fn without_the_shared_beds_rows_say_where_they_are_to_be_had() {
     assert!(rows.len() == 3 && rows.iter().all(is_announced), "{rows:?}");
 }
 
-/// If one start is given, claims with another start are not available, and their controls do not run.
+/// If only one initial state is given, claims with another initial state are not available, and their controls do not run.
 #[test]
 fn rows_of_one_start_do_not_ask_for_another() {
     let directory = tempfile::tempdir().unwrap();
@@ -66,7 +66,7 @@ fn rows_of_one_start_do_not_ask_for_another() {
     let answer = grainbench(path, &[&BEDS[..], &drum].concat());
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     let outcomes: Vec<String> = rows(path).into_iter().map(|(outcome, _)| outcome).collect();
-    // Two grains are not thirty thousand.
+    // The file has two grains instead of thirty thousand.
     assert_eq!(outcomes, ["fail", "not-available", "not-available", "not-available"]);
     let results = std::fs::read_to_string(path.join("grainbench-out/results.json")).unwrap();
     let results: Value = serde_json::from_str(&results).unwrap();

@@ -1,9 +1,9 @@
 //! Test of the guide: its commands run, its scenes are simulated, and its links are valid.
 //!
-//! `UPDATE_README=1 cargo test --release --test it guide` rewrites its tables. A `console` block is a dialogue in
-//! `guide/scenes`, run by the shell. The output of a command must contain the shown lines, with `…` for varying text.
-//! The exit code is 0, or `N` with `# exit N`. `<!-- needs lmp -->` before a block names programs without which the
-//! block is skipped (never if `CI` is set).
+//! `UPDATE_README=1 cargo test --release --test it guide` writes its tables again. A `console` block is a dialogue that
+//! the shell runs in `guide/scenes`. The output of a command must contain the lines that the block shows, with `…` for
+//! varying text. The exit code must be 0, or `N` after `# exit N`. `<!-- needs lmp -->` before a block names programs;
+//! without them the block is skipped, except if `CI` is set.
 
 mod dialogue;
 mod pages;
@@ -19,7 +19,7 @@ use std::collections::BTreeMap;
 use std::fmt::Write as _;
 use std::fs;
 
-/// Runs the dialogues of a chapter in order, in a separate folder, and returns the failed ones.
+/// Runs the dialogues of a chapter in order in a separate folder, and returns descriptions of those that failed.
 fn lost_dialogues(chapter: &Chapter) -> Vec<String> {
     let place = Place::new();
     let mut lost = Vec::new();
@@ -48,7 +48,7 @@ fn commands_answer_what_the_guide_shows() {
     assert!(lost.is_empty(), "{}", lost.join("\n\n"));
 }
 
-/// Rejects a guide with wrong output: another number, another exit code, a missing line, another order.
+/// Dialogues with wrong output fail: another number, another exit code, a missing line, or another order.
 #[test]
 fn a_wrong_dialogue_is_refused() {
     let place = Place::new();
@@ -87,7 +87,7 @@ fn shown_lines_hold_as_they_are_written() {
     assert!(hold("a …, …c", "a 1, b, c") && !hold("a …, …c", "a 1, b, cd") && !hold("ab", "a") && !hold("…b…", "a"));
 }
 
-/// Checks that each file in some folders of the guide is in a chapter, and that each scene is simulated there.
+/// Each file in these folders of the guide is shown in a chapter, and each scene is simulated there.
 #[test]
 fn every_scene_is_in_a_chapter_that_runs_it() {
     let chapters = chapters();
@@ -116,7 +116,7 @@ fn links_and_includes_lead_somewhere() {
     assert!(lost_links(&longer).iter().any(|lost| lost.contains("unknown.md")), "a chapter that SUMMARY.md lacks");
 }
 
-/// Returns the table of limitations of each case.
+/// Returns a table with the limitations of each case.
 fn weak_table() -> String {
     let mut table = "| case | title | limitations |\n|---|---|---|\n".to_owned();
     for case in CASES {
@@ -125,7 +125,7 @@ fn weak_table() -> String {
     table
 }
 
-/// Returns the table of known deviations of solvers from the claims, which are amber as long as they exist.
+/// Returns a table of the known errors of solvers. Their results are amber as long as the errors exist.
 fn known_table() -> String {
     let mut known: BTreeMap<(&str, &str), Vec<String>> = BTreeMap::new();
     for case in CASES {
@@ -148,7 +148,7 @@ fn known_table() -> String {
     table
 }
 
-/// Returns a text for a table cell.
+/// Returns a text on one line, for a table cell.
 fn one_line(text: &str) -> String {
     text.split_whitespace().collect::<Vec<_>>().join(" ").replace('|', "\\|")
 }
@@ -163,7 +163,7 @@ fn tables_are_generated() {
     }
 }
 
-/// The guide explains each outcome and each kind of evidence.
+/// The guide explains every outcome and every kind of evidence.
 #[test]
 fn the_words_of_a_row_are_explained() {
     let numbers = fs::read_to_string(root("guide/src/numbers.md")).unwrap();
@@ -184,7 +184,7 @@ fn the_words_of_a_row_are_explained() {
     }
 }
 
-/// Chapters show files as they are, also where includes are not expanded.
+/// Chapters contain the present text of the files that they show, also for readers that do not expand includes.
 #[test]
 fn chapters_show_their_files() {
     for chapter in chapters() {

@@ -1,5 +1,5 @@
-//! Scenes that once hung, panicked, filled the memory or gave non-finite numbers with exit code 0. Each must give an
-//! error with the reason, or run. `tests/refusals/hostile-scenes.toml` has others.
+//! Scenes that once hung, panicked, exhausted the memory, or gave non-finite numbers with exit code 0. Each must give
+//! an error with a reason, or run. Further scenes are in `tests/refusals/hostile-scenes.toml`.
 
 use crate::common::grainbench;
 use std::fs;
@@ -7,7 +7,7 @@ use std::fs;
 const ELASTIC: &str = include_str!("../scenes/elastic.toml");
 const RIGID: &str = include_str!("../scenes/disc.toml");
 
-/// Returns exit code and messages for a scene with appended text and further arguments.
+/// Returns the exit code and the messages of a simulation of a scene. `more` extends the scene, and `arguments` the command.
 fn simulated(scene: &str, more: &str, arguments: &[&str]) -> (i32, String) {
     let directory = tempfile::tempdir().unwrap();
     fs::write(directory.path().join("s.toml"), format!("{scene}{more}")).unwrap();
@@ -15,7 +15,7 @@ fn simulated(scene: &str, more: &str, arguments: &[&str]) -> (i32, String) {
     (answer.code.unwrap(), answer.err)
 }
 
-/// Words and lists of a scene are shortened in messages.
+/// Messages shorten long words and lists of a scene.
 #[test]
 fn long_values_are_quoted_in_short() {
     for (from, to) in [
@@ -28,7 +28,7 @@ fn long_values_are_quoted_in_short() {
     }
 }
 
-/// Each of these scenes is next to one that `tests/refusals/hostile-scenes.toml` refuses.
+/// Each of these scenes differs slightly from one that `tests/refusals/hostile-scenes.toml` rejects.
 #[test]
 fn what_is_barely_possible_runs() {
     let bar = "[bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [10.0, 1.0] }\nfixed = ['x-low']\n\
@@ -45,7 +45,7 @@ fn what_is_barely_possible_runs() {
     }
 }
 
-/// A plane on a line of the grid.
+/// A wall plane that coincides with a line of the grid.
 #[test]
 fn contact_on_a_line_of_the_grid_runs() {
     let (code, message) = simulated(
@@ -57,7 +57,7 @@ fn contact_on_a_line_of_the_grid_runs() {
     assert_eq!(code, 0, "{message}");
 }
 
-/// A record of bodies without grains once had no bounds and could not be read back.
+/// A record with bodies but without grains once had no bounds and could not be read.
 #[test]
 fn a_record_of_bodies_alone_is_read_back() {
     let directory = tempfile::tempdir().unwrap();
@@ -71,7 +71,7 @@ fn a_record_of_bodies_alone_is_read_back() {
     assert!(record.contains("\"bounds\":[[0.0,0.0,-0.5],[1.0,0.5,0.5]]"), "{record}");
 }
 
-/// Terminal control characters are escaped in the output.
+/// Terminal control characters in a title are escaped in the output.
 #[test]
 fn titles_do_not_steer_a_terminal() {
     let directory = tempfile::tempdir().unwrap();
@@ -92,7 +92,7 @@ fn thousands_of_overrides_are_refused() {
     assert!(answer.code == Some(2) && answer.err.contains("at most 1000 keys, found 1001"), "{}", answer.err);
 }
 
-/// A library of unused materials costs nothing. The table of pairs of used materials is limited.
+/// Unused materials cost nothing. Only the number of pairs of used materials is limited.
 #[test]
 fn thousands_of_materials_that_nothing_is_made_of_cost_nothing() {
     let library: String = (0..3000).map(|number| format!("[materials.m{number}]\ndensity = 1.0\n")).collect();
@@ -108,5 +108,5 @@ fn thousands_of_materials_that_nothing_is_made_of_cost_nothing() {
         .collect();
     let (code, message) = simulated(RIGID, &(library + &walls), &["dem"]);
     assert_eq!(code, 2, "{message}");
-    assert!(message.contains("at most 1000 materials that something is made of"), "{message}");
+    assert!(message.contains("at most 1000 materials that are in use"), "{message}");
 }

@@ -1,4 +1,4 @@
-//! Snapshots that no reader wants row by row are reduced to a summary and need no memory.
+//! Snapshots that need not be stored are reduced to a summary and use no memory.
 
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
@@ -9,7 +9,7 @@ use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Discs on a floor that overlap, slip and rotate, with a group with prescribed motion on top.
+/// Discs on a floor that overlap, slip and rotate. A group on top has prescribed motion.
 const DISCS: &str = "title = 'discs'\ndimension = 2\nduration_cycles = 60\ngravity = [0.0, -9.81]\n\
     largest_initial_overlap = 0.1\n\
     materials.m.density = 2500.0\n\
@@ -44,7 +44,7 @@ fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, R
     (record.series, observer)
 }
 
-/// The summary equals that of the snapshot, with and without probes, and the series has the same bits.
+/// A summary equals the one computed from the whole snapshot, with and without probes. The series has the same bits.
 #[test]
 fn what_is_told_in_short_is_what_the_snapshot_tells() {
     for (solver, scene) in [("dem", DISCS), ("mpm", SOFT)] {
@@ -71,7 +71,7 @@ fn what_is_told_in_short_is_what_the_snapshot_tells() {
     assert!(taken("dem", DISCS, 20, 1).1.briefs.iter().any(|(brief, _)| slipping(brief)), "some slip and some do not");
 }
 
-/// Grains that are close but not in contact give no rows, not even at the start.
+/// Grains that are close but not in contact give no contact rows, not even at the start.
 #[test]
 fn what_is_near_and_does_not_touch_is_no_row() {
     let apart = "title = 'apart'\ndimension = 2\nduration_cycles = 6\nmaterials.m.density = 2500.0\n\
@@ -84,7 +84,7 @@ fn what_is_near_and_does_not_touch_is_no_row() {
     assert_eq!((none.snapshots.len(), none.briefs.len()), (0, 2));
 }
 
-/// A large run that crashes leaves its last state, although it would only have left a summary.
+/// A large run that crashes stores its last state, although it would otherwise have stored only a summary.
 #[test]
 fn the_last_state_of_a_large_run_that_breaks_is_kept() {
     let directory = tempfile::tempdir().unwrap();
@@ -100,15 +100,15 @@ fn the_last_state_of_a_large_run_that_breaks_is_kept() {
     assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
 }
 
-/// Returns the memory (B) of a run of the command.
+/// Returns the largest memory of a run of the program (bytes).
 #[cfg(target_os = "linux")]
 fn memory(path: &Path, arguments: &[&str]) -> f64 {
     let arguments = [arguments, &["--threads", "1", "--out", "out"]].concat();
     1000.0 * crate::common::peak_memory(path, &arguments) as f64
 }
 
-/// In `simulate`, a grain with three contacts takes at most 700 B, and a material point 350 B (difference between two
-/// sizes).
+/// In `simulate`, a grain with three contacts takes at most 700 bytes, and a material point at most 350 bytes. Both
+/// follow from the difference between two sizes.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {

@@ -1,4 +1,4 @@
-//! Stored studies of cost, stability and effects for the first screen of a page.
+//! Stored studies of cost, stability and effects, which the first screen of a page shows.
 
 use grainbench::cases::kept::{Provenance, cases};
 use grainbench::kept::{measured, sources};
@@ -12,7 +12,7 @@ fn study(name: &str) -> Study {
     serde_json::from_str(&std::fs::read_to_string(place(name)).unwrap()).unwrap()
 }
 
-/// The source tree of each stored number must be available to a reader.
+/// A reader must be able to get the source tree of each stored study.
 #[test]
 fn what_is_kept_says_of_which_sources_it_is() {
     for name in ["cost", "stability", "effects"] {
@@ -26,7 +26,7 @@ fn what_is_kept_says_of_which_sources_it_is() {
     }
 }
 
-/// Old measurements are marked, whichever solver has changed: another hash never counts as the same.
+/// A stored measurement is marked as old if the hash of a solver's sources differs from the stored one.
 #[test]
 fn a_solver_that_changed_is_told() {
     let measured = measured().unwrap();
@@ -41,7 +41,7 @@ fn a_solver_that_changed_is_told() {
     assert!(cost.lines.iter().any(|line| line.solver == "mpm" && line.factors[1].is_some()));
 }
 
-/// Each stored result names a commit in the history of the repository, so that a reader can build its source.
+/// Each stored result names a commit in the history of the repository, so that a reader can build this version.
 #[test]
 fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
     let mut commits: BTreeMap<String, Vec<String>> = BTreeMap::new();
@@ -61,7 +61,7 @@ fn what_is_kept_of_runs_was_made_by_commits_of_this_history() {
             Command::new("git").arg("-C").arg(root).args(["merge-base", "--is-ancestor", commit, "HEAD"]).output();
         asked.is_ok_and(|answer| answer.status.success())
     };
-    // A package, or a copy with another history, knows none of the commits; a shallow copy may lack some.
+    // A package, or a copy with another history, contains none of the commits. A shallow copy may lack some.
     let is_whole = !root.join(".git/shallow").exists();
     let has_history = is_whole && commits.keys().any(|commit| is_hash(commit) && is_there(commit));
     for (commit, results) in &commits {

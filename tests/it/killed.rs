@@ -1,6 +1,6 @@
-//! A process killed at any time. Its directory is unchanged, complete with the new files, or marked as mixed. Temporary
-//! files beside it disappear with the next run. The default is ten kills; `GRAINBENCH_LONG` gives a hundred and twenty.
-//! The unit tests of `reports/src/staged.rs` interrupt each disk operation of a commit in turn.
+//! A process that is killed at a random time. Afterwards its directory is unchanged, complete with the new files, or
+//! marked as mixed. The next run removes temporary files beside it. The default is ten kills, and `GRAINBENCH_LONG`
+//! gives 120 kills. The unit tests of `store/src/staged.rs` interrupt each disk operation of a commit in turn.
 
 use crate::common::{files, grainbench};
 use grainbench::store::refuse_mixed;
@@ -12,21 +12,21 @@ use std::path::Path;
 use std::process::Stdio;
 use std::time::{Duration, Instant};
 
-/// Scene of discs in a row with many snapshots, so that a run leaves many files.
+/// Scene of discs in a row with many snapshots, so that a run writes many files.
 const SCENE: &str = "title = 't'\ndimension = 2\nduration_cycles = 4000\n[materials.m]\ndensity = 1000.0\n\
      [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
      [grains.a]\nmaterial = 'm'\nradius = 0.1\nvelocity = [1.0, 0.0]\n\
      lattice = { origin = [0.0, 0.0], spacing = [0.25, 0.25], count = [8, 4] }\n\
      [output]\nsnapshots = 60\n[probes]\nall = { system = true }\n[variants.shorter]\noutput.snapshots = 40\n";
 
-/// Two runs with different output files, as words of the command line.
+/// Two runs that write different files. Each run is given by its command line.
 struct Pair {
     runs: [&'static [&'static str]; 2],
-    /// Function that identifies the run of a file, independent of the times in it.
+    /// Function that identifies the run that wrote a file, whatever times the file contains.
     kind: fn(&Path, &str) -> String,
 }
 
-/// Returns a hash of a simulation's file without its run time.
+/// Returns the length and a hash of a file of a simulation, without its run time.
 fn simulated(directory: &Path, name: &str) -> String {
     let text = fs::read_to_string(directory.join(name)).unwrap();
     let mut parts = text.split("\"wall_seconds\":");
@@ -36,13 +36,13 @@ fn simulated(directory: &Path, name: &str) -> String {
     format!("{} bytes, {:?}", text.len(), text.bytes().fold(0_u64, |sum, byte| sum.wrapping_mul(31) + u64::from(byte)))
 }
 
-/// Returns the cases that a file of a report mentions.
+/// Returns the names of the cases that a file of a report contains.
 fn reported(directory: &Path, name: &str) -> String {
     let text = fs::read_to_string(directory.join(name)).unwrap();
     let case_name = |case: &str| text.contains(case).then(|| case.to_owned());
     let named =
         ["rolling-resistance", "oblique-impact"].into_iter().filter_map(case_name).collect::<Vec<_>>().join(" ");
-    // Figures mention their case only in their file name.
+    // Figures contain the name of their case only in their file name.
     if name.starts_with("figures") || named.is_empty() { name.to_owned() } else { named }
 }
 
@@ -58,7 +58,7 @@ const RUN: Pair = Pair {
     kind: reported,
 };
 
-/// Returns the files of a directory with their runs, without hidden files and the manifest.
+/// Returns the files of a directory with the runs that wrote them. Hidden files and the manifest are left out.
 fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<String, String> {
     if !directory.exists() {
         return BTreeMap::new();
@@ -67,7 +67,7 @@ fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<Strin
     names.map(|name| (name.clone(), kind(directory, &name))).collect()
 }
 
-/// Kills one run after the other, each at a random time, and continues in the same directory.
+/// Starts runs in the same directory one after another, and kills each at a random time.
 fn kill(pair: &Pair, times: usize, seed: u64) {
     let directory = tempfile::tempdir().unwrap();
     let (path, out) = (directory.path(), directory.path().join("out"));
@@ -87,9 +87,9 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
     let mut lot = TestRunner::new_with_rng(Config::default(), lot);
     let mut seen = [0; 4];
     let (mut number, mut killed) = (0, 0);
-    // A process that had ended already does not count as killed.
+    // A process that has already ended does not count as killed.
     while killed < times {
-        // Every third time the directory does not exist before.
+        // Before every third run, the directory is removed.
         if number % 3 == 0 && out.exists() {
             fs::remove_dir_all(&out).unwrap();
         }
@@ -103,12 +103,12 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
             .stderr(Stdio::null())
             .spawn()
             .unwrap();
-        // Half of the times are near the end, when files are moved into place.
+        // In every second run, the time is near the end, when files are moved to the directory.
         let part = (0.0..1.0_f64).new_tree(&mut lot).unwrap().current();
         let part = if number % 2 == 0 { part } else { 1.0 - 0.3 * part };
         std::thread::sleep(longest.mul_f64(part));
         let ended = child.try_wait().unwrap().is_some();
-        // SIGKILL cannot be caught.
+        // A process cannot catch SIGKILL.
         child.kill().unwrap();
         child.wait().unwrap();
         let after = standing(&out, pair.kind);

@@ -1,4 +1,4 @@
-//! Integration tests, in one program: what the command line does, and rules for the whole repository.
+//! Integration tests in one program: behaviour of the command line, and rules for the whole repository.
 
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 

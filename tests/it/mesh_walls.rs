@@ -1,4 +1,4 @@
-//! Walls of triangles. They give the same results as other walls of the same surface, also with motion and with
+//! Walls of triangles. They give the same results as other walls with the same surface, also with motion and with
 //! inserted and removed grains. Invalid files are rejected.
 
 use crate::common::bits;
@@ -27,14 +27,14 @@ fn stl(triangles: &[Triangle]) -> String {
     text + "endsolid test\n"
 }
 
-/// Returns a box between two corners, with outward normals.
+/// Returns the triangles of a box with outward normals.
 fn block(low: [f64; 3], high: [f64; 3]) -> Vec<Triangle> {
     let corner = |bits: usize| [0, 1, 2].map(|axis| if bits >> axis & 1 == 1 { high[axis] } else { low[axis] });
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
     sides.iter().flat_map(|&[a, b, c, d]| [[a, b, c].map(corner), [a, c, d].map(corner)]).collect()
 }
 
-/// Returns a rectangle in the plane z = 0, as `count` strips of two triangles.
+/// Returns the triangles of a rectangle in the plane z = 0: `count` strips of two triangles each.
 fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
     let at = |strip: u32, y: f64| [low[0] + (high[0] - low[0]) * f64::from(strip) / f64::from(count), y, 0.0];
     (0..count)
@@ -46,7 +46,7 @@ fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
         .collect()
 }
 
-/// Spheres above one another in a box of 2 m, some in contact with its edges and corners.
+/// Spheres above each other in a box with sides of 2 m. Some are in contact with edges and corners of the box.
 const GRAINS: &str = r#"title = "Walls of triangles"
 dimension = 3
 duration = 0.3
@@ -78,14 +78,14 @@ fn run(scene: &Scene, observer: &mut dyn Observer) -> Record {
     solver.run(scene, &STEP, observer).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the largest distance between the same grains at the end (m).
+/// Returns the largest distance between equal grains of two runs at the end (m).
 fn apart(one: &Record, other: &Record) -> f64 {
     let [one, other] = [one, other].map(|record| &record.snapshots.last().unwrap().grains);
     assert_eq!(one.len(), other.len());
     one.iter().zip(other).map(|(a, b)| (a.position - b.position).norm()).fold(0.0, f64::max)
 }
 
-/// In a box of twelve triangles, grains move as between six planes.
+/// In a box of twelve triangles, grains move as in a box of six planes.
 #[test]
 fn a_box_of_triangles_is_a_box_of_planes() {
     let mesh = "walls.box = { material = 'm', mesh = { file = 'wall.stl', unit = 'm' } }\n";
@@ -106,12 +106,12 @@ fn a_box_of_triangles_is_a_box_of_planes() {
     let touching = contacts(&record);
     assert!(touching > 20 && touching == contacts(&as_planes), "{touching}");
     assert!(apart(&record, &as_planes) < 1e-9, "{}", apart(&record, &as_planes));
-    // A slightly different stiffness gives a visible difference.
+    // Control: a slightly different stiffness gives a visible difference.
     ours.change_laws(|law| law.scale_normal(1.0 + 1e-6));
     assert!(apart(&run(&ours, &mut ()), &as_planes) > 1e-9);
 }
 
-/// A plate of triangles with rotation and translation moves grains as a rectangle does.
+/// A translating and rotating plate of triangles moves grains as a rectangle does.
 #[test]
 fn a_plate_of_triangles_moves_as_a_rectangle() {
     let motion = "motion = [{ velocity = [0.3, 0.0, 0.2], spin = [0.0, 0.0, 1.5], centre = [0.2, 0.1, 0.0] }]";
@@ -129,8 +129,9 @@ fn a_plate_of_triangles_moves_as_a_rectangle() {
     assert!(forces[0].norm() > 1.0 && (forces[0] - forces[1]).norm() < 1e-6 * forces[0].norm());
 }
 
-/// A sphere that is moved over the ridge of two plates at 179° keeps its tangential spring, because the contact continues
-/// from plate to ridge to plate. Its force is k_t v t, up to the fraction 1 − cos ½° by the slope of the plates.
+/// A sphere is moved over the ridge between two plates at 179°. It keeps its tangential spring, because the contact
+/// continues from plate to ridge to plate. The tangential force is k_t v t, with a relative error of 1 − cos ½° due to
+/// the slope of the plates.
 #[test]
 fn a_spring_goes_on_over_a_ridge() {
     let slope = 0.5_f64.to_radians();
@@ -156,13 +157,13 @@ walls.roof = { material = "m", mesh = { file = "wall.stl", unit = "m", open = tr
     }
 }
 
-/// Returns a rotating funnel of triangles. Grains fall through it and are removed below.
+/// Returns a scene with a rotating funnel of triangles. Grains fall through it and are removed below.
 fn funnel() -> Scene {
     let rim = |part: u32, radius: f64, z: f64| {
         let (sine, cosine) = (f64::from(part) * std::f64::consts::TAU / 16.0).sin_cos();
         [radius * cosine, radius * sine, z]
     };
-    // The last part ends exactly where the first begins, in all bits.
+    // The last part ends exactly where the first part begins, to the bit.
     let triangles: Vec<Triangle> = (0..16)
         .flat_map(|part| {
             let next = (part + 1) % 16;
@@ -198,7 +199,7 @@ fn threads_and_restarts_change_no_bit() {
     }
 }
 
-/// Returns a file in binary form.
+/// Returns triangles as a binary STL file.
 fn binary(triangles: &[Triangle]) -> Vec<u8> {
     let mut bytes = vec![0; 80];
     bytes.extend((triangles.len() as u32).to_le_bytes());
@@ -210,8 +211,8 @@ fn binary(triangles: &[Triangle]) -> Vec<u8> {
     bytes
 }
 
-/// Valid files: in millimetres, with slightly different corners, binary, turned over where that is declared, and open.
-/// `tests/refusals/meshes.toml` has the invalid ones.
+/// Valid files: in millimetres, with slightly different corners, binary, turned inside out if this is declared, and
+/// open. Invalid files are in `tests/refusals/meshes.toml`.
 #[test]
 fn valid_files_are_read() {
     let cube = block([-1.0; 3], [1.0; 3]);

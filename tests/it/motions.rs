@@ -1,20 +1,20 @@
-//! Walls with prescribed functions of time in each solver: a disc on an evenly accelerated belt rolls without slip.
+//! Walls whose motion is a function of time, in each solver. A disc on a uniformly accelerated belt rolls without slip.
 //!
-//! Only friction at the lowest point acts along the belt: m a = F and I α = F R with I = m R²/2, and the lowest point
-//! moves with the belt. The disc therefore has a third of the belt's velocity and displacement, as long as F = m A/3 is
-//! below μ m g.
+//! Only friction at the lowest point acts along the belt, so m a = F and I α = F R with I = m R²/2. The lowest point
+//! moves with the belt. Velocity and displacement of the disc are therefore a third of those of the belt, as long as F
+//! = m A/3 is below μ m g. A is the acceleration of the belt.
 
 use grainbench::cases::solvers;
 use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Final velocity of the belt (m/s), time to reach it (s), and duration of the run (s).
+/// Final velocity of the belt (m/s).
 const SPEED: f64 = 1.0;
-const RISING: f64 = 0.4;
-const END: f64 = 0.6;
+const RISING: f64 = 0.4; // time until the belt has its final velocity (s)
+const END: f64 = 0.6; // duration of the run (s)
 
-/// Returns the displacement of the disc (m).
+/// Returns the displacement of the disc at the end (m).
 fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
     let text = format!(
         "title = 'Drawn off'\ndimension = 2\ngravity = [0.0, -9.8]\nduration = {END:?}\n\
@@ -42,8 +42,8 @@ fn a_disc_rolls_on_a_belt_that_is_drawn_off_evenly() {
     });
     let table = format!("{{ table = [{}] }}", rows.collect::<Vec<_>>().join(", "));
     let at_once = format!("{{ velocity = [{SPEED:?}, 0.0] }}");
-    // The grid has a larger error of rolling (`incline-disc`), but its results with a table and with its function
-    // agree.
+    // The grid method has a larger error in rolling (see `incline-disc`), but its results with a table and with the
+    // function agree.
     for (solver, resolution, off) in [
         ("dem", Resolution::CriticalFraction(0.02), 2e-3),
         ("rigid", Resolution::substeps(32), 1e-2),

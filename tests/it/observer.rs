@@ -1,6 +1,6 @@
-//! Observer that records what a run reports.
+//! Observer that stores the messages of a run.
 
-// The fuzz program uses a part of it.
+// The fuzz tests use only a part of it.
 #![allow(dead_code)]
 
 use grainbench::scene::brief::Brief;
@@ -13,27 +13,26 @@ use grainbench::scene::solver::{Observer, RunOptions, StorageError};
 #[derive(Default)]
 pub(crate) struct RunObserver {
     pub(crate) options: RunOptions,
-    /// Step after which the run is interrupted.
+    /// Step after which the observer interrupts the run; none to complete it.
     pub(crate) until: Option<u64>,
-    /// Completed steps.
+    /// Number of completed steps.
     pub(crate) done: u64,
-    /// Checkpoints after conversion to and from bytes.
+    /// Checkpoints, after they were written to bytes and read back.
     pub(crate) checkpoints: Vec<Checkpoint>,
-    /// Snapshots, unless they stay in the record.
+    /// Snapshots that the record does not keep.
     pub(crate) snapshots: Vec<Snapshot>,
-    /// Summaries of the other snapshots, with their numbers of rows.
+    /// Summaries of snapshots that were not delivered in full, with their numbers of rows.
     pub(crate) briefs: Vec<(Brief, u64)>,
-    /// Final state.
     pub(crate) end: Option<EndState>,
 }
 
 impl RunObserver {
-    /// Returns an observer with options.
+    /// Returns an observer that requests the given run options.
     pub(crate) fn new(options: RunOptions) -> Self {
         Self { options, ..Self::default() }
     }
 
-    /// Returns an observer that records a checkpoint after every `every` steps of a run on `threads` threads.
+    /// Returns an observer that stores a checkpoint after every `every` steps of a run with `threads` threads.
     pub(crate) fn with_checkpoints(every: u64, threads: usize) -> Self {
         Self::new(RunOptions { checkpoint_interval: Some(every), threads, ..RunOptions::DEFAULT })
     }

@@ -1,4 +1,4 @@
-//! External solvers with a manifest: one that moves a grain, and several with wrong output.
+//! External solvers with manifests: one that moves a grain correctly, and several with wrong output.
 
 use crate::common::{Answer, grainbench};
 use rayon::prelude::*;
@@ -16,7 +16,7 @@ fn write(folder: &Path, manifest: &str, script: &str) {
     fs::write(folder.join("liar.sh"), script).unwrap();
 }
 
-/// Returns the processes on this machine.
+/// Returns the command lines of all processes on this machine.
 fn running() -> String {
     let running = Command::new("ps").args(["-eo", "args"]).output();
     running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
@@ -28,8 +28,8 @@ fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
     (answer, results)
 }
 
-/// Each wrong output is detected, with a message that an author can use. Each entry has the script, the verdict of all
-/// results, and part of the message.
+/// Each wrong output is detected, and its message helps the author of a solver. An entry contains a name, a script, the
+/// outcome of all results, and a part of the message.
 #[test]
 fn a_program_that_lies_is_found_out() {
     let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
@@ -42,7 +42,12 @@ fn a_program_that_lies_is_found_out() {
             "grains.csv:2:1",
         ),
         ("no number", table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "broken", "found `nan`"),
-        ("a fraction for an id", table("0,1.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected a whole number from 0"),
+        (
+            "a fraction for an id",
+            table("0,1.5,0,0.4995,0,0,0,0,0,0,0"),
+            "broken",
+            "expected a whole number of 0 or more",
+        ),
         ("a negative id", table("0,-5.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "found -5.5"),
         (
             "leaves a session",
@@ -75,7 +80,7 @@ fn a_program_that_lies_is_found_out() {
     assert!(!running().contains("sleep 1235"), "and what it started in a session");
 }
 
-/// Grains in a folder that is a symbolic link may belong to another run, as in a file that is a link.
+/// A folder that is a symbolic link is rejected, because its files may belong to another run.
 #[test]
 fn grains_in_a_linked_folder_are_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -92,7 +97,7 @@ fn grains_in_a_linked_folder_are_refused() {
     }
 }
 
-/// A worker with wrong output is detected too, and its child processes end with it.
+/// A worker process with wrong output is detected too, and its child processes end with it.
 #[test]
 fn a_worker_that_lies_is_found_out() {
     let manifest =
@@ -103,7 +108,7 @@ fn a_worker_that_lies_is_found_out() {
         ("ends", "exit 0", "broken", "the worker ended"),
         ("hangs", "sleep 1000", "broken", "not done after 2 s"),
         ("floods the disk", "head -c 10000000000 /dev/zero > big", "broken", "found more"),
-        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "when 0.5, where unknown"),
+        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "time 0.5, place unknown"),
         (
             "tells no time",
             "echo '{\"ran\": {\"seconds\": -1}}'",
@@ -125,7 +130,7 @@ fn a_worker_that_lies_is_found_out() {
     assert!(!running().contains("sleep 4321"), "what it started goes with it");
 }
 
-/// A scene with effects that the manifest does not declare is not given to the program. A missing program is amber.
+/// If the manifest does not declare an effect, scenes with this effect are not run. The results of a missing program are amber.
 #[test]
 fn what_is_not_declared_is_not_asked_for() {
     let directory = tempfile::tempdir().unwrap();
@@ -139,9 +144,9 @@ fn what_is_not_declared_is_not_asked_for() {
         (row["verdict"].as_str().unwrap().to_owned(), row["detail"].as_str().unwrap_or_default().to_owned())
     };
     let less = [
-        ("[2, 3]", "[3]", "scenes of 2 dimensions"),
+        ("[2, 3]", "[3]", "scenes in 2 dimensions"),
         ("[\"linear\"]", "[\"hertz-mindlin\"]", "the law `linear`"),
-        ("walls = [\"plane\"]", "", "walls that are a `plane`"),
+        ("walls = [\"plane\"]", "", "walls of the shape `plane`"),
         ("\"friction\", ", "", "the effect `friction`"),
     ];
     for (declared, instead, message) in less {
@@ -152,7 +157,7 @@ fn what_is_not_declared_is_not_asked_for() {
     assert!(verdict == "not-available" && detail.contains("there is no `no-such-program`"), "{verdict}: {detail}");
 }
 
-/// An external solver gets a resolved scene, with the same contents in both formats.
+/// External solvers get a resolved scene. It has the same content as JSON and as TOML.
 #[test]
 fn a_scene_is_printed_as_programs_are_given_it() {
     let directory = tempfile::tempdir().unwrap();
@@ -173,7 +178,7 @@ fn a_scene_is_printed_as_programs_are_given_it() {
     assert_eq!(other["laws"][0]["friction"], 0.25);
 }
 
-/// Copies the files of an example to a separate folder, with an optional defect in one file.
+/// Copies the files of an example to a separate folder, optionally with a defect in one file.
 fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
@@ -185,7 +190,7 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::T
             assert!(whole.contains(right), "{right}");
             text = whole.replace(right, wrong).into_bytes();
         }
-        // Skips executables that were built there before, because they do not belong to these sources.
+        // An executable in the source folder is skipped, because it does not belong to the copied sources.
         if name != "one_grain" {
             fs::write(directory.path().join(name), text).unwrap();
         }
@@ -193,14 +198,14 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::T
     directory
 }
 
-/// Returns true if a program is installed, which it must be in CI.
+/// Returns true if a program is installed. In CI, a missing program is an error.
 fn is_here(program: &str) -> bool {
     let is_here = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
     assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
     is_here
 }
 
-/// Returns the exit code of a run of an example and the number of results that pass.
+/// Returns the exit code of a run of an example, and the number of passed results.
 fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usize) {
     let run = [&["run"], cases, &["--solver", "SOLVER.toml", "--json"], further].concat();
     let answer = grainbench(folder, &run);
@@ -211,7 +216,7 @@ fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usiz
 
 const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
 
-/// Claims pass for a one-grain solver of forty lines in Python. They fail for a defect in any line of its physics.
+/// A solver for one grain in forty lines of Python passes its claims. A defect in any line of its physics makes claims fail.
 #[test]
 fn a_grain_in_python_is_judged_line_by_line() {
     if !is_here("python3") {
@@ -251,7 +256,7 @@ fn a_grain_in_python_is_judged_line_by_line() {
     });
 }
 
-/// The same for a solver in C++, which is built first by the command in the manifest.
+/// A solver in C++ passes the same claims, and a defect makes them fail. The command in the manifest builds it first.
 #[test]
 fn a_grain_in_cpp_is_built_and_judged() {
     if !is_here("make") || !is_here("c++") {
@@ -266,7 +271,8 @@ fn a_grain_in_cpp_is_built_and_judged() {
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
 }
 
-/// The claims with cells pass for a solver of a column and a bar in fifty lines of Python. They detect a defect in each line.
+/// A solver for a column and a bar in fifty lines of Python passes the claims with grid cells. A defect in any line
+/// makes them fail.
 #[test]
 fn a_line_of_masses_is_judged_as_a_continuum() {
     if !is_here("python3") {
@@ -304,10 +310,10 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     let neo_hookean = [("\"hypoelastic\"", "\"neo-hookean\"")];
     assert!(reason(&neo_hookean, "column").contains("the law `hypoelastic` of materials"));
     assert!(reason(&[("\"global-damping\"", "")], "column/static").contains("the effect `global-damping`"));
-    assert!(reason(&neo_hookean, "incline-disc").contains("it leaves no grains"));
+    assert!(reason(&neo_hookean, "incline-disc").contains("its manifest declares no output of grains"));
 }
 
-/// The results of an external solver are stored beside it. The next run must have the same results, also where they failed.
+/// Results of an external solver are stored beside its manifest. The next run must have the same outcomes, also failures.
 #[test]
 fn a_program_is_held_to_what_is_kept_of_it() {
     if !is_here("python3") {
@@ -337,7 +343,7 @@ fn a_program_is_held_to_what_is_kept_of_it() {
     assert_eq!(judge(&["--expect-stored", "column"]).code, Some(2));
 }
 
-/// The studies treat an external solver as they treat our solvers. Results of an older program are not used.
+/// Studies include an external solver in the same way as our solvers. Results of an older version of it are not used.
 #[test]
 fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     if !is_here("make") || !is_here("c++") {
@@ -354,9 +360,12 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(points.len() >= 12 && points.iter().all(|point| point["solver"] == "one-grain-cpp"), "{points:#?}");
     let closest = points.iter().filter_map(|point| point["error"].as_f64()).fold(f64::INFINITY, f64::min);
     assert!(closest < 1e-4, "stiff contacts are rigid ones: {closest}");
-    // The reason of its constant error is unknown here.
+    // The cause of its constant error is unknown to the study.
     let floors: Vec<&str> = points.iter().filter_map(|point| point["floor"].as_str()).collect();
-    assert!(!floors.is_empty() && floors.iter().all(|floor| floor.starts_with("what no finer step")), "{floors:?}");
+    assert!(
+        !floors.is_empty() && floors.iter().all(|floor| floor.starts_with("error that smaller steps")),
+        "{floors:?}"
+    );
     let page = fs::read_to_string(folder.path().join("cost/index.html")).unwrap();
     assert!(page.contains("<th scope=\"col\">one-grain-cpp</th>"), "it has its column beside ours");
     let stability = study(&["stability", "disc-on-a-wall"], "stability");
@@ -368,7 +377,7 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
 
-/// A study fails if all runs of a solver end with exit code 0 but without output.
+/// A study is red if all runs of a solver end with exit code 0 but without output.
 #[test]
 fn a_study_of_failed_runs_alone_is_red() {
     let folder = tempfile::tempdir().unwrap();
@@ -379,7 +388,7 @@ fn a_study_of_failed_runs_alone_is_red() {
     }
 }
 
-/// A program adds energy during the run and removes it before the end. This is detected.
+/// A program that adds energy during the run and removes it before the end is detected.
 #[test]
 fn energy_gained_in_mid_run_is_red() {
     if !is_here("python3") {
@@ -408,7 +417,7 @@ fn energy_gained_in_mid_run_is_red() {
     }
 }
 
-/// If an external solver cannot run any wrong scene, its passed claims do not count.
+/// If an external solver cannot run any wrong scene, its passed results do not count.
 #[test]
 fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     if !is_here("python3") {
@@ -435,7 +444,7 @@ fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     );
 }
 
-/// An interrupt ends a silent program at once, and leaves no half-written output.
+/// An interrupt ends a program without output immediately, and leaves no incomplete output.
 #[cfg(unix)]
 #[test]
 fn an_interrupt_ends_a_silent_program() {

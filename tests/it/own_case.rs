@@ -1,11 +1,11 @@
-//! A user's case: a scene and claims in a file, without Rust.
+//! A case of the user: a scene and claims in files, without Rust code.
 
 use crate::common::{Answer, grainbench};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
-/// Copies the example to a separate folder, with replacements in one of its files.
+/// Copies the example case to a separate folder, with replacements in one of its files.
 fn case(file: &str, replaced: &[(&str, &str)]) -> tempfile::TempDir {
     let directory = tempfile::tempdir().unwrap();
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case");
@@ -40,7 +40,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
         [&verdicts[0]["tolerance"], &verdicts[2]["tolerance"], &verdicts[0]["evidence"]],
         ["computed", "judged", "analytic"]
     );
-    // By hand: 5/2 · 0.1 · 9.81 · cos 30° / 0.005 at the time of the last sample.
+    // Computed by hand: 5/2 · 0.1 · 9.81 · cos 30° / 0.005 times the time of the last sample.
     let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
     let found = verdicts[1]["expected"].as_f64().unwrap() / spin;
     assert!((0.199..0.201).contains(&found), "{found}");
@@ -48,7 +48,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
 }
 
-/// A wrong scene, a wrong expectation and a control with too small a change each fail.
+/// A wrong scene, a wrong expectation, or a negative control with too small a change makes the run fail.
 #[test]
 fn what_is_wrong_is_red() {
     let red = |file: &str, replaced: &[(&str, &str)], verdicts_red: usize, controls_green: usize| {
@@ -63,11 +63,11 @@ fn what_is_wrong_is_red() {
     red("claims.toml", &[("5/2 *", "2.51 *")], 1, 0);
     red("claims.toml", &[("allowed = 1e-6", "allowed = 0.1")], 0, 1);
     red("claims.toml", &[("29.9 }", "29.99999 }")], 0, 1);
-    // A slope on which the ball rolls, although the claim expects slip.
+    // On this slope the ball rolls, although the claim expects slip.
     red("scene.toml", &[("friction = 0.1", "friction = 0.3")], 1, 0);
 }
 
-/// A tolerance as large as the scale passes for almost any value, so its result is amber.
+/// With a tolerance as large as the scale, almost any value passes. The result is therefore amber.
 #[test]
 fn a_tolerance_as_large_as_the_scale_is_amber() {
     for (allowed, verdict, strict) in [
@@ -86,14 +86,14 @@ fn a_tolerance_as_large_as_the_scale_is_amber() {
         let (code, row) = run(&[]);
         assert!(code == Some(0) && row["verdict"] == verdict, "{allowed}: {row:#?}");
         let detail = row["detail"].as_str().unwrap_or_default();
-        assert_eq!(detail.contains("% of the scale is allowed"), verdict != "pass", "{detail}");
+        assert_eq!(detail.contains("% of the scale, 100 % or more"), verdict != "pass", "{detail}");
         assert_eq!(run(&["--strict"]).0, Some(strict), "{allowed}");
-        // The report written again has the exit code of its run.
+        // Writing the report again gives the exit code of the run.
         assert_eq!(grainbench(folder.path(), &["report", "grainbench-out"]).code, Some(strict), "{allowed}");
     }
 }
 
-/// Claims on a curve in a table, on a value at one time, and on bounds.
+/// Claims about a curve in a table, about a value at one time, and about bounds.
 #[test]
 fn a_claim_may_be_a_course_a_moment_or_a_bound() {
     let claims = |expected: &str| {
@@ -127,13 +127,13 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
     }
 }
 
-/// A folder with the name of a case of the registry needs `./`. Without it, a message points to the folder.
+/// A folder with the name of a built-in case must be given with `./`. Otherwise a message mentions the folder.
 #[test]
 fn a_folder_named_as_a_case_is_told_of() {
     let whole = case("", &[]);
     fs::rename(whole.path().join("slope"), whole.path().join("squash")).unwrap();
     let of_registry = grainbench(whole.path(), &["run", "squash", "--solver", "rigid", "-q"]);
-    assert!(of_registry.err.contains("write ./squash for the folder"), "{}", of_registry.err);
+    assert!(of_registry.err.contains("write ./squash to select the folder"), "{}", of_registry.err);
     let own = grainbench(whole.path(), &["run", "./squash", "-q"]);
     assert_eq!((own.code, own.err.as_str()), (Some(0), ""), "{}", own.out);
 }

@@ -1,5 +1,4 @@
-//! Claims for solvers that no case names. They do not depend on the solver, have effective controls and detect wrong
-//! physics.
+//! Solver-independent claims. They apply to any solver, and their negative controls detect wrong physics.
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
@@ -23,11 +22,11 @@ use std::path::{Path, PathBuf};
 use std::process::{Command, Output};
 use std::sync::Arc;
 
-/// The conventions differ in everything that a scene leaves open. Each convention passes the solver-independent claims,
-/// and their controls fail for it. Cases that take long are included with `GRAINBENCH_LONG=1`.
+/// Contact conventions differ in everything that a scene leaves open. With every convention, the solver-independent
+/// claims pass and their controls fail. `GRAINBENCH_LONG=1` includes cases that take long.
 #[test]
 fn every_convention_passes_what_is_fair_to_any_solver() {
-    /// Cases of rotating contacts and walls, which the conventions of external solvers fail as the external solvers do.
+    /// Cases with rotating contacts and walls. They fail with the conventions of external programs.
     const TURNING: [&str; 2] = ["carried-grain", "turning-walls"];
     let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
     let most = if long { Set::Long } else { Set::Main };
@@ -40,13 +39,12 @@ fn every_convention_passes_what_is_fair_to_any_solver() {
         let own: Vec<&str> = cases.iter().copied().filter(|case| turns || !TURNING.contains(case)).collect();
         grainbench::judge(Dem::new(convention), &own).unwrap().require().unwrap();
     });
-    // In these conventions, springs do not rotate about the normal, and the rolling law ignores the spin of a wall.
+    // In these conventions, springs do not rotate about the normal, and the rolling moment neglects the spin of walls.
     for convention in [Convention::LAMMPS, Convention::LIGGGHTS] {
         assert!(grainbench::judge(Dem::new(convention), &TURNING).unwrap().require().is_err(), "{}", convention.name);
     }
 }
 
-/// Solver that panics.
 struct Panics;
 
 impl Solver for Panics {
@@ -59,7 +57,7 @@ impl Solver for Panics {
     }
 }
 
-/// All other results are still reported.
+/// After a panic, all other results are still reported.
 #[test]
 fn a_panic_is_a_broken_result() {
     let judged = grainbench::judge(Panics, &["backspin"]).unwrap();
@@ -71,7 +69,7 @@ fn a_panic_is_a_broken_result() {
     assert!(judged.controls.iter().all(|control| !control.turned_red), "{:?}", judged.controls);
 }
 
-/// A control cannot replace an external solver by another solver or plant a defect in it.
+/// A control cannot replace an external solver by another solver, and cannot plant a defect in it. It must be a wrong scene.
 #[test]
 fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
     for case in CASES {
@@ -91,7 +89,7 @@ fn a_case_that_is_not_there_or_not_fair_says_so() {
     assert_eq!(grainbench::judge(solver(), &["squash"]), Err(JudgementError::NothingFair("squash".to_owned())));
 }
 
-/// Solver with a change of every scene.
+/// Solver that changes every scene before it runs it.
 struct Changed(Box<dyn Solver>, fn(&mut Scene));
 
 impl Solver for Changed {
@@ -106,7 +104,7 @@ impl Solver for Changed {
     }
 }
 
-/// A solver that ignores the scene may give the right result, but not for the wrong scene of a control.
+/// A solver that ignores the scene may give the right result, but it also gives this result for the wrong scene of a control.
 #[test]
 fn a_solver_that_ignores_the_scene_is_found_out() {
     let ignoring = Changed(solvers::by_name("dem").unwrap(), |scene| {
@@ -119,7 +117,7 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
 }
 
-/// If our own solver fails, its error with the wrong scene of a control is the same, and explains nothing.
+/// If our own solver fails, it fails with the same error under the wrong scene of a control, which explains nothing.
 #[test]
 fn a_control_does_not_explain_a_defect_of_our_own_solver() {
     struct Spoiled;
@@ -139,8 +137,8 @@ fn a_control_does_not_explain_a_defect_of_our_own_solver() {
     assert!(row.detail.is_none_or(|detail| !detail.contains("as if")));
 }
 
-/// The example as an external author has it, in a separate crate that depends only on grainbench. It passes as it is
-/// and fails with a defect in one line of its physics.
+/// The example is compiled as a separate crate that depends only on grainbench. It passes its claims, and fails them
+/// with a defect in one line of its physics.
 #[test]
 fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/own_solver.rs");
@@ -168,7 +166,7 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
 }
 
 /// All programs in one executable, compiled against the library of this test. For a crate outside the workspace, cargo
-/// would build all our crates again, which takes minutes and gives the same code.
+/// would build all crates again, which takes minutes and gives the same code.
 struct ForeignCrate {
     folder: tempfile::TempDir,
 }
@@ -203,7 +201,7 @@ impl ForeignCrate {
     }
 }
 
-/// Returns the latest build of the library of that name. There may be builds with other flags.
+/// Returns the most recent build of the library with this name. Builds with other flags may exist.
 fn newest(folder: &Path, name: &str) -> PathBuf {
     let is_it = |path: &PathBuf| {
         let file = path.file_name().unwrap().to_string_lossy();

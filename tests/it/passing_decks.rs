@@ -1,5 +1,5 @@
-//! Decks of scenes with temporary grains and walls and with pistons. Each deck is written and gives our result, or the
-//! error names the missing feature of the external solver.
+//! Decks of scenes with temporary grains, temporary walls and pistons. Each deck gives the same result as our solver,
+//! or an error names the feature that the external program lacks.
 
 use grainbench::cases::solvers;
 use grainbench::scene::record::Record;
@@ -10,7 +10,7 @@ use std::path::Path;
 
 const STEP: Resolution = Resolution::TimeStep(1e-3);
 
-/// Spheres of mass one above a floor that ends in the middle.
+/// Spheres of mass 1 above a floor that ends in the middle.
 const HEAD: &str = include_str!("../scenes/passing.toml");
 
 const LEDGE: &str = "walls.ledge.material = 'm'\n\
@@ -24,8 +24,7 @@ fn scene(text: &str) -> Scene {
     source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
-/// Returns our run in the convention of an external solver, and its run. `None` if it is not installed (an error in
-/// CI).
+/// Returns our run and the run of an external program, in its convention. `None` if it is not installed, an error in CI.
 fn both(text: &str, program: &str) -> Option<[Record; 2]> {
     let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
     let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));
@@ -36,8 +35,8 @@ fn both(text: &str, program: &str) -> Option<[Record; 2]> {
     }
 }
 
-/// Returns the largest distance between grains of the same id, in snapshots of the same step up to a time (s). Both
-/// snapshots must have the same grains.
+/// Returns the largest distance between equal grains in snapshots of equal steps up to a time (s). Both snapshots must
+/// contain the same grains.
 fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
     let mut worst = 0.0_f64;
     let mut compared = 0;
@@ -61,7 +60,7 @@ fn column_apart([ours, theirs]: &[Record; 2], name: &str) -> [f64; 2] {
     [off, a.iter().map(|a| a.abs()).fold(0.0, f64::max)]
 }
 
-/// Grains that fall over the ledge are removed at the same steps, and the remaining grains move in the same way.
+/// Grains that fall off the ledge are removed at the same steps, and all other grains move in the same way.
 #[test]
 fn grains_leave_lammps_as_they_leave_ours() {
     let removal = "removal = { low = [-4.0, -1.0, -2.0], high = [4.0, 5.0, 20.0], every_cycles = 30 }\n";
@@ -80,7 +79,7 @@ fn grains_leave_lammps_as_they_leave_ours() {
     assert_eq!(all[1].snapshots.last().unwrap().grains.len(), 30);
 }
 
-/// A floor with a sine, a ramp and a table that add up.
+/// The motion of the floor is the sum of a sine, a ramp and a table.
 #[test]
 fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
     let text = |ramp: f64| {
@@ -94,12 +93,12 @@ fn a_floor_moves_along_a_path_in_lammps_as_in_ours() {
     let Some(records) = both(&text(0.5), "lammps") else { return };
     let found = apart(&records, 1.5);
     assert!(found < 1e-9, "{found}");
-    // A ramp shorter by a tenth gives a visible difference.
+    // Control: a shorter ramp gives a visible difference.
     let [ours, _] = both(&text(0.45), "lammps").unwrap();
     assert!(apart(&[ours, records[1].clone()], 1.5) > 1e-4);
 }
 
-/// A removed floor releases all grains at the same step.
+/// When the floor is removed, all grains start to fall at the same step.
 #[test]
 fn a_wall_is_taken_away_in_lammps_as_in_ours() {
     let text = |until: &str| format!("{HEAD}{FLOOR}until = {until}\n");
@@ -113,8 +112,8 @@ fn a_wall_is_taken_away_in_lammps_as_in_ours() {
     );
 }
 
-/// When a wall is removed, LIGGGHTS omits half of its last push and our solver the whole. A grain that rested on it
-/// then falls slower by ½ g Δt.
+/// When a wall is removed, our solver omits its whole last force, and LIGGGHTS omits half of it. A grain that rested on
+/// the wall therefore falls slower by ½ g Δt in LIGGGHTS.
 #[test]
 fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
     let single = HEAD
@@ -127,7 +126,7 @@ fn a_wall_is_taken_away_in_liggghts_but_for_half_a_push() {
     assert!((found - half).abs() < 1e-6, "{found} for {half}");
 }
 
-/// A lid with a prescribed force and shear velocity, with and without damping.
+/// A lid with a prescribed force and a tangential velocity, with and without damping.
 #[test]
 fn a_piston_presses_in_lammps_as_in_ours() {
     for (piston, of_grains) in [("force = 40.0, mass = 20.0", 1e-8), ("force = 40.0, mass = 20.0, damping = 2.0", 1e-4)]
@@ -139,7 +138,7 @@ fn a_piston_presses_in_lammps_as_in_ours() {
         assert!(found < of_grains, "{piston}: {found}");
         let [advance, far] = column_apart(&records, "lid.advance");
         assert!(advance < 1e2 * of_grains && far > 0.01, "{piston}: {advance} of {far}");
-        // A lid with another mass moves differently.
+        // Control: a lid with another mass moves differently.
         let [ours, _] = both(&text(&pressed.replace("mass = 20.0", "mass = 20.2")), "lammps").unwrap();
         assert!(apart(&[ours, records[1].clone()], 1.0) > 1e-5);
     }

@@ -1,7 +1,7 @@
-//! Stored results of external solvers belong to the present adapters, claims and tables of `peers/README.md`.
+//! Stored results of external solvers. They belong to the present adapters and claims, and to the tables of `peers/README.md`.
 //!
-//! `UPDATE_README=1 cargo test --release --test it peers` rewrites the tables.
-//! `grainbench run --solver PATH --update-stored` makes new results.
+//! `UPDATE_README=1 cargo test --release --test it peers` writes the tables again. New results come from `grainbench
+//! run --solver PATH --update-stored`.
 
 use crate::common::{expect_file, root, with_generated};
 use grainbench::cases::registry;
@@ -13,7 +13,7 @@ use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
 use std::fmt::Write as _;
 
-/// Each adapter in `peers/` has stored results.
+/// Each adapter in `peers/` has stored results of its present files.
 #[test]
 fn every_adapter_was_judged_as_it_stands() {
     let mut folders: Vec<String> = std::fs::read_dir(root("peers"))
@@ -39,7 +39,8 @@ fn every_adapter_was_judged_as_it_stands() {
     }
 }
 
-/// Each passed result has a failed control. Each result belongs to a present claim with its present tolerance.
+/// Each passing result has a negative control that turned red. Each result of a registry case matches a current
+/// solver-independent claim in quantity, resolution and tolerance.
 #[test]
 fn kept_rows_are_earned_and_are_those_of_today() {
     for judged in kept().unwrap() {
@@ -77,7 +78,8 @@ fn programs_table(judged: &[ExternalResults]) -> String {
     table.trim_end().to_owned()
 }
 
-/// Returns the largest error over its tolerance and the number of passed claims. Unsupported scenes do not count.
+/// Returns a table cell: largest |error|/allowed, number of passed claims, and number of all claims including amber
+/// ones. If no claim passed or failed, the cell is a dash.
 fn cell(count: Count) -> String {
     let Count { pass, red, amber, worst, .. } = count;
     if pass + red == 0 {
@@ -109,8 +111,8 @@ fn tables_are_generated() {
     expect_file("peers/README.md", &with_generated(&readme, "costs", &costs_table(&study)));
 }
 
-/// Returns the table of the cheapest setting of each solver within one per cent, relative to the cheapest solver;
-/// otherwise the smallest error reached.
+/// Returns a table with the time of the cheapest setting of each solver with an error of at most 1 %, and the ratio of
+/// this time to the time of the cheapest solver. If a solver does not reach 1 %, the cell shows its smallest error.
 fn costs_table(study: &Study) -> String {
     const TARGET: f64 = 0.01;
     let lines = cost::lines(&study.diagrams);

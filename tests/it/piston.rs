@@ -1,4 +1,4 @@
-//! Walls with a prescribed force, compared with exact solutions of a piston.
+//! Walls with a prescribed force, compared with exact solutions for a piston.
 
 use crate::common::grainbench;
 use grainbench::cases::solvers;
@@ -8,12 +8,12 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Force (N) and mass (kg) of the lid, contact stiffness (N/m). The sphere's mass is one.
+/// Force on the lid (N).
 const FORCE: f64 = 30.0;
-const MASS: f64 = 4.0;
-const STIFFNESS: f64 = 2e4;
+const MASS: f64 = 4.0; // mass of the lid (kg); the mass of the sphere is 1 kg
+const STIFFNESS: f64 = 2e4; // contact stiffness (N/m)
 
-/// Returns a sphere on a floor and a damped lid at a distance `gap` above it.
+/// Returns a scene with a sphere on a floor, and a lid at a distance `gap` (m) above the sphere.
 fn scene(gap: f64, damping: f64, between: f64, duration: f64, motion: &str) -> String {
     format!(
         r#"title = "A lid"
@@ -54,7 +54,7 @@ fn apart(record: &Record, name: &str, exact: impl Fn(f64) -> f64) -> f64 {
     values.map(|(value, &time)| (value - exact(time)).abs()).fold(0.0, f64::max)
 }
 
-/// Without contact, the displacement is F t²/2M; with damping it is F/(Mc) (t − (1 − e^(−ct))/c).
+/// Without contact, the displacement is F t²/2M. With damping c, it is F/(Mc) (t − (1 − e^(−ct))/c).
 #[test]
 fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
     let free = run(&scene(2.0, 0.0, 0.0, 0.7, ""));
@@ -66,9 +66,9 @@ fn a_lid_that_touches_nothing_goes_as_its_force_drives_it() {
     assert!(apart(&damped, "lid.advance", |time| 0.5 * FORCE / MASS * time * time) > 0.1);
 }
 
-/// A mass m is between two springs k, and a mass M on the upper spring. A force F acts suddenly on M. Until the first
-/// return, no contact opens and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k, 2F/k); V and ω²
-/// are the modes of M^(−½) K M^(−½).
+/// A mass m is between two springs k, and a mass M is on the upper spring. A force F is suddenly applied to M. No
+/// contact opens until the first return, and x = x₁ − M^(−½) V cos(ωt) Vᵀ M^½ x₁. The rest position is x₁ = (F/k,
+/// 2F/k); V and ω² are the modes of M^(−½) K M^(−½).
 #[test]
 fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let root = Vector2::new(1.0, MASS.sqrt());
@@ -85,11 +85,11 @@ fn a_lid_on_a_grain_swings_in_their_two_modes() {
     let size = 2.0 * FORCE / STIFFNESS;
     assert!(apart(&record, "lid.advance", |time| exact(time, 1)) < 1e-3 * size);
     assert!(apart(&record, "ball.z", |time| 0.5 - exact(time, 0)) < 1e-3 * size);
-    // A frequency higher by 5 % gives a visible difference.
+    // Control: a frequency higher by 5 % gives a visible difference.
     assert!(apart(&record, "lid.advance", |time| exact(time * 1.05, 1)) > 0.1 * size);
 }
 
-/// With damping, the lid comes to rest where two springs in series carry its force, also while it slides.
+/// With damping, the lid comes to rest where two springs in series carry its force, also while the lid slides.
 #[test]
 fn a_lid_at_rest_presses_with_its_force() {
     for motion in ["", "motion = [{ velocity = [0.5, 0.0, 0.0] }]"] {

@@ -1,4 +1,4 @@
-//! Claims with external solvers that are not installed.
+//! Claims and benchmarks with external programs that are not installed.
 
 use crate::common::grainbench_alone;
 use serde_json::Value;
@@ -15,7 +15,7 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
     assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be judged has no control");
 }
 
-/// A throughput benchmark lists missing solvers and solvers with too short timings. Without any timing, it is not a success.
+/// The throughput benchmark lists missing programs and too short timings. Without any timing, it is not a success.
 #[test]
 fn a_race_tells_who_took_no_part() {
     let directory = tempfile::tempdir().unwrap();
@@ -55,7 +55,7 @@ fn a_time_limit_that_is_no_time_is_refused() {
     assert_eq!(message, format!("error: lammps is not available: {reason}\n"));
 }
 
-/// If our process is killed, the external solver ends and its working folder is removed.
+/// If our process is killed, the external program ends, and its working folder is removed.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_program_and_its_folder_go_when_we_are_killed() {

@@ -1,5 +1,5 @@
-//! Generated parts of README and of the guide: the tables of `guide/src/tables.md` and the figures. The feature matrix of README
-//! is written by hand and checked against the claims; the slope of the guide is checked against its exact answer.
+//! Generated parts of the README and of the guide: the tables of `guide/src/tables.md` and the figures. The feature matrix of the
+//! README is written by hand and checked against the claims. The slope of the guide is checked against its exact solution.
 //!
 //! `UPDATE_README=1 cargo test --release --test it readme` writes the generated parts again.
 
@@ -49,7 +49,7 @@ fn conventions_table() -> String {
     table
 }
 
-/// Returns the table of the stored throughput benchmark. `grainbench race` on a quiet machine writes a new `race.json`.
+/// Returns the table of the stored throughput benchmark. `grainbench race` on an idle machine makes a new `race.json`.
 fn race_table() -> String {
     let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
     serde_json::from_str::<ThroughputBenchmark>(&kept).unwrap().table().trim_end().to_owned()
@@ -70,8 +70,8 @@ fn tables_are_generated() {
     expect_file(CHAPTER, &chapter);
 }
 
-/// Returns the cells of the feature matrix that name a case without a claim of the column's kind of evidence, as
-/// `case: evidence`. An empty matrix is an error too.
+/// Returns the wrong cells of the feature matrix as `case: evidence`. A cell is wrong if its case has no claim with the
+/// evidence of the column. An empty matrix is an error too.
 fn wrong_cells(readme: &str) -> Vec<String> {
     const COLUMNS: [&[Evidence]; 5] = [
         &[Evidence::Analytic],
@@ -129,8 +129,8 @@ fn the_disc_on_the_slope_rolls_or_slips() {
         let record = grainbench::dem::solver::Dem::new(Convention::DEFAULT)
             .run(&scene, &Resolution::CriticalFraction(0.1), &mut ())
             .unwrap();
-        // Rolling has a = (2/3) g sin θ, sliding on ice has a = g (sin θ − μ cos θ), up to the compliance of the
-        // contact.
+        // A rolling disc has a = (2/3) g sin θ, and a disc that slides on ice has a = g (sin θ − μ cos θ). The
+        // compliance of the contact causes a small difference.
         let (sine, cosine) = (20_f64.to_radians().sin(), 20_f64.to_radians().cos());
         let expected = if variant == PLAIN { 9.81 * sine / 3.0 } else { 0.5 * 9.81 * (sine - 0.05 * cosine) };
         let x = record.series.column("disc.x").unwrap().last().copied().unwrap();

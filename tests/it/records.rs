@@ -1,4 +1,4 @@
-//! Options of snapshots: columns, digits, and the stress averaged over the time between snapshots.
+//! Options of snapshots: columns, digits, and stress averaged between snapshots.
 
 use crate::common::grainbench;
 use crate::observer::RunObserver;
@@ -12,7 +12,7 @@ use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Twelve hundred colliding spheres of two sizes between two walls and a periodic boundary.
+/// 1200 colliding spheres of two sizes between two walls and a periodic boundary.
 const SCENE: &str = include_str!("../scenes/falling.toml");
 
 fn scene(output: &str) -> Scene {
@@ -28,8 +28,8 @@ fn run(scene: &Scene, threads: usize) -> (Record, Vec<Checkpoint>) {
     (record, observer.checkpoints)
 }
 
-/// Returns V σ of each grain from the contacts of a snapshot. Lever arms end at a `part` of the overlap (0.5: its
-/// middle).
+/// Returns volume times stress of each grain, computed from the contacts of a snapshot. `part` is the fraction of the
+/// overlap by which a lever arm is shorter than the radius (0.5: it ends at the middle of the overlap).
 fn virials(snapshot: &Snapshot, part: f64) -> Vec<Matrix3<f64>> {
     let mut sums = vec![Matrix3::zeros(); snapshot.grains.len()];
     for contact in snapshot.told_contacts() {
@@ -51,7 +51,7 @@ fn matrix([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
 
-/// Returns the largest difference over the largest expected value.
+/// Returns the largest difference of a stress, divided by the largest expected stress.
 fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>, exact: &[Matrix3<f64>]) -> f64 {
     let scale = exact.iter().map(Matrix3::norm).fold(0.0, f64::max);
     assert!(scale > 0.0);
@@ -59,7 +59,7 @@ fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>,
     each.fold(0.0, f64::max) / scale
 }
 
-/// The mean over an interval equals the mean over the snapshots of all its steps, which another run stores with contacts.
+/// The mean over an interval equals the mean over all its steps. Another run stores the contacts of all steps for it.
 #[test]
 fn the_mean_over_an_interval_is_that_of_its_steps() {
     let each = run(&scene("").each_step(), 1).0;
@@ -86,12 +86,12 @@ fn the_mean_over_an_interval_is_that_of_its_steps() {
                 sums.iter().map(|sum| sum / snapshots.len() as f64).collect()
             };
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.5)) < 1e-13);
-            // A lever arm to the other surface, or the instantaneous stress, gives a visible difference.
+            // Controls: a lever arm equal to the radius and the instantaneous stress give visible differences.
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &mean(0.0)) > 1e-4);
             let instant = virials(&each.snapshots[now.step as usize], 0.5);
             assert!(apart(&now.grains, |grain| grain.virial.as_deref().copied(), &instant) < 1e-13);
             assert!(apart(&now.grains, |grain| grain.mean_virial.as_deref().copied(), &instant) > 0.05);
-            // The run stores no contacts and no other columns, because they are not requested.
+            // Contacts and other columns are not stored, because they are not requested.
             assert!(
                 now.contacts.is_none() && now.grains.iter().all(|grain| grain.force.is_none() && grain.spin.x.is_nan())
             );
@@ -114,7 +114,7 @@ fn bits(record: &Record) -> String {
     format!("{:?}{:?}", record.series, record.snapshots)
 }
 
-/// Independent of the number of threads and of the checkpoint of a restart, also within an interval.
+/// Means do not depend on the number of threads, or on the checkpoint from which a run continues, also within an interval.
 #[test]
 fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     let scene = scene("columns = ['spin', 'mean-virial']\nmean_every_cycles = 3\ndigits = 9");
@@ -132,7 +132,7 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     assert_eq!(plain.series, whole.series);
 }
 
-/// Files contain only the chosen columns and can be read back. Numbers are rounded to the chosen digits.
+/// Files contain only the chosen columns and can be read. Numbers are rounded to the chosen digits.
 #[test]
 fn files_hold_what_was_chosen() {
     let directory = tempfile::tempdir().unwrap();
@@ -175,7 +175,7 @@ fn files_hold_what_was_chosen() {
     assert_ne!(all[3].grains[0].spin, Vector3::zeros());
 }
 
-/// `fields` reports the stress that it reads: the mean if present, and the instantaneous stress on request.
+/// `fields` states which stress it uses: the mean stress if present, or the instantaneous stress if requested.
 #[test]
 fn fields_says_which_stress_it_read() {
     let directory = tempfile::tempdir().unwrap();
@@ -201,7 +201,7 @@ fn fields_says_which_stress_it_read() {
     };
     let (mean, of_mean) = pressure(&["--from", "0.0001"], "run");
     let (instant, of_instant) = pressure(&["--from", "0.0001", "--stress", "instant"], "run");
-    assert!(mean.contains("mean over the time") && instant.contains("instant"), "{mean}, {instant}");
+    assert!(mean.contains("averaged over the time") && instant.contains("instant"), "{mean}, {instant}");
     let (of_mean, of_instant) = (of_mean.unwrap(), of_instant.unwrap());
     assert!((of_mean / of_instant - 1.0).abs() > 0.02, "{of_mean} {of_instant}");
     assert_eq!(pressure(&[], "run").1, Some(of_mean), "the first frame has no mean, and takes no other stress for it");

@@ -1,5 +1,4 @@
-//! The stored runs are those that claims read. They are complete and belong to the present scenes. Messages report
-//! missing stored runs and missing external solvers.
+//! Claims use all stored runs, which are complete and belong to the present scenes. Missing runs and programs are reported.
 
 use crate::common::grainbench_alone;
 use grainbench::cases::registry::CASES;
@@ -30,7 +29,7 @@ fn every_run_that_gates_read_is_stored_and_no_other() {
     }
 }
 
-/// Each estimated tolerance has a stored estimate, and each estimate belongs to a claim.
+/// Each claim with an estimated tolerance has a stored estimate, and each stored estimate belongs to a claim.
 #[test]
 fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
     for case in CASES {
@@ -46,7 +45,7 @@ fn every_estimate_is_of_a_row_and_every_such_row_has_one() {
     }
 }
 
-/// A known error without a second bound would hide any larger error.
+/// A known error needs an upper limit. Without it, any larger error would be accepted.
 #[test]
 fn every_known_error_has_a_second_bound() {
     for case in CASES {
@@ -59,7 +58,7 @@ fn every_known_error_has_a_second_bound() {
     }
 }
 
-/// Each stored run belongs to its present scene, and a changed scene is rejected.
+/// Each stored run belongs to the present scene. With a changed scene, it is rejected.
 #[test]
 fn none_is_stale_and_another_scene_is() {
     for stored_run in stored::all() {
@@ -74,8 +73,8 @@ fn none_is_stale_and_another_scene_is() {
     }
 }
 
-/// With half the time step, displacements of the stored runs on inclined planes change by less than 0.1 % of the final
-/// value. This is their numerical uncertainty.
+/// Half the time step changes the displacement in the stored runs on inclined planes by less than 0.1 % of the final
+/// value. This difference is their numerical uncertainty.
 #[test]
 fn the_time_step_is_worth_little_where_it_is_small() {
     for stored_run in

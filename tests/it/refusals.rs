@@ -1,9 +1,9 @@
-//! Errors in the user's input: the tables in `tests/refusals`, run through the command line.
+//! Errors in the user's input. The tables in `tests/refusals` are run through the command line.
 //!
-//! An entry edits a base, writes it as `file` and runs `command`. The command must end with its exit code and message,
-//! print nothing on the standard output, and leave no file and change none. `[DIR]` in a message is the directory,
-//! `[ROOT]` the repository, `[cases]` and `[solvers]` are the names of the registries, and `[..]` is any text.
-//! `UPDATE_REFUSALS=1` writes the messages of the program into the tables.
+//! An entry edits a base file, writes it as `file` and runs `command`. The command must end with the given exit code
+//! and message. It must print nothing on the standard output, and must neither create nor change a file. In a message,
+//! `[DIR]` is the directory, `[ROOT]` the repository, `[cases]` and `[solvers]` are the names of the registries, and
+//! `[..]` is any text. `UPDATE_REFUSALS=1` writes the messages of the program to the tables.
 
 use crate::common::{files, grainbench, grainbench_alone, root};
 use grainbench::cases::registry::CASES;
@@ -15,55 +15,55 @@ use std::fs;
 use std::io::Read;
 use std::path::Path;
 
-/// Table of one directory.
+/// Table of entries that share one directory.
 #[derive(Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Table {
-    /// Values for entries that do not state them: `base`, `file`, `command`, `alone`.
+    /// Values for entries without a value of their own: `base`, `file`, `command`, `alone`.
     common: Entry,
-    /// Other files of the directory, by name.
+    /// Further files in the directory, by name.
     files: BTreeMap<String, Entry>,
-    /// Commands that must succeed before the entries.
+    /// Commands that must succeed before the entries are run.
     prepare: Vec<String>,
-    /// Files that need the output of these commands, by name.
+    /// Files that are made from the output of these commands, by name.
     prepared: BTreeMap<String, Entry>,
     refusal: Vec<Entry>,
 }
 
-/// A file as a base with edits, and the command that refuses it. The edits apply in the order of these fields.
+/// A file, given by a base and edits, and a command that must reject it. The edits are applied in the order of these fields.
 #[derive(Clone, Default, Deserialize)]
 #[serde(deny_unknown_fields, default)]
 struct Entry {
-    /// Name for failures, if the edit does not say enough.
+    /// Name of the entry in failures, if the edit does not identify it.
     name: Option<String>,
-    /// File of the directory, file in `tests/scenes` or path in the repository.
+    /// Base file: a file in the directory, in `tests/scenes`, or in the repository.
     base: Option<String>,
-    /// Whole text instead of a base.
+    /// Whole text of the file, instead of a base.
     text: Option<String>,
-    /// Texts with their replacements. Only the first occurrence is replaced.
+    /// Texts with their replacements. Only the first occurrence of each text is replaced.
     replace: Vec<[String; 2]>,
-    /// Texts with their replacements, at all occurrences.
+    /// Texts with their replacements. All occurrences are replaced.
     replace_all: Vec<[String; 2]>,
     prepend: Option<String>,
     append: Option<String>,
-    /// Fraction of the bytes that stays, from the start.
+    /// Fraction of the bytes that is kept, from the start.
     keep: Option<f64>,
-    /// Number of bytes cut off at the end.
+    /// Number of bytes that are removed at the end.
     cut: usize,
-    /// Changed bytes as position and value; a negative position counts from the end.
+    /// Position and new value of changed bytes. A negative position counts from the end.
     bytes: Vec<(i64, u8)>,
     append_bytes: Vec<u8>,
-    /// Name of the edited file in the directory.
+    /// Name of the edited file.
     file: Option<String>,
-    /// Words as in a shell. `[ROOT]` is the repository.
+    /// Command line of the program. `[ROOT]` is the repository.
     command: Option<String>,
-    /// Further words of the command.
+    /// Further words for the command line.
     with: Option<String>,
-    /// True if LAMMPS and LIGGGHTS are hidden from the program.
+    /// True to hide LAMMPS and LIGGGHTS from the program.
     alone: Option<bool>,
-    /// Exit code; 2 if absent.
+    /// Expected exit code; 2 if absent.
     code: Option<i32>,
-    /// Standard error.
+    /// Expected text on the standard error.
     message: String,
 }
 
@@ -79,7 +79,7 @@ impl Entry {
         entry
     }
 
-    /// Returns the name, or the first line of what distinguishes the entry.
+    /// Returns the name of the entry, or the first line of the text that distinguishes it.
     fn shown(&self) -> &str {
         let edit = self.replace.first().or(self.replace_all.first()).map(|[_, to]| to);
         let all = [
@@ -93,7 +93,7 @@ impl Entry {
         all.into_iter().flatten().flat_map(|text| text.lines()).find(|line| !line.is_empty()).unwrap_or_default()
     }
 
-    /// Returns the edited file. An edit that changes nothing is an error.
+    /// Returns the content of the edited file. An edit without effect is an error.
     fn contents(&self, directory: &Path) -> Result<Vec<u8>, String> {
         let mut bytes = match (&self.base, &self.text) {
             (Some(base), _) => {
@@ -139,7 +139,7 @@ fn unpacked(bytes: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// Splits a command line. Quotes are those of a shell.
+/// Splits a command line into words, with quotes as in a shell.
 fn words(line: &str) -> Vec<String> {
     let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
     for letter in line.replace("[ROOT]", env!("CARGO_MANIFEST_DIR")).chars() {
@@ -157,7 +157,7 @@ fn words(line: &str) -> Vec<String> {
     words
 }
 
-/// Returns a message without paths, without the names of the registries and without blanks at line ends.
+/// Returns a message with placeholders for paths and for the names of the registries, and without spaces at the ends of lines.
 fn settled(message: &str, directory: &Path) -> String {
     let lines = |names: Vec<String>| names.iter().map(|name| format!("  {name}\n")).collect::<String>();
     let cases = lines(CASES.iter().map(|case| case.name.to_owned()).collect());
@@ -167,7 +167,7 @@ fn settled(message: &str, directory: &Path) -> String {
     message.lines().map(str::trim_end).collect::<Vec<_>>().join("\n")
 }
 
-/// Returns true if a message is as expected, where `[..]` stands for any text.
+/// Returns true if a message equals the expected message, in which `[..]` means any text.
 fn is_as(found: &str, expected: &str) -> bool {
     let Some((start, rest)) = expected.split_once("[..]") else { return found == expected };
     found.strip_prefix(start).is_some_and(|found| {
@@ -183,7 +183,7 @@ fn contents(directory: &Path) -> BTreeMap<String, Vec<u8>> {
         .collect()
 }
 
-/// Writes a file of the directory, with its folders. A name that ends with `/` is a folder.
+/// Writes a file and creates its folders. A name that ends with `/` is a folder.
 fn write(directory: &Path, name: &str, bytes: &[u8]) {
     let path = directory.join(name);
     if name.ends_with('/') {
@@ -194,7 +194,7 @@ fn write(directory: &Path, name: &str, bytes: &[u8]) {
     }
 }
 
-/// Runs all entries of a table. Returns for each failed entry its number, the failure, and the message found.
+/// Runs all entries of a table. Returns the number, the failure and the actual message of each failed entry.
 fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
@@ -277,7 +277,7 @@ fn every_refusal_is_as_in_its_table() {
     assert!(count > MANY, "{count}");
 }
 
-/// Control: a wrong message, exit code or file and an edit that does not apply are failures.
+/// Control: an entry with a wrong message, exit code or file, or with an edit that has no effect, fails.
 #[test]
 fn a_wrong_entry_of_a_table_is_found() {
     let table: Table = toml::from_str(
@@ -317,5 +317,5 @@ message = ""
     }
 }
 
-/// Fewer entries mean that a table was lost.
+/// Smallest number of entries. With fewer entries, a table is missing.
 const MANY: usize = 500;

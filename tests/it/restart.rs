@@ -1,4 +1,4 @@
-//! A restarted run equals an uninterrupted one in all bits: for the scene of each case, and for a killed process.
+//! A run continued from a checkpoint equals an uninterrupted run to the bit, for all cases and for a killed process.
 
 use crate::common::{bits, files, grainbench};
 use crate::observer::RunObserver;
@@ -17,7 +17,7 @@ use std::path::Path;
 use std::process::{Command, Stdio};
 use std::sync::Arc;
 
-/// Returns the beginning of a scene, with samples at odd steps.
+/// Returns the first part of a scene. Samples are seven steps apart.
 fn begun(mut scene: Scene) -> Scene {
     let cycles = if scene.grains.len() > 1000 { 40 } else { 300 };
     scene.duration = Duration::Cycles(cycles);
@@ -26,13 +26,13 @@ fn begun(mut scene: Scene) -> Scene {
     scene
 }
 
-/// Beds of more grains have the same contact laws as smaller beds of their case, so they are skipped.
+/// Number of grains above which a scene is skipped. Its contact laws occur in smaller beds of the same case.
 const MANY: usize = 20_000;
 
-/// Covers all features of the cases in each convention, such as moving walls, Hertz contacts and cohesion.
+/// The scenes cover all features of the cases in each convention, such as moving walls, Hertz contacts and cohesion.
 #[test]
 fn every_case_continues_to_the_same_bits() {
-    // At most twelve variants of a case.
+    // At most twelve variants of a case are run.
     let variants = |case: &Case| -> Vec<Scene> {
         let names = case.variants().unwrap();
         names.iter().step_by(names.len().div_ceil(12)).map(|variant| case.variant(variant).unwrap()).collect()
@@ -48,7 +48,7 @@ fn every_case_continues_to_the_same_bits() {
             let resolution = Resolution::CriticalFraction(0.1);
             let mut observer = RunObserver::with_checkpoints(19, 1);
             let whole = match solver.run(scene, &resolution, &mut ()) {
-                // Scenes with only deformable bodies, and scenes whose dashpots need a shorter step.
+                // Skips scenes with only deformable bodies, and scenes whose dashpots need a shorter time step.
                 Err(RunError::Unsupported { .. } | RunError::Resolution { .. }) => continue,
                 run => bits(run.unwrap()),
             };
@@ -67,7 +67,7 @@ fn every_case_continues_to_the_same_bits() {
     assert!(compared > 100, "{compared}");
 }
 
-/// The stored files of a run that was interrupted twice equal those of an uninterrupted run, except for the run time.
+/// A run that was interrupted twice gives the same stored files as an uninterrupted run, except for the run time.
 #[test]
 fn a_run_that_is_kept_goes_on_to_the_same_files() {
     let case = CASES.iter().find(|case| case.name == "impact-bed").unwrap();
@@ -106,7 +106,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     }
     assert!(files(go(from.as_ref(), u64::MAX).unwrap()) == straight);
 
-    // The run time before a foreign checkpoint is unknown.
+    // If another command wrote the checkpoint, the run time before it is unknown.
     let theirs = stored().with_output(b"snapshots".to_vec());
     assert!(go(Some(&theirs), u64::MAX).unwrap().cost.wall_seconds.is_nan());
     let mut other = scene.clone();
@@ -116,7 +116,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     assert!(matches!(refused, Err(RunError::Checkpoint(CheckpointError::OtherRun { .. }))), "{refused:?}");
 }
 
-/// Discs that bounce in a box long enough to be killed in the middle.
+/// Discs that bounce in a box. The run is long enough to be killed in the middle.
 const LONG: &str = r#"title = "Discs in a box"
 dimension = 2
 duration_cycles = 1_000_000
@@ -148,7 +148,7 @@ snapshots = 2
 all = { system = true }
 "#;
 
-/// Returns the output of a run without its times.
+/// Returns the names and texts of the output files of a run, without run times.
 fn left(directory: &Path) -> Vec<(String, String)> {
     let text = |name: &String| {
         let text = std::fs::read_to_string(directory.join(name)).unwrap();
@@ -160,17 +160,17 @@ fn left(directory: &Path) -> Vec<(String, String)> {
     files(directory).iter().map(|name| (name.clone(), text(name))).collect()
 }
 
-/// Tests grains on springs and deformable grains.
+/// Grains with contact springs, and deformable grains.
 #[test]
 fn a_killed_run_continues_to_the_same_files() {
     killed_and_continued(LONG, &["--solver", "dem"], "20000");
-    // A grid has no cycles of another method.
+    // The duration of a grid run cannot be given in cycles.
     let timed =
         LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
     killed_and_continued(&timed, &["--solver", "mpm", "--cells", "2", "--points", "2"], "200");
 }
 
-/// With many snapshots, the snapshots are on disk: the checkpoint contains their names and not their data.
+/// If there are many snapshots, they are on disk, and the checkpoint contains only the names of their parts.
 #[test]
 fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
     let many = LONG
@@ -183,7 +183,7 @@ fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
     let (checkpoint, parts) = (directory.path().join("run.checkpoint"), directory.path().join("run.checkpoint.parts"));
     let parts: Vec<_> = std::fs::read_dir(parts).unwrap().flatten().collect();
     assert!(!parts.is_empty());
-    // Fifty snapshots of 900 discs are about fifteen megabytes.
+    // Fifty snapshots of 900 discs would be about 15 MB.
     let bytes = std::fs::metadata(checkpoint).unwrap().len();
     assert!(bytes < 9 << 20, "{bytes}");
 }
@@ -219,7 +219,7 @@ fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile:
     directory
 }
 
-/// A checkpoint with a correct hash and wrong numbers is refused before the run continues.
+/// A checkpoint with a correct hash but wrong numbers is rejected before the run continues.
 #[test]
 fn a_checkpoint_with_wrong_numbers_is_refused() {
     let directory = tempfile::tempdir().unwrap();
@@ -232,7 +232,7 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
     let whole = std::fs::read(path.join("kept")).unwrap();
     let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
     let body = &whole[head + 40..];
-    // Length and hash are computed again for the changed numbers.
+    // Computes length and hash for the changed numbers.
     let resealed = |body: &[u8]| {
         let hash = blake3::hash(body);
         [&whole[..head], &(body.len() as u64).to_le_bytes(), hash.as_bytes(), body].concat()
@@ -246,7 +246,7 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
         let bytes = number.to_le_bytes();
         (0..body.len() - 8).filter(|&at| body[at..at + 8] == bytes).collect()
     };
-    // The radius of a grain is in the state, and in the snapshots of the record so far.
+    // The radius of a grain is in the state, and in the snapshots of the record.
     let wrong = |at: usize| [(at, 0.7), (at, -0.1), (at, f64::NAN), (at - 8, f64::INFINITY)];
     let is_refused = |(at, wrong): (usize, f64)| {
         let mut other = body.to_vec();
@@ -258,7 +258,7 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
     assert_eq!(refused, 9);
 }
 
-/// A run that crashes leaves its series, its snapshots, the state at the crash, and its reason.
+/// A run that crashes leaves its time series, its snapshots, the state at the crash, and the reason.
 #[test]
 fn a_run_that_breaks_leaves_what_there_is() {
     let timed =
@@ -287,9 +287,8 @@ fn a_run_that_breaks_leaves_what_there_is() {
     }
 }
 
-/// Memory does not depend on the number of snapshots: for 10,000 discs it is at most three times the memory of a run
-/// without snapshots. In memory, each snapshot would need five megabytes. The short test has sixty of them, the long
-/// one a thousand.
+/// Memory does not depend on the number of snapshots. For 10,000 discs, it is at most three times the memory of a run without
+/// snapshots. Each snapshot would take 5 MB in memory. The short test has 60 snapshots, and the long test has 1000.
 #[test]
 #[cfg(target_os = "linux")]
 fn snapshots_and_checkpoints_take_no_memory() {
@@ -312,7 +311,7 @@ fn snapshots_and_checkpoints_take_no_memory() {
     assert!(many < 3 * none, "{many} kB with {snapshots} snapshots, {none} kB without");
 }
 
-/// Ctrl-C leaves the finished results and reports it.
+/// After Ctrl-C, the finished results are written, and a message reports the interrupt.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_leaves_what_is_finished() {
@@ -324,7 +323,7 @@ fn an_interrupted_run_leaves_what_is_finished() {
         .stderr(Stdio::piped())
         .spawn()
         .unwrap();
-    // Ctrl-C can be sent once the process catches the signal. The run of the registry takes much longer than that.
+    // The test waits until the process catches the signal. A run of the whole registry takes much longer than that.
     let catches = || {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
         let caught = status.lines().find_map(|line| line.strip_prefix("SigCgt:")).unwrap().trim().to_owned();

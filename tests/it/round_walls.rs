@@ -1,4 +1,4 @@
-//! Cylinder and cone walls, compared with exact motions of grains in them.
+//! Walls that are cylinders and cones, compared with exact motions of grains in them.
 
 use grainbench::cases::solvers;
 use grainbench::scene::record::Record;
@@ -8,10 +8,10 @@ use grainbench::scene::source::SceneSource;
 use std::f64::consts::TAU;
 use std::path::Path;
 
-/// Contact stiffness (N/m), gravity (m/s²), radius of the sphere (m), whose mass is one.
+/// Contact stiffness (N/m).
 const STIFFNESS: f64 = 1e6;
-const GRAVITY: f64 = 10.0;
-const RADIUS: f64 = 0.25;
+const GRAVITY: f64 = 10.0; // (m/s²)
+const RADIUS: f64 = 0.25; // radius of the sphere (m), whose mass is 1 kg
 
 fn scene(duration: f64, friction: f64, grain: &str, wall: &str) -> Scene {
     let density = 1.0 / (4.0 / 3.0 * std::f64::consts::PI * RADIUS.powi(3));
@@ -33,7 +33,7 @@ fn run(scene: &Scene) -> Record {
     solver.run(scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
-/// Returns the times of zero crossings of a column (s).
+/// Returns the times at which a column changes its sign (s).
 fn crossings(record: &Record, name: &str) -> Vec<f64> {
     let (values, time) = (record.series.column(name).unwrap(), &record.series.time);
     let between = |at: usize| {
@@ -43,8 +43,8 @@ fn crossings(record: &Record, name: &str) -> Vec<f64> {
     (0..values.len() - 1).filter_map(between).collect()
 }
 
-/// A sphere rolls to and fro at the bottom of a resting cylinder: (7/5)(R − r) θ″ = −g sin θ. Hence its period is 2π
-/// √(7(R − r)/5g) (1 + θ₀²/16).
+/// A sphere of radius r rolls to and fro at the bottom of a fixed cylinder of radius R. The angle of its centre obeys
+/// (7/5)(R − r) θ″ = −g sin θ, so the period is 2π √(7(R − r)/5g) (1 + θ₀²/16) at the amplitude θ₀.
 #[test]
 fn a_sphere_rolls_in_a_trough_at_its_period() {
     const TROUGH: f64 = 2.0;
@@ -63,7 +63,8 @@ fn a_sphere_rolls_in_a_trough_at_its_period() {
     assert!((sliding / exact(1.0) - 1.0).abs() < 1e-4, "{sliding} for {}", exact(1.0));
 }
 
-/// In a rotating drum, a sphere remains at the bottom if its surface velocity equals that of the drum: ω r = Ω R.
+/// A sphere (radius r, angular velocity ω) stays at the bottom of a rotating drum (R, Ω) if both have the same surface
+/// velocity, ω r = Ω R.
 #[test]
 fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
     const DRUM: f64 = 2.0;
@@ -78,14 +79,15 @@ fn a_sphere_that_turns_with_its_drum_stays_at_the_bottom() {
         let record = run(&scene(3.0, 0.5, &grain, &wall));
         record.series.column("ball.x").unwrap().iter().fold(0.0_f64, |far, x| far.max(x.abs()))
     };
-    // Half an overlap of the lever arm is 2e-5 of the spin.
+    // A lever arm that is wrong by half an overlap changes the spin by 2e-5.
     assert!(farthest(1.0) < 1e-4, "{}", farthest(1.0));
-    // A slip of 0.01 ΩR starts rolling at 2/7 of this velocity v. The amplitude is v/ω with ω² = 5g/7(R − r).
+    // After a slip of 0.01 ΩR, the sphere rolls at 2/7 of this velocity. The amplitude is v/ω with ω² = 5g/7(R − r).
     let swing = 2.0 / 7.0 * 0.01 * 3.0 * DRUM / (5.0 / 7.0 * GRAVITY / (DRUM - RADIUS)).sqrt();
     assert!((farthest(0.99) / swing - 1.0).abs() < 0.01, "{} for {swing}", farthest(0.99));
 }
 
-/// In a cone of 45°, a sphere moves on a circle at v² = g ρ, where the wall balances weight and centrifugal force.
+/// In a cone of 45°, a sphere moves on a circle of radius ρ at v² = g ρ. The wall force then balances weight and
+/// centrifugal force.
 #[test]
 fn a_sphere_goes_round_in_a_cone() {
     let (orbit, overlap) = (1.5_f64, GRAVITY * 2.0_f64.sqrt() / STIFFNESS);
@@ -103,7 +105,7 @@ fn a_sphere_goes_round_in_a_cone() {
     assert!(spread(1.02) > 1e-2, "{}", spread(1.02));
 }
 
-/// Grains in a rotating drum, between its ends, and in a funnel above it.
+/// Grains between the ends of a rotating drum, and in a funnel above the drum.
 const DRUM_AND_FUNNEL: &str = r#"title = "Grains in a drum and a funnel"
 dimension = 3
 duration = 0.5
@@ -139,8 +141,8 @@ material = "m"
 cone = { axis = [[0.0, 0.0, 3.2], [0.0, 0.0, 6.5]], radii = [0.5, 2.5] }
 "#;
 
-/// LAMMPS with the deck of the scene has the same energy and the same wall forces, before chaos amplifies rounding. If
-/// LAMMPS is not installed, nothing is compared. CI has it.
+/// LAMMPS with the deck of the scene has the same energy and the same wall forces, until chaos amplifies rounding.
+/// Without LAMMPS, nothing is compared, which is an error in CI.
 #[test]
 fn lammps_has_the_same_round_walls() {
     let lammps = solvers::by_name("lammps").unwrap();

@@ -1,9 +1,9 @@
-//! A scene that starts from the final state of a run.
+//! Scenes whose initial state is the final state of another run.
 
 use crate::common::grainbench;
 use std::path::Path;
 
-/// Returns a scene of spheres that are dropped into a box and come to rest with friction.
+/// Returns a scene of spheres with friction that fall into a box and come to rest.
 fn scene(duration: f64, grains: &str) -> String {
     format!(
         r#"title = "Spheres in a box"
@@ -52,7 +52,7 @@ fn simulate(path: &Path, name: &str, text: &str, further: &[&str]) {
     assert_eq!(answer.code, Some(0), "{}", answer.err);
 }
 
-/// Returns the final and the initial positions of a run.
+/// Returns the positions of all grains at the end and at the start of a run (m).
 fn ends(path: &Path, name: &str) -> [Vec<[f64; 3]>; 2] {
     let dump = std::fs::read_to_string(path.join(name).join("snapshots.dump")).unwrap();
     let snapshots: Vec<&str> = dump.split("ITEM: ATOMS").skip(1).collect();
@@ -75,7 +75,7 @@ fn apart(a: &[[f64; 3]], b: &[[f64; 3]]) -> f64 {
     between.fold(0.0, f64::max)
 }
 
-/// A heap at rest continues unchanged if its state includes the springs. Without springs it moves.
+/// A heap at rest stays at rest if its state includes the contact springs. Without the springs it moves.
 #[test]
 fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     let directory = tempfile::tempdir().unwrap();
@@ -91,7 +91,7 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert!(apart(&end, &start) == 0.0, "it begins where the other ended");
     let [uninterrupted, _] = ends(path, "whole");
     assert!(apart(&uninterrupted, &later) < 1e-10, "{}", apart(&uninterrupted, &later));
-    // A rounded state continues too, up to the effect of rounding.
+    // With a rounded state it also stays at rest, up to the effect of rounding.
     simulate(path, "rounding", &scene(12.0, DROPPED), &["--state", "rounded.state", "--rounded"]);
     let sizes = ["heap.state", "rounded.state"].map(|file| std::fs::metadata(path.join(file)).unwrap().len());
     assert!(sizes[1] < sizes[0], "{sizes:?}");
@@ -99,7 +99,7 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     let [later, _] = ends(path, "rounded");
     let moved = apart(&uninterrupted, &later);
     assert!(0.0 < moved && moved < 1e-8, "{moved}");
-    // With another grain before them in the scene, held far above, the springs still belong to the right grains.
+    // Another grain, which is listed first and is held far above, does not change the assignment of springs to grains.
     let held = "[driven.a]\ngrains = 'a'\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.5, 2.5, 9.5]\n";
     let behind = taken("").replace("[grains.g]", &format!("{held}[grains.g]"));
     simulate(path, "behind", &behind, &[]);
@@ -107,7 +107,7 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert!(apart(&uninterrupted, &later[1..]) < 1e-10, "{}", apart(&uninterrupted, &later[1..]));
     let [later, _] = ends(path, "without");
     assert!(apart(&uninterrupted, &later) > 1e-5, "{}", apart(&uninterrupted, &later));
-    // At rest, the final state is the same again up to residual motion.
+    // At rest, the final state equals the initial state, up to residual motion.
     let [first, again] = ["heap.state", "again.state"].map(|file| {
         let bytes = std::fs::read(path.join(file)).unwrap();
         grainbench::scene::end_state::EndState::from_bytes(&bytes).unwrap()
@@ -118,8 +118,8 @@ fn a_heap_that_is_taken_over_with_its_springs_goes_on() {
     assert_eq!(first.springs.pairs.len(), again.springs.pairs.len());
 }
 
-/// A grain that flies and spins continues with its spin, bit by bit, and with the velocity v + g t. With friction,
-/// spins change during the run; without friction, they are known from the start.
+/// A flying, spinning grain continues with exactly its spin, and with the velocity v + g t. With friction, a solver
+/// integrates spins during the run; without friction, spins are known from the start.
 #[test]
 fn a_grain_that_spins_is_taken_over_with_its_spin() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,4 +1,4 @@
-//! The initial states of cases are unchanged. A file `NAME.state.toml` beside each has the command that makes it again.
+//! Initial states of cases. Each state is unchanged, and a file `NAME.state.toml` beside it contains the command that makes it.
 
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::fields::overlap::sphere_in_box;
@@ -11,38 +11,41 @@ use serde::Deserialize;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Provenance of a state.
 #[derive(Deserialize)]
 #[serde(deny_unknown_fields)]
 struct Origin {
-    /// Name and version of the program that made it.
+    /// Name and version of the program that made the state.
     program: String,
-    /// Commit that the program was built from.
+    /// Commit from which the program was built.
     commit: String,
     /// Date (YYYY-MM-DD).
     date: String,
     machine: String,
-    /// Scene whose final state it is, in the same folder; its variant, and its changed keys.
+    /// File of the scene whose final state this is, in the folder of the state.
     scene: String,
+    /// Variant of the scene; none for the plain scene.
     variant: Option<String>,
+    /// Changed keys of the scene, with their values.
     #[serde(default)]
     set: Vec<[String; 2]>,
-    /// BLAKE3 hash of everything in that scene that a run depends on, and the time step (s), which is part of it.
+    /// BLAKE3 hash of everything in the scene on which a run depends, including the time step.
     scene_blake3: String,
+    /// Time step (s).
     time_step: f64,
-    /// Command that makes it again, from the root of the project.
+    /// Command that makes the state again, run in the root of the project.
     command: String,
-    /// Later changes to the state, or limits of its reproduction.
+    /// Later changes of the state, or limits of its reproducibility.
     note: String,
     grains: usize,
-    /// Packing fraction within a box with these lower and upper corners (m), away from sides, floor and surface.
+    /// Packing fraction in the box `within`.
     packing_fraction: f64,
+    /// Lower and upper corner of a box (m) away from sides, floor and surface.
     within: [[f64; 3]; 2],
-    /// BLAKE3 hash of the file.
+    /// BLAKE3 hash of the state file.
     blake3: String,
 }
 
-/// Returns the files of all states of all cases.
+/// Returns the paths of all state files of all cases.
 fn states() -> Vec<PathBuf> {
     let folders = CASES.iter().map(|case| case.directory());
     let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
@@ -108,14 +111,14 @@ fn a_state_is_the_one_whose_origin_is_told() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Returns the scene whose final state a state is.
+/// Returns the scene whose final state is the given state.
 fn scene_source(state: &Path, origin: &Origin) -> SceneSource {
     let source = SceneSource::read(&state.with_file_name(&origin.scene)).unwrap();
     let source = origin.variant.iter().fold(source, |source, variant| source.variant(variant));
     origin.set.iter().fold(source, |source, [key, value]| source.set(key, value))
 }
 
-/// Solid volume over the volume of the box, which extends over the whole bed along y.
+/// The packing fraction is the solid volume divided by the volume of the box. The box extends over the whole period along y.
 #[test]
 fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
     let mut wrong = Vec::new();

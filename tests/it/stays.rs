@@ -8,7 +8,7 @@ use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
 use std::path::Path;
 
-/// Common part of the scenes: spheres of mass one and a floor.
+/// Common part of the scenes: spheres of mass 1 kg.
 const HEAD: &str = r#"title = "Passing"
 dimension = 3
 duration = 2.0
@@ -22,7 +22,7 @@ probes.grains = { count = true }
 
 /// Scene of a silo that is filled and drained.
 const SILO: &str = include_str!("../scenes/silo.toml");
-/// Grains on a floor. The left ones are fixed and then lifted for some time.
+/// Grains on a floor. The left ones are lifted with a prescribed velocity for some time.
 const LIFTED: &str = include_str!("../scenes/lifted.toml");
 
 const FLOOR: &str = "walls.floor = { material = 'm', plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }\n";
@@ -43,12 +43,12 @@ fn end(record: &Record) -> &Snapshot {
     record.snapshots.last().unwrap()
 }
 
-/// Three grains without contacts. Each is in free fall from its own insertion, z₀ + vτ − gτ²/2, and absent before it.
+/// Three grains without contacts. Each falls freely from its insertion on, z₀ + vτ − gτ²/2, and is absent before.
 #[test]
 fn a_grain_that_is_poured_falls_from_when_it_comes() {
     let feed = "[grains.feed]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.5, 0.0, -3.0]\n\
         poured = { count = 3, rate = 2.0, seed = 4, low = [-2.0, 0.0, 40.0], high = [0.0, 4.0, 40.0], start = 0.25 }\n";
-    // Without grains at the start, the coordination number is zero.
+    // While no grain exists, the coordination number is zero.
     let text = format!("{HEAD}probes.stress = {{ stress = true }}\n{feed}");
     let record = run(&text, 1);
     assert!(record.series.column("stress.coordination").unwrap().iter().all(|&number| number == 0.0));
@@ -72,11 +72,11 @@ fn a_grain_that_is_poured_falls_from_when_it_comes() {
     );
 }
 
-/// A grain is inserted at the position and velocity of a grain in flight. Both hit a grain on the floor in the same way.
+/// A grain is inserted at the position and velocity of another grain in flight. Both hit a grain on the floor in the same way.
 #[test]
 fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     let target = "[grains.target]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 2.0, 0.49995]\n";
-    // From z = 10 at −3 m/s: after one second at 10 − 3 − ½ with −4 m/s.
+    // From z = 10 at −3 m/s, the grain reaches z = 10 − 3 − ½ with −4 m/s after one second.
     let ball =
         "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -3.0]\nposition = [-0.2, 2.1, 10.0]\n";
     let poured = "[grains.ball]\nmaterial = 'm'\nradius = 0.5\nvelocity = [0.0, 0.0, -4.0]\n\
@@ -90,8 +90,9 @@ fn a_grain_that_comes_is_one_that_came_from_farther_up() {
     }
 }
 
-/// The removal of a grain beside a sliding bed, whose contacts have tangential springs, changes the bed only by the order of
-/// sums. In one second, rounding grows to less than 1e-8 in the moving bed, and to 1e-6 in the next.
+/// A grain beside a sliding bed is removed. The contacts of the bed have tangential springs. The removal changes the
+/// bed only by the order of sums. In one second, rounding errors grow to less than 1e-8 in the moving bed; in the next
+/// second they grow to 1e-6.
 #[test]
 fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     let bed = "[grains.bed]\nmaterial = 'm'\nradius = 0.5\n\
@@ -104,7 +105,7 @@ fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     let alone = run(&format!("{head}{FLOOR}{bed}"), 1);
     let record = run(&format!("{head}{removal}{FLOOR}{bed}{thrown}"), 1);
     assert_eq!((record.snapshots[0].grains.len(), end(&record).grains.len()), (37, 36));
-    // It leaves the box at (4 − 2.5)/4 s; removal is tested every fiftieth step.
+    // The grain leaves the box at (4 − 2.5)/4 s. Removal is checked at every fiftieth step.
     let left = record.series.column("grains.left").unwrap();
     let when = left.iter().position(|&left| left == 1.0).map(|at| record.series.time[at]);
     assert_eq!(when, Some(0.4));
@@ -114,7 +115,7 @@ fn a_grain_that_is_taken_out_leaves_all_others_as_they_are() {
     }
 }
 
-/// A grain on a wall that is removed falls ½g(t − t₀)² afterwards, up to the last spring force.
+/// After its wall is removed, a grain falls by ½g(t − t₀)², apart from the effect of the last spring force.
 #[test]
 fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
     let floor = FLOOR.replace("material = 'm',", "material = 'm', until = 1.2,");
@@ -123,14 +124,14 @@ fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
     let z = |at: usize| record.snapshots[at].grains[0].position.z;
     assert!((z(2) - 0.49995).abs() < 1e-12, "at rest on mg/k until then: {}", z(2));
     let fallen = end(&record).time - 1.2;
-    // The last force belongs to the previous step and acts for half a step.
+    // The last spring force belongs to the previous step and acts for half a step.
     assert!((end(&record).grains[0].position.z - (0.49995 - 0.5 * fallen * fallen)).abs() < 1e-3);
     assert!(record.snapshots[0].walls[0].corners.len() == 2 && end(&record).walls[0].corners.is_empty());
     let stays = run(&format!("{HEAD}{FLOOR}{ball}"), 1);
     assert!((end(&stays).grains[0].position.z - 0.49995).abs() < 1e-12);
 }
 
-/// The number of threads and checkpoints do not change any bit.
+/// Neither the number of threads nor checkpoints change any bit.
 #[test]
 fn threads_and_checkpoints_leave_no_trace() {
     let directory = tempfile::tempdir().unwrap();
@@ -155,7 +156,8 @@ fn threads_and_checkpoints_leave_no_trace() {
     assert!(last("grains.left") > 20.0 && last("grains.present") + last("grains.left") == 90.0);
 }
 
-/// Threads and checkpoints do not change any bit, also for a checkpoint during the prescribed motion. Only `dem` supports it.
+/// Neither threads nor checkpoints change any bit, also if the checkpoint is taken during prescribed motion. Only `dem`
+/// supports prescribed motion for a limited time.
 #[test]
 fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     let directory = tempfile::tempdir().unwrap();
@@ -168,7 +170,7 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     };
     let file_text = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
     with(&["--out", "whole", "--threads", "2"]);
-    // Checkpoints before the prescribed motion, at its start, during it, at its end, and after it.
+    // Checkpoints before, at the start of, during, at the end of, and after the prescribed motion.
     for every in ["200", "300", "400", "600", "700", "900"] {
         with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
         with(&["--out", "two", "--restart", "half"]);
@@ -183,8 +185,8 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     assert!(file_text("whole", "series.csv") != file_text("always", "series.csv"));
 }
 
-/// Two groups from one box, a heap that grows into the box, and a box that a wall crosses. Each ends with an error that
-/// names both grains or the wall, and never with an overlap.
+/// Two groups are inserted in one box, a heap grows into the box, or a wall crosses the box. Each run ends with an
+/// error that names both grains or the wall, and never with an overlap.
 #[test]
 fn nothing_is_poured_into_what_stands_there() {
     let feed = |name: &str, seed: u32, count: u32, z: f64| {
@@ -201,10 +203,10 @@ fn nothing_is_poured_into_what_stands_there() {
     let two = broken(&format!("{HEAD}{}{}", feed("a", 1, 2, 9.0), feed("b", 2, 2, 9.0)));
     assert!(two.contains("it was poured into grain") && two.contains("of the smaller radius"), "{two}");
     let heap = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 10, 1.0)));
-    assert!(heap.contains("it was poured into grain") && heap.contains("pour at a lower rate"), "{heap}");
+    assert!(heap.contains("it was poured into grain") && heap.contains("pour fewer grains"), "{heap}");
     let wall = broken(&format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3)));
     assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
-    // A grain with insertion time zero exists from the start and is checked then.
+    // A grain that is inserted at time zero exists from the start and is checked at the start.
     let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
     let source = SceneSource::from_text("passing", Path::new(""), &text);
     let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();

@@ -1,4 +1,4 @@
-//! The three studies as a user runs them. Their properties hold, also after an interruption at any time.
+//! The three studies on the command line. Their results hold, also after an interruption at any time.
 
 use crate::common::grainbench;
 use grainbench::cases::registry::CASES;
@@ -28,7 +28,7 @@ fn exact_limits_are_found_to_half_a_hundredth() {
     }
 }
 
-/// Control: springs 5 % stiffer have a limit 2.5 % smaller, which the test distinguishes from the exact limit.
+/// Control: springs that are 5 % stiffer have a limit that is 2.5 % smaller. The test distinguishes it from the exact limit.
 #[test]
 fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     for mut assembly in assembly::all().unwrap() {
@@ -41,10 +41,11 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
     }
 }
 
-/// None of our solvers is wrong without an error. Springs hold at some step, except for cases without a solution.
+/// None of our solvers ends a hard case with a wrong result and no error. `dem` solves each hard case with some time
+/// step, except the case of coinciding grains, which has no solution.
 #[test]
 fn hard_cases_hold_or_say_why_not() {
-    // A million steps are too long for this test.
+    // This case has a million steps, which is too long for this test.
     for case in hard::all().iter().filter(|case| !case.name.starts_with("heap")) {
         for solver in ["dem", "rigid", "mpm"] {
             let row = hard::judge(case, &Registry, solver);
@@ -57,14 +58,14 @@ fn hard_cases_hold_or_say_why_not() {
     }
 }
 
-/// Effects of a case whose absence no claim detects. For each other active effect, a claim must fail when it is off.
-/// The blocks are so long that grains that roll on them stay away from their periodic ends. The metal ring spins far
-/// below its yield stress: it tests the rotation of stresses in the plastic law.
+/// Effects of a case whose absence no claim detects. For every other active effect, a claim must fail without it. The
+/// blocks are so long that grains that roll on them stay away from the periodic ends. The metal ring spins far below
+/// its yield stress, because it tests the rotation of stresses in the plastic law.
 const NOT_FELT: &[(&str, Effect)] = &[
     ("rolling-on-block", Effect::PeriodicAxes),
     ("sphere-on-block", Effect::PeriodicAxes),
     ("spinning-ring", Effect::Plasticity),
-    // Walls or bodies that move with the frame, and effects of variants whose claims are about something else.
+    // Walls or bodies that move with the frame, and effects in variants whose claims are about something else.
     ("border", Effect::MovingWalls),
     ("driven-disc", Effect::Friction),
     ("driven-disc", Effect::Gravity),
@@ -95,7 +96,7 @@ fn an_effect_that_is_needed_is_caught_when_it_is_off() {
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
 }
 
-/// Returns `results.json` of a directory without the values that vary between runs.
+/// Returns the `results.json` of a directory without the values that vary from run to run.
 fn results(out: &Path) -> Value {
     let mut results: Value = serde_json::from_str(&fs::read_to_string(out.join("results.json")).unwrap()).unwrap();
     results["provenance"] = Value::Null;
@@ -130,7 +131,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
         std::thread::sleep(Duration::from_millis(5 + (state >> 33) % 400));
         let _ = child.kill();
         child.wait().unwrap();
-        // Each file is complete.
+        // Each JSON file is complete.
         for name in crate::common::files(folder.path())
             .iter()
             .filter(|name| name.starts_with("out/") && name.ends_with(".json"))
@@ -153,7 +154,7 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
     assert!(again.out.contains("24 of 24 points are from an earlier measurement"), "{}", again.out);
 }
 
-/// Sets the times of each finished point: those of a quiet machine times a factor.
+/// Sets the times of all finished points: fixed times multiplied by a factor.
 fn retime(out: &Path, factor: f64) {
     for entry in fs::read_dir(out.join("points")).unwrap() {
         let path = entry.unwrap().path();
@@ -180,7 +181,7 @@ fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
     let against = || cost(&["--against", "old.json"]);
     let answer = against();
     assert!(answer.code == Some(0) && answer.out.contains("all counts are equal"), "{}", answer.out);
-    // A machine slower by 5 % is not reported; a kernel slower by 25 % is.
+    // A machine that is 5 % slower is not reported; a kernel that is 25 % slower is reported.
     retime(&out, 1.05);
     assert_eq!(against().code, Some(0));
     retime(&out, 1.25);
@@ -208,7 +209,7 @@ fn a_study_is_drawn_again_from_its_directory() {
     assert_eq!(fs::read_to_string(folder.path().join("out/index.html")).unwrap(), page);
 }
 
-/// An absent effect has no influence.
+/// An effect that is off has no influence when it is compiled in with a neutral value.
 #[test]
 fn an_absent_effect_is_inert() {
     let folder = tempfile::tempdir().unwrap();

@@ -13,8 +13,8 @@ fn root() -> &'static Path {
     Path::new(env!("CARGO_MANIFEST_DIR"))
 }
 
-/// Returns all text files of the repository as relative path and text. Build products, programs installed beside their
-/// adapters and hidden folders except `.ci` are omitted.
+/// Returns the relative path and the text of all text files of the repository. Build products, programs installed
+/// beside their adapters, and hidden folders except `.ci` are left out.
 fn texts() -> Vec<(String, String)> {
     let mut found = Vec::new();
     let mut open = vec![root().to_path_buf()];
@@ -43,14 +43,14 @@ fn rust() -> Vec<(String, String)> {
     texts().into_iter().filter(|(name, _)| name.ends_with(".rs")).collect()
 }
 
-/// Returns code without comments and without the text after `#[cfg(test)]`. Strings with `//` in them are truncated,
+/// Returns code without comments and without everything after `#[cfg(test)]`. A string that contains `//` is truncated,
 /// which does not affect these tests.
 fn code(text: &str) -> String {
     let lines = text.lines().take_while(|line| line.trim() != "#[cfg(test)]");
     lines.map(|line| line.split("//").next().unwrap_or_default().to_owned() + "\n").collect()
 }
 
-/// Returns true if `word` occurs in `text` and is not part of another name.
+/// Returns true if `word` occurs in `text` as a whole name.
 fn has_word(text: &str, word: &str) -> bool {
     let is_name = |letter: char| letter.is_alphanumeric() || letter == '_';
     text.match_indices(word).any(|(at, _)| {
@@ -61,7 +61,7 @@ fn has_word(text: &str, word: &str) -> bool {
 
 #[test]
 fn crates_depend_in_one_direction() {
-    // Allowed dependencies of each crate. A new crate needs a line here.
+    // Allowed dependencies of each crate. A new crate needs an entry here.
     let scene: &[&str] = &["scene"];
     let lanes: &[&str] = &["scene", "lanes"];
     let allowed: &[(&str, &[&str])] = &[
@@ -97,7 +97,7 @@ fn crates_depend_in_one_direction() {
             ],
         ),
     ];
-    // Additional dependencies of a crate's tests: solver tests use the harness, and tests of the studies use one solver.
+    // Additional dependencies of tests: tests of the solvers use the harness, and tests of the studies use one solver.
     let tested: &[(&str, &str)] =
         &[("solvers/dem", "harness"), ("solvers/mpm", "harness"), ("solvers/rigid", "harness"), ("studies", "dem")];
     let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
@@ -120,7 +120,7 @@ fn crates_depend_in_one_direction() {
 
 #[test]
 fn nothing_unsafe_unfinished_or_left_from_debugging() {
-    // In pieces, so that this file does not match.
+    // The words are split, so that this file does not contain them.
     let banned = [
         concat!("un", "safe"),
         concat!("todo", "!("),
@@ -138,7 +138,7 @@ fn nothing_unsafe_unfinished_or_left_from_debugging() {
     }
 }
 
-/// Loops over particles and contacts use no hash map, string or trait object. (`allocations` counts their allocations.)
+/// Loops over particles and contacts use no hash map, string or trait object. The test `allocations` counts their allocations.
 #[test]
 fn no_hash_map_string_or_trait_object_in_hot_loops() {
     let of_dem = "neighbours cells walls grains geometry motion forces laws pairs touching";
@@ -162,8 +162,8 @@ fn no_hash_map_string_or_trait_object_in_hot_loops() {
     }
 }
 
-/// Results of a system library may differ in the last bit between processors, because it selects a version by the
-/// processor's features. The solvers use logarithms and other functions in Rust.
+/// Functions of a system library may differ in the last bit between processors, because the library selects a version
+/// by the features of the processor. The solvers use logarithms and other functions that are written in Rust.
 #[test]
 fn solvers_compute_the_same_bits_on_every_processor() {
     const OF_THE_SYSTEM: [&str; 21] = [
@@ -207,7 +207,7 @@ fn every_case_folder_is_whole() {
             continue;
         }
         assert!(path.join("scene.toml").is_file(), "cases/{name} has no scene.toml, so it is in no registry");
-        // Two cases may share a derivation, which one includes from the other.
+        // Two cases may share a derivation; one case then includes the file of the other case.
         let code = fs::read_to_string(path.join("case.rs")).unwrap_or_default();
         assert!(!code.is_empty() || path.join("claims.toml").is_file(), "cases/{name} has no claims");
         let derived = path.join("derivation.md").is_file() || code.contains("derivation.md\")");
@@ -222,7 +222,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     CASES.par_iter().for_each(|case| {
         let words = [case.title, case.claim, case.derivation, case.weakness];
         assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
-        // Claims in a file state their resolutions; the program leaves out the claims of a wrong file.
+        // Claims in a file state their resolutions. If the file is invalid, its claims are missing.
         let of_file = fs::read_to_string(case.directory().join("claims.toml"));
         match of_file {
             Ok(text) => assert_eq!(text.matches("[[claims]]").count(), (case.claims)().len(), "{}", case.name),
@@ -250,7 +250,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
                 let folder = root().join("reference").join(work.id);
                 assert!(folder.join("provenance.toml").is_file(), "{place}: {} has no provenance", work.id);
             }
-            // Values of an external solver come from a stored or live run and are never typed.
+            // Expected values of an external program come from a stored or live run, never from a number in the code.
             let has_program = claim.runs.iter().any(|run| solvers::is_program(run.solver));
             assert!(claim.evidence() != Evidence::OtherCode || has_program, "{place}: no program ran it");
             for run in &claim.runs {
@@ -260,7 +260,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
     });
 }
 
-/// Returns the formatting errors of some files. `cargo fmt` does not find those in generated lists, such as the cases.
+/// Returns the formatting errors of some files. `cargo fmt` does not find files in generated lists.
 fn badly_formatted(files: &[PathBuf]) -> Option<String> {
     let settings = root().join("rustfmt.toml");
     let mut command = std::process::Command::new("rustfmt");
@@ -290,7 +290,7 @@ fn a_badly_formatted_file_is_seen() {
     }
 }
 
-/// rustfmt does not shorten comments and long strings.
+/// rustfmt does not shorten comments and long strings, so this test limits the length of all lines.
 #[test]
 fn lines_are_short_enough_to_read() {
     const MOST: usize = 130;
@@ -331,8 +331,8 @@ fn the_readme_has_the_two_commands() {
     }
 }
 
-/// Own texts contain no banned phrase. Data, stored results and texts of others are omitted, and so are the adapters in
-/// `peers`, because their hashes belong to stored results. In the sources of the solvers only comments are searched.
+/// Our own texts contain no banned phrase. Data, stored results and third-party texts are left out. The adapters in `peers` are
+/// left out too, because stored results contain their hashes. In the sources of the solvers, only comments are searched.
 #[test]
 fn no_banned_phrases() {
     const BANNED: [&str; 11] = [
@@ -361,7 +361,7 @@ fn no_banned_phrases() {
     let mut found = Vec::new();
     for (name, text) in texts().into_iter().filter(|(name, _)| is_own(name)) {
         let is_solver = name.starts_with("solvers/") && name.contains("/src/");
-        // A phrase may continue on the next line, behind the mark of a comment or of a continued string.
+        // A phrase may continue on the next line, after the mark of a comment or of a continued string.
         let mut joined = String::new();
         for line in text.lines() {
             let line = if is_solver { line.split_once("//").map_or("", |(_, comment)| comment) } else { line };

@@ -1,5 +1,5 @@
-//! Wrong values for every option of every command. Each is an error before any run, with its whole message in a
-//! snapshot. The options come from the command's own help, so that none is missing.
+//! Wrong values for each option of each command. Each gives an error before any run, and a snapshot contains the whole
+//! message. The options are read from the help of the command, so that none is missing.
 
 use crate::common::{files, grainbench_alone};
 use grainbench::cases::registry::CASES;
@@ -30,13 +30,13 @@ const COMMANDS: [&[&str]; 20] = [
     &["man"],
 ];
 
-/// An option in the help: its long name and the name of its value.
+/// An option as shown in the help: its long name and the name of its value.
 struct HelpOption {
     name: String,
     value: Option<String>,
 }
 
-/// Returns the options in a help text.
+/// Returns the options that a help text lists.
 fn options(help: &str) -> Vec<HelpOption> {
     let read = |line: &str| {
         let line = line.trim_start();
@@ -56,7 +56,7 @@ fn options(help: &str) -> Vec<HelpOption> {
     help.lines().filter_map(read).filter(|shown| !["--help", "--version"].contains(&shown.name.as_str())).collect()
 }
 
-/// Returns values that are invalid for all options with this name of the value.
+/// Returns values that are invalid for an option. They depend on the name of the option or of its value.
 fn wrong(option: &HelpOption) -> Vec<&'static str> {
     match (option.name.as_str(), option.value.as_deref()) {
         (_, None) => vec!["yes"],
@@ -70,7 +70,7 @@ fn wrong(option: &HelpOption) -> Vec<&'static str> {
     }
 }
 
-/// Writes the files of the directory: a scene, a table, an empty file, a directory.
+/// Writes the files that the commands need: a scene, a table, an empty file and a directory.
 fn prepare(directory: &Path) {
     let scene = "title = \"One\"
 dimension = 2
@@ -88,13 +88,13 @@ position = [0.0, 0.0]
     std::fs::create_dir(directory.join("a-directory")).unwrap();
 }
 
-/// Removes the names of all cases, which this test does not depend on.
+/// Replaces the names of all cases by a placeholder, so that a new case does not change the snapshots.
 fn without_cases(message: &str) -> String {
     let cases: String = CASES.iter().map(|case| format!("  {}\n", case.name)).collect();
     message.replace(&cases, "  [cases]\n")
 }
 
-/// Returns a command without one of its options and its value.
+/// Returns a command without one of its options and the value of this option.
 fn without<'a>(command: &[&'a str], option: &str) -> Vec<&'a str> {
     let place = command.iter().position(|word| *word == option).unwrap_or(command.len());
     command.iter().enumerate().filter(|(at, _)| *at != place && *at != place + 1).map(|(_, word)| *word).collect()
@@ -138,7 +138,7 @@ fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
     }
 }
 
-/// The commands are those that the program lists.
+/// The list of commands in this test is the list of commands that the program shows.
 #[test]
 fn no_command_is_left_out() {
     let directory = tempfile::tempdir().unwrap();

@@ -1,5 +1,5 @@
-//! Sets each key of the scene schema to a value of a wrong type. Each error names file, line, key and expected type.
-//! Boolean keys accept `true`. Keys below `variants` are skipped.
+//! Sets each key of the scene schema to a value of a wrong type. Each error names the file, the line, the key and the
+//! expected type. Boolean keys accept `true`. Keys below `variants` are skipped.
 
 use grainbench::cases::registry::read_grains;
 use grainbench::scene::source::SceneSource;
@@ -8,10 +8,10 @@ use std::collections::BTreeSet;
 use std::fmt::Write as _;
 use std::path::Path;
 
-/// Values that are invalid for every key.
+/// Values that are wrong for every key, except `true` for Boolean keys.
 const WRONG: [&str; 3] = ["{ wrong = 1 }", "[[\"wrong\"]]", "true"];
 
-/// Returns the paths of all keys; `x` replaces the user's names.
+/// Returns the paths of all keys of the schema. `x` represents names that the user chooses.
 fn keys(schema: &Value) -> BTreeSet<String> {
     let mut found = BTreeSet::new();
     walk(schema, schema, "", 0, &mut found);
@@ -27,7 +27,7 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
         walk(schema, one, path, depth + 1, found);
     }
     for (key, subschema) in at.get("properties").and_then(Value::as_object).into_iter().flatten() {
-        // A variant may contain any key of a scene.
+        // A variant may contain any key of a scene, so its keys are skipped.
         if key == "variants" {
             continue;
         }
@@ -41,7 +41,7 @@ fn walk(schema: &Value, at: &Value, path: &str, depth: usize, found: &mut BTreeS
     }
 }
 
-/// Returns the error for a scene with one additional line at the start; `None` if the scene is valid.
+/// Returns the error of a scene that begins with an additional line; `None` if the scene is valid.
 fn answer(line: &str) -> Option<String> {
     let rest = "title = \"One key\"\ndimension = 2\nduration = 1.0\n";
     let key = line.split(' ').next().unwrap_or_default();

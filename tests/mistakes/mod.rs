@@ -10,7 +10,7 @@ pub(crate) const PLANE: &str = include_str!("../scenes/plane.toml");
 /// A scene in three dimensions with all features.
 pub(crate) const SPACE: &str = include_str!("../scenes/space.toml");
 
-/// Values that replace other values.
+/// Values that replace other values of a scene.
 pub(crate) const STRANGE: &[&str] = &[
     "1e308",
     "-1e308",
@@ -34,7 +34,7 @@ pub(crate) const STRANGE: &[&str] = &[
     "[1e-200, 0.0]",
 ];
 
-/// One mistake. Its numbers select positions, modulo the number of positions.
+/// A mistake in a text. Its numbers select positions, modulo the number of possible positions.
 #[derive(Clone, Debug)]
 pub(crate) enum Mistake {
     FlipBit(usize, u8),
@@ -47,7 +47,6 @@ pub(crate) enum Mistake {
     Scale(usize, i32),
 }
 
-/// Returns a random mistake.
 pub(crate) fn mistake() -> impl Strategy<Value = Mistake> {
     let place = || any::<usize>();
     prop_oneof![
@@ -62,10 +61,10 @@ pub(crate) fn mistake() -> impl Strategy<Value = Mistake> {
     ]
 }
 
-/// Makes a mistake in a text.
+/// Returns a text with a mistake in it.
 pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
     let mut lines: Vec<String> = text.lines().map(str::to_owned).collect();
-    // Positions of values: line, start and end, also inside braces.
+    // Position of each value: line, start and end. Values within braces are included.
     let values: Vec<(usize, usize, usize)> = lines
         .iter()
         .enumerate()
@@ -111,7 +110,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
         Mistake::Scale(at, power) if !values.is_empty() => {
             let (line, start, end) = values[at % values.len()];
             let text = &lines[line][start..end];
-            // First number of a value, which may be a list.
+            // The first number of the value, which may be a list of numbers.
             let digits = |letter: char| letter.is_ascii_digit() || "+-.eE_".contains(letter);
             if let Some(begin) = text.find(|letter: char| letter.is_ascii_digit()) {
                 let rest = &text[begin..];
@@ -128,7 +127,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
             let (a, b) = (values[a % values.len()], values[b % values.len()]);
             let text_of = |(line, start, end): (usize, usize, usize)| lines[line][start..end].to_owned();
             let (of_a, of_b) = (text_of(a), text_of(b));
-            // Values of one line may contain each other, so only one is replaced then.
+            // Two values on the same line may contain each other, so only one of them is replaced.
             lines[a.0].replace_range(a.1..a.2, &of_b);
             if a.0 != b.0 {
                 lines[b.0].replace_range(b.1..b.2, &of_a);
@@ -139,7 +138,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
     lines.join("\n") + "\n"
 }
 
-/// Returns the contents of a data file: two grains.
+/// Returns the content of a data file: two grains.
 pub(crate) fn two_grains(_: &Path) -> Result<Vec<FileGrain>, String> {
     let grain = |x: f64| FileGrain {
         type_number: 1,

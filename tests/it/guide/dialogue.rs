@@ -1,13 +1,13 @@
-//! `console` blocks: commands and their output.
+//! `console` blocks of the guide: commands and their output.
 
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
 
-/// Placeholder for varying text.
+/// Placeholder for text that varies.
 const ANY: &str = "…";
 
-/// A command with the output that the guide shows.
+/// A command, with the output that the guide shows for it.
 pub(crate) struct Step {
     pub(crate) line: usize,
     command: String,
@@ -15,13 +15,13 @@ pub(crate) struct Step {
     exit: i32,
 }
 
-/// A block with the programs that it needs.
+/// A `console` block, with the programs that it needs.
 pub(crate) struct Block {
     pub(crate) needs: Vec<String>,
     pub(crate) steps: Vec<Step>,
 }
 
-/// Returns the dialogues of a text.
+/// Returns the `console` blocks of a text.
 pub(crate) fn blocks(text: &str) -> Result<Vec<Block>, String> {
     let mut found = Vec::new();
     let mut needs = Vec::new();
@@ -54,12 +54,12 @@ pub(crate) fn blocks(text: &str) -> Result<Vec<Block>, String> {
     if open.is_some() { Err("a block does not end".to_owned()) } else { Ok(found) }
 }
 
-/// Returns a line with ordinary spaces instead of non-breaking ones.
+/// Returns a line in which non-breaking spaces are replaced by ordinary spaces.
 fn plain(line: &str) -> String {
     line.trim_end().replace(['\u{a0}', '\u{2009}', '\u{202f}'], " ")
 }
 
-/// Returns true if a line matches the shown line.
+/// Returns true if an output line matches a shown line, which may contain [`ANY`].
 pub(crate) fn hold(shown: &str, line: &str) -> bool {
     let mut parts = shown.split(ANY);
     let Some(mut rest) = line.strip_prefix(parts.next().unwrap_or_default()) else { return false };
@@ -72,7 +72,7 @@ pub(crate) fn hold(shown: &str, line: &str) -> bool {
     rest.ends_with(last)
 }
 
-/// Returns true if the shown lines are part of the output. They must be consecutive there, except across `…`.
+/// Returns true if the output contains the shown lines in their order. They must be consecutive, except across a line `…`.
 fn is_part(shown: &[String], answer: &[String]) -> bool {
     let mut from = 0;
     for run in shown.split(|line| line == ANY).filter(|run| !run.is_empty()) {
@@ -85,7 +85,7 @@ fn is_part(shown: &[String], answer: &[String]) -> bool {
     true
 }
 
-/// Returns true if a program is installed, which it must be in CI.
+/// Returns true if a program is installed. In CI, a missing program is an error.
 pub(crate) fn is_here(program: &str) -> bool {
     let found = Command::new("sh").args(["-c", "command -v \"$0\"", program]).stdout(Stdio::null()).status();
     let is_here = found.is_ok_and(|status| status.success());
@@ -93,7 +93,7 @@ pub(crate) fn is_here(program: &str) -> bool {
     is_here
 }
 
-/// A copy of the files that a reader has: the guide and the examples, with the program on the path.
+/// Copy of the files that a reader of the guide has: guide and examples, with the program on the path.
 pub(crate) struct Place {
     folder: tempfile::TempDir,
 }
@@ -126,7 +126,7 @@ impl Place {
         Self { folder }
     }
 
-    /// Runs a command and returns the differences between its output and the shown output.
+    /// Runs a command. Returns an error that shows the difference if the output is not as shown.
     pub(crate) fn run(&self, step: &Step) -> Result<(), String> {
         let mut path = vec![self.folder.path().join("bin")];
         path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).collect::<Vec<PathBuf>>());

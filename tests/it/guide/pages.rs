@@ -1,17 +1,16 @@
-//! Chapters of the guide: their includes and their links.
+//! Chapters of the guide, with their included files and links.
 
 use crate::common::root;
 use std::fs;
 use std::path::Path;
 
-/// A chapter of the guide.
 #[derive(Clone)]
 pub(crate) struct Chapter {
     pub(crate) name: String,
     pub(crate) text: String,
 }
 
-/// Returns all chapters by name.
+/// Returns all chapters, sorted by name.
 pub(crate) fn chapters() -> Vec<Chapter> {
     let mut found: Vec<Chapter> = fs::read_dir(root("guide/src"))
         .unwrap()
@@ -28,7 +27,7 @@ pub(crate) fn chapters() -> Vec<Chapter> {
     found
 }
 
-/// Returns the text of a file, or of a part of it between mdBook anchors.
+/// Returns the text of a file, or the part of it between two mdBook anchors.
 fn included(path: &str) -> Result<String, String> {
     let (path, anchor) = path.split_once(':').map_or((path, None), |(path, anchor)| (path, Some(anchor)));
     let file = root("guide/src").join(path);
@@ -42,7 +41,7 @@ fn included(path: &str) -> Result<String, String> {
     Ok(text.lines().skip(start + 1).take(end.saturating_sub(start + 1)).collect::<Vec<_>>().join("\n"))
 }
 
-/// Returns a chapter with its includes expanded.
+/// Returns the text of a chapter with all included files inserted.
 fn expanded(chapter: &Chapter) -> Result<String, String> {
     let mut found = String::new();
     let mut rest = chapter.text.as_str();
@@ -56,8 +55,8 @@ fn expanded(chapter: &Chapter) -> Result<String, String> {
     Ok(found + rest)
 }
 
-/// Returns a text in which the block or table after each `<!-- file: PATH -->` has the content of the file. A block ends
-/// with its fence, a table with `<!-- end of file -->`.
+/// Returns a text in which the block or table after each `<!-- file: PATH -->` is replaced by the file's content. A
+/// block ends with its fence, and a table with `<!-- end of file -->`.
 pub(crate) fn with_files(text: &str) -> Result<String, String> {
     let (mut found, mut lines) = (Vec::new(), text.lines());
     while let Some(line) = lines.next() {
@@ -81,7 +80,7 @@ pub(crate) fn with_files(text: &str) -> Result<String, String> {
     Ok(found.join("\n") + "\n")
 }
 
-/// Returns the link target of a heading.
+/// Returns the anchor of a heading.
 fn slug(heading: &str) -> String {
     let words = heading.trim_start_matches('#').trim().to_lowercase();
     words
@@ -91,7 +90,7 @@ fn slug(heading: &str) -> String {
         .collect()
 }
 
-/// Returns the link targets of a text, outside of blocks and code.
+/// Returns the targets of all links of a text, except those in code.
 fn links(text: &str) -> Vec<String> {
     let mut found = Vec::new();
     let mut is_code = false;
@@ -106,7 +105,7 @@ fn links(text: &str) -> Vec<String> {
     found
 }
 
-/// Returns broken links, includes and blocks, and chapters that the summary lacks.
+/// Returns descriptions of broken links, included files and blocks, and of chapters that the summary lacks.
 pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     const LANGUAGES: [&str; 6] = ["console", "toml", "rust", "python", "cpp", "text"];
     let summary = fs::read_to_string(root("guide/src/SUMMARY.md")).unwrap();
@@ -138,7 +137,7 @@ pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     lost
 }
 
-/// Returns files beside the chapters that no chapter includes, and scenes that no chapter simulates.
+/// Returns the files that no chapter shows, and the scenes that no chapter simulates.
 pub(crate) fn untold(chapters: &[Chapter]) -> Vec<String> {
     let mut found = Vec::new();
     for folder in ["scenes", "claims"] {
