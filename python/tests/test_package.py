@@ -46,7 +46,7 @@ MISTAKES = [
     ("np.add.at(torques, b, arms[1] * moment)", "np.add.at(torques, b, -arms[1] * moment)", IMPACT, None),
     ("np.minimum(1, mu", "np.minimum(1, 0.5 * mu", IMPACT, "half the friction"),
     ("torques[:count] / inertia", "torques[:count] / (0.8 * inertia)", IMPACT, None),
-    ("torques[:count] / inertia", "0 * torques[:count]", IMPACT, "grains that do not turn"),
+    ("torques[:count] / inertia", "0 * torques[:count]", IMPACT, "grains that do not rotate"),
     ("push = k[:, None] * overlap -", "push = 0.5 * k[:, None] * overlap -", SLOPE, None),
     ("overlap - (c + beta * k)", "overlap - 0.5 * (c + beta * k)", SLOPE, "half the normal damping"),
     ("overlap - (c + beta * k)", "overlap - 2 * (c + beta * k)", SLOPE, "twice the normal damping"),
