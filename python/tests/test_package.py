@@ -237,7 +237,7 @@ def test_what_is_not_declared_is_not_asked_for() -> None:
 
     rows = gb.judge(nothing, ["backspin/disc"]).verdicts
     assert {row["verdict"] for row in rows} == {"unsupported"}
-    assert "scenes of 2 dimensions" in rows[0]["detail"]
+    assert "scenes in 2 dimensions" in rows[0]["detail"]
 
 
 def test_arrays_have_the_shapes_that_they_say() -> None:
