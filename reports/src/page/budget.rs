@@ -16,8 +16,8 @@ pub(crate) enum Rank {
     /// Figures in a closed section, which the reader must open.
     ClosedFigures,
     Derivations,
-    Films,
     Figures,
+    Films,
     Rows,
 }
 
