@@ -136,13 +136,13 @@ mod tests {
         assert_eq!(fit(pieces(), 0).1.len(), 3);
     }
 
-    /// The figure of 90 bytes must be moved. The film of 40 bytes, which was moved first, then returns.
+    /// The film of 90 bytes must be moved. The figure of 40 bytes, which was moved first, then returns.
     #[test]
     fn what_fits_again_comes_back() {
         let part = |rank, length: usize| {
             Piece::Part(Part { rank, whole: "x".repeat(length), link: "l".to_owned(), file: None })
         };
-        let pieces = vec![part(Rank::Films, 40), part(Rank::Figures, 90), Piece::Fixed("-".repeat(10))];
+        let pieces = vec![part(Rank::Figures, 40), part(Rank::Films, 90), Piece::Fixed("-".repeat(10))];
         assert_eq!(fit(pieces, 60).0, format!("{}l{}", "x".repeat(40), "-".repeat(10)));
     }
 }
