@@ -134,3 +134,34 @@ fn a_driven_grain_follows_a_sine() {
     let refusal = try_run("mpm", |_| (), &scene_text("spin = 1.0"), Resolution::grid(8.0, 2)).unwrap_err().to_string();
     assert!(refusal.contains("driven grains that rotate"), "{refusal}");
 }
+
+/// Returns a driven disc under a free disc, in gravity and with global damping.
+fn loaded(gap: f64) -> String {
+    format!(
+        "dimension = 2\nduration = 20.0\ngravity = [0.0, -0.02]\nglobal_damping = 1.0\nlargest_initial_overlap = 0.1\n\
+         materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+         contacts.m = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.5 }}\n\
+         [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, {}]\n\
+         [driven.ram]\ngrains = 'a'\nvelocity = [0.0, 0.0]\n[probes]\nram.driven = 'ram'\nb.grain = 'b'\n",
+        2.0 + gap
+    )
+}
+
+/// The force on a driven disc is the weight m g of the disc that rests on it, without its own weight, and zero without
+/// contact, when the disc is moved against gravity and global damping α. With α = 1/s, the oscillation of the free disc
+/// decays by exp(−αt/2) = 5e-5, and the damped nodes pass on the force divided by 1 + αΔt/2. The tolerance is αΔt.
+#[test]
+fn the_force_on_a_driven_grain_is_that_of_its_contacts() {
+    let weight = std::f64::consts::PI * 0.02;
+    for name in ["mpm", "mpm:2000"] {
+        let record = run(name, &loaded(0.0), 8.0, 2);
+        let force = last(&record, "ram.force_y");
+        assert!((force / -weight - 1.0).abs() < record.provenance.time_step, "{name}: {force} for {}", -weight);
+        let motion = "motion = [{ sine = { amplitude = [0.1, 0.2], frequency = 0.1 } }]";
+        let alone = run(name, &loaded(50.0).replace("velocity = [0.0, 0.0]", motion), 8.0, 2);
+        let forces = [column(&alone, "ram.force_x"), column(&alone, "ram.force_y")].concat();
+        let largest = forces.iter().fold(0.0, |largest: f64, force| largest.max(force.abs()));
+        assert!(largest < 1e-9 * weight, "{name}: {largest}");
+    }
+}
