@@ -7,8 +7,8 @@ use std::sync::atomic::{AtomicUsize, Ordering};
 ///
 /// Returns the number of indices for which `work` was not called.
 ///
-/// The threads are not from a pool, because `work` may wait for a run that another index has started. A waiting thread
-/// of a pool could start another index, and a run could then wait for itself.
+/// The threads are not from a pool, because `work` may wait for a run that another index has started. A waiting thread of
+/// a pool could start another index, and a run could then wait for itself.
 pub fn share(pieces: usize, at_once: usize, goes_on: impl Fn() -> bool + Sync, work: impl Fn(usize) + Sync) -> usize {
     let next = AtomicUsize::new(0);
     let take =

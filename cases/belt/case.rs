@@ -292,8 +292,8 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on a disc on a belt that stops. Velocity and spin become zero. The displacement is the velocity
-/// of rolling times the time at which the belt stops.
+/// Returns the claims on a disc on a belt that stops. Velocity and spin become zero. The displacement is the velocity of
+/// rolling times the time at which the belt stops.
 fn stopped() -> Vec<Claim> {
     let (belt, step) = stiff(STOPS);
     let turning = || {

@@ -1,8 +1,8 @@
 //! Photoelastic fringes in the discs at the paper's frame times, and an animation of the line.
 //!
 //! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here c is
-//! fitted once, also to the line. In the last frame of the line, the first grey fringe, cos(Δσ/c) = 0, is at the centre
-//! of the fourth disc. The zig-zags use the same c.
+//! fitted once, also to the line. In the last frame of the line, the first grey fringe, cos(Δσ/c) = 0, is at the centre of
+//! the fourth disc. The zig-zags use the same c.
 
 use super::WAVE_SPEED;
 use super::elastic::{grid, principal_difference, run};

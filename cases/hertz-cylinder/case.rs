@@ -137,8 +137,8 @@ fn tolerance(coarsest: f64, cells: f64) -> Tolerance {
 
 /// Returns the remaining oscillation of the cylinder's force about equilibrium after 0.4 ms, divided by the weight.
 ///
-/// The half-width grows as √P. A small additional load dP therefore moves the centre of the cylinder towards the base
-/// of the block, which is d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]. See
+/// The half-width grows as √P. A small additional load dP therefore moves the centre of the cylinder towards the base of
+/// the block, which is d below the contact, by dP/π [(2 ln(4R/b) − 2)/E'₁ + (2 ln(2d/b) − ν/(1 − ν) − 1)/E'₂]. See
 /// Johnson, Contact Mechanics, eqs. 5.57 and 5.58, for a cylinder and for a layer on a base. Steel on aluminium, R = d
 /// = 0.05 m.
 fn swings() -> f64 {

@@ -1,8 +1,8 @@
 //! Elastic disc that is set down on the plane and released, computed with the material point method.
 //!
 //! Before the run, the disc comes to rest on the plane under g cos θ, with damping. It is released at t = 0. An elastic
-//! disc sticks and deforms before it slips, and rolls on a flattened side. Its displacement therefore differs from that
-//! of a rigid disc by a few per cent at any resolution. The expected values are those of an independent prototype,
+//! disc sticks and deforms before it slips, and rolls on a flattened side. Its displacement therefore differs from that of
+//! a rigid disc by a few per cent at any resolution. The expected values are those of an independent prototype,
 //! extrapolated from four resolutions (quadratic B-splines, APIC, springs at the surface). Claims with larger moduli
 //! use the rigid solution and need no prototype.
 

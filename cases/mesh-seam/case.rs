@@ -77,8 +77,8 @@ fn rolls(floor: &'static str) -> Claim {
         }))
 }
 
-/// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates
-/// of the flat mesh have rounding errors.
+/// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates of
+/// the flat mesh have rounding errors.
 fn as_plane(floor: &'static str) -> Claim {
     let turned_run = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")

@@ -49,8 +49,8 @@ pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
     Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
 }
 
-/// Returns the scene of a source that reads its grains from LAMMPS data files. `files` contains the name and the text
-/// of each data file.
+/// Returns the scene of a source that reads its grains from LAMMPS data files. `files` contains the name and the text of
+/// each data file.
 ///
 /// # Errors
 /// When the scene or a data file is invalid, or `files` lacks a data file. The message gives the place in the file.

@@ -151,8 +151,8 @@ fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(f64::hypot(x, y), 0.0, scale))
 }
 
-/// Returns the claims on three discs that collide at one point. Contacts must act in pairs, independent of the number
-/// of bodies at a node.
+/// Returns the claims on three discs that collide at one point. Contacts must act in pairs, independent of the number of
+/// bodies at a node.
 fn three() -> Vec<Claim> {
     let momentum_claim = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")

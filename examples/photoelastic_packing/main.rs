@@ -5,8 +5,8 @@
 //! positions and velocities of the walls. If FOLDER contains the compressed packing, such as `start-1.data.gz` in the
 //! folder of the case, the program uses the packing of the case and only finds the motion of the walls.
 //!
-//! At stage A, the mean overlap and the ratio F_H/F_V of horizontal to vertical wall force are prescribed. The growth
-//! of F_V from stage A to stage B is prescribed, too. The result is F_H/F_V at stage B. No parameter is fitted to this
+//! At stage A, the mean overlap and the ratio F_H/F_V of horizontal to vertical wall force are prescribed. The growth of
+//! F_V from stage A to stage B is prescribed, too. The result is F_H/F_V at stage B. No parameter is fitted to this
 //! result.
 
 mod prepare;

@@ -36,8 +36,8 @@ mod tests {
 
     #[test]
     fn the_interval_is_that_of_the_blocks() {
-        // The blocks have the means 1, 2, 3 and 4, so their standard deviation is s = √(5/3). Student's t for 3 degrees
-        // of freedom at 99 % is 5.840909.
+        // The blocks have the means 1, 2, 3 and 4, so their standard deviation is s = √(5/3). Student's t for 3 degrees of
+        // freedom at 99 % is 5.840909.
         let values = [0.5, 1.5, 2.0, 2.0, 3.0, 3.0, 4.5, 3.5];
         let found = mean(&values, 4).unwrap();
         assert!((found.value - 2.5).abs() < 1e-15 && found.blocks == 4);

@@ -87,8 +87,8 @@ impl Runner {
         }
     }
 
-    /// Replaces every solver named in the claims by one external solver. The external solver interprets the resolutions
-    /// of the claims itself.
+    /// Replaces every solver named in the claims by one external solver. The external solver interprets the resolutions of
+    /// the claims itself.
     #[must_use]
     pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
         Self { stranger: Some(solver), ..self }

@@ -18,8 +18,8 @@ use crate::read::snapshot::{Coordinate, DumpSnapshot};
 /// Names of columns in a file that differ from those of LAMMPS. Each entry is a pair of our name, such as `x`, `vx` or
 /// `omegaz`, and the name in the file.
 ///
-/// For other quantities our names are: `angle` for the rotation angle of a disc (rad), and `WALL.force_x` for the force
-/// of the scene's wall `WALL` on a grain.
+/// For other quantities our names are: `angle` for the rotation angle of a disc (rad), and `WALL.force_x` for the force of
+/// the scene's wall `WALL` on a grain.
 ///
 /// In dumps of contacts, our names are `id1`, `id2`, and `force_x` for the force on the first grain. `tangential_x` is
 /// the tangential force, if it has separate columns.

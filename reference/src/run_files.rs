@@ -157,8 +157,8 @@ fn format(path: &Path) -> Result<&'static Format, ReadError> {
     })
 }
 
-/// Returns true for a file with the simulation box, which LIGGGHTS writes for each file of grains. Patterns for files
-/// of grains match its name too.
+/// Returns true for a file with the simulation box, which LIGGGHTS writes for each file of grains. Patterns for files of
+/// grains match its name too.
 fn is_box(path: &Path) -> bool {
     path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("boundingBox"))
 }

@@ -214,8 +214,8 @@ fn is_asked(diagram: &Diagram, line: &str) -> bool {
     cost::of_line(diagram, line).any(|point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed))
 }
 
-/// Returns the Pareto front of a solver in a diagram. Times are divided by the time of the cheapest solver at an error
-/// of 1 %.
+/// Returns the Pareto front of a solver in a diagram. Times are divided by the time of the cheapest solver at an error of
+/// 1 %.
 fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
     let Some(unit) = cheapest(diagram, lines, TARGETS[AT]) else { return Vec::new() };
     let front = cost::front(cost::of_line(diagram, line));

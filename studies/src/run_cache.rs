@@ -1,5 +1,5 @@
-//! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes
-//! of claims.
+//! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes of
+//! claims.
 //!
 //! The key of a run is a hash of its scene, solver, defect, resolution, SIMD backend and the sources that the solver
 //! was built from. A changed case or solver therefore repeats only the affected runs. A file that is damaged or holds

@@ -36,8 +36,8 @@ impl Numbers {
         Ok(Self { file: Value::Table(file), definite, columns })
     }
 
-    /// Returns true if a name belongs to the record and not to the scene. A name that is neither a column nor a number
-    /// of the scene counts as a missing column.
+    /// Returns true if a name belongs to the record and not to the scene. A name that is neither a column nor a number of
+    /// the scene counts as a missing column.
     pub fn is_of_record(&self, name: &str) -> bool {
         name != TIME && (self.columns.iter().any(|column| column == name) || self.get(name).is_none())
     }

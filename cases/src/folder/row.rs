@@ -108,8 +108,8 @@ impl Reader<'_> {
     }
 }
 
-/// Adds expected value and source to a claim. `knows_columns` is true if a name that is neither a column nor a number
-/// of the scene is an error.
+/// Adds expected value and source to a claim. `knows_columns` is true if a name that is neither a column nor a number of
+/// the scene is an error.
 fn expecting(
     quantity: Quantity,
     claimed: &ClaimEntry,

@@ -331,8 +331,8 @@ pub fn angular_momentum(
         }))
 }
 
-/// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number
-/// of cycles, which `rigid` does not support.
+/// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number of
+/// cycles, which `rigid` does not support.
 #[must_use]
 pub fn gas_energy(
     variant: &'static str,

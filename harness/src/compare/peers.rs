@@ -219,8 +219,8 @@ fn windowed(values: &[f64], half: usize) -> Vec<f64> {
 #[must_use]
 pub fn together(first: &Series, values: &[f64], second: &Series, name: &str) -> Option<(Vec<f64>, Vec<f64>, Vec<f64>)> {
     let others = second.column(name)?;
-    // Times printed by a program have few digits. The tolerance exceeds their rounding and is smaller than the spacing
-    // of samples.
+    // Times printed by a program have few digits. The tolerance exceeds their rounding and is smaller than the spacing of
+    // samples.
     let interval = second.time.get(1).zip(second.time.first()).map_or(0.0, |(next, first)| next - first);
     let near = (1e-6 * second.time.last().copied().unwrap_or_default()).min(0.01 * interval);
     let (mut times, mut a, mut b) = (Vec::new(), Vec::new(), Vec::new());

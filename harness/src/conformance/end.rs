@@ -70,8 +70,8 @@ impl End {
 
 /// Returns the speed error (m/s) that rounding can cause between two runs of collisions.
 ///
-/// Every step rounds positions of size L by εL. This changes velocities by ω²εLΔt, where ω = 2/Δt_crit is the frequency
-/// of the stiffest contact and ε is the machine precision. Every step also rounds velocities U by εU.
+/// Every step rounds positions of size L by εL. This changes velocities by ω²εLΔt, where ω = 2/Δt_crit is the frequency of
+/// the stiffest contact and ε is the machine precision. Every step also rounds velocities U by εU.
 pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
     let rate = 2.0 / scene.critical_time_step();
     let rounding_error = |end: &End| {

@@ -168,8 +168,8 @@ pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
 /// friction, or moves along the tangent with friction.
 ///
 /// Friction and vibration together would reduce the order of convergence of a solver with the lever arm R − overlap/2. It
-/// combines velocities at mid-step with lever arms at the end of the step, while the overlap changes. The resulting error is
-/// of first order in the time step, and its coefficient is proportional to the overlap.
+/// combines velocities at mid-step with lever arms at the end of the step, while the overlap changes. The resulting error is of
+/// first order in the time step, and its coefficient is proportional to the overlap.
 pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
         scene("held-2d", &[HELD_2D, SPRINGS], false)?,

@@ -295,8 +295,8 @@ fn slow_spin(scene: &Scene) -> f64 {
     0.01 / scene.crossing_time(1.0)
 }
 
-/// Returns freely rotating deformable bodies with each constitutive law. In two dimensions they rotate about the normal
-/// of the plane, and in three about an oblique axis.
+/// Returns freely rotating deformable bodies with each constitutive law. In two dimensions they rotate about the normal of
+/// the plane, and in three about an oblique axis.
 pub(super) fn free() -> Result<Vec<NamedScene>, SceneError> {
     let laws = [
         ("free-2d-neo-hookean", 2, "neo-hookean", ""),

@@ -93,8 +93,8 @@ impl Frames {
         columns.clone_into(&mut self.wanted);
     }
 
-    /// Returns the columns of the file by their names in the first file. Coordinates come first. Ids and text columns
-    /// of dumps are omitted, and steps and times of tables. The columns of a dump are known only after its first frame.
+    /// Returns the columns of the file by their names in the first file. Coordinates come first. Ids and text columns of
+    /// dumps are omitted, and steps and times of tables. The columns of a dump are known only after its first frame.
     pub(super) fn columns(&self) -> Vec<String> {
         let ours = |theirs: &str| {
             let renamed = self.names.0.iter().find(|(_, known)| known == theirs);

@@ -52,8 +52,8 @@ pub(crate) struct Launch<'p> {
 pub(crate) enum Protocol<'p> {
     /// The exit code is 0 after a successful run.
     ExitCode,
-    /// The exit code is 0 after a successful run, and [`CANNOT`] if the program cannot express the scene. If the name
-    /// of a report is given, the program may write this file.
+    /// The exit code is 0 after a successful run, and [`CANNOT`] if the program cannot express the scene. If the name of
+    /// a report is given, the program may write this file.
     Report(Option<&'p str>),
     /// A worker answers one request after the other. The list contains the workers that wait for a request.
     Worker(&'p Mutex<Vec<Worker>>),

@@ -28,8 +28,8 @@ pub struct StoredRunFiles {
     pub files: Vec<(String, Vec<u8>)>,
 }
 
-/// Runs a scene three times: as it is, with half the time step, and with a perturbed initial state. Returns the files
-/// of the stored run.
+/// Runs a scene three times: as it is, with half the time step, and with a perturbed initial state. Returns the files of
+/// the stored run.
 ///
 /// `id` is the name of the run in `reference build`. `title` describes the run, and `date` is the day (YYYY-MM-DD).
 ///

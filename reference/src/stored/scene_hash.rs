@@ -9,8 +9,8 @@ use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;
 
-/// Returns the BLAKE3 hash, in lower-case hexadecimal, of the time steps and of all data of a scene that affect a run
-/// of rigid grains.
+/// Returns the BLAKE3 hash, in lower-case hexadecimal, of the time steps and of all data of a scene that affect a run of
+/// rigid grains.
 ///
 /// Titles, names of materials, the sampling interval and data of deformable bodies are excluded. Numbers are hashed
 /// with all their digits.

@@ -24,8 +24,8 @@ fn place(course: &Course, cell: usize) -> Vec<Cell> {
 
 const PLACE: [&str; 6] = ["i", "j", "k", "x (m)", "y (m)", "z (m)"];
 
-/// Returns a table with one row per element and frame. The column `mask` states the reason if the element is left out
-/// of averages.
+/// Returns a table with one row per element and frame. The column `mask` states the reason if the element is left out of
+/// averages.
 pub(super) fn elements(course: &Course) -> Sheet<'_> {
     let first = heads(["step", "time (s)"].into_iter().chain(PLACE).chain(["mask"]));
     let rows = course.frames.iter().flat_map(move |frame| {

@@ -17,8 +17,8 @@ pub const RECORD_FILE: &str = "record.json";
 
 /// Writes the record on one line, because it may contain millions of numbers. The numbers read back to the same bits.
 ///
-/// The snapshots come from the store. The record of a run with at most [`READABLE`] rows contains all snapshots. The record
-/// of a larger run contains only the last snapshot, or no snapshot if the last one alone has more than [`READABLE`] rows.
+/// The snapshots come from the store. The record of a run with at most [`READABLE`] rows contains all snapshots. The record of
+/// a larger run contains only the last snapshot, or no snapshot if the last one alone has more than [`READABLE`] rows.
 ///
 /// # Errors
 /// When `out` cannot be written, or when a snapshot cannot be read.

@@ -75,8 +75,8 @@ pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     }
 }
 
-/// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so average widths
-/// of letters are used.
+/// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so average widths of
+/// letters are used.
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let letters: f64 = text
         .chars()

@@ -42,8 +42,8 @@ impl<'a> Terms<'a> {
 
 /// Loops over contacts for any combination of contact laws.
 pub(crate) trait Forces<S: Geometry>: Send + Sync {
-    /// Adds the forces and torques of the pairs in contact to the sums. `pairs` is the list of pairs and the index of one
-    /// of its blocks, and `touching` holds the pairs in contact of this block. With `seen`, the method records every
+    /// Adds the forces and torques of the pairs in contact to the sums. `pairs` is the list of pairs and the index of one of
+    /// its blocks, and `touching` holds the pairs in contact of this block. With `seen`, the method records every
     /// contact whose first grain is among the summed grains.
     fn of_pairs(
         &self,

@@ -1,5 +1,5 @@
-//! Vectors and spins for contact laws, in two and three dimensions. Each component is one number, or one number per lane
-//! of a SIMD register.
+//! Vectors and spins for contact laws, in two and three dimensions. Each component is one number, or one number per lane of
+//! a SIMD register.
 
 use grainbench_lanes::{Number, Quad};
 use grainbench_scene::space::{Plane, Solid, Space};

@@ -32,8 +32,8 @@ pub(crate) struct Constants<X> {
 }
 
 impl Constants<f64> {
-    /// Returns the constants of a law. A law without friction has no tangential spring or dashpot, even if other laws
-    /// of the scene have friction.
+    /// Returns the constants of a law. A law without friction has no tangential spring or dashpot, even if other laws of
+    /// the scene have friction.
     fn new(law: &ContactLaw, options: &Options) -> Self {
         let [normal, tangential] = law.springs.constants();
         let if_sheared = |number: f64| if law.has_friction() { number } else { 0.0 };

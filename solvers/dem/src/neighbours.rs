@@ -2,8 +2,8 @@
 //! is rebuilt when a grain or wall has moved by half of the skin, when grains are inserted or removed, and when a wall
 //! is removed.
 //!
-//! The list has one row per grain and contains each pair once. Contact history is stored beside the list, in the order
-//! of the pairs in contact. Pairs across periodic faces are in a separate list with their shifts, so that the main loop
+//! The list has one row per grain and contains each pair once. Contact history is stored beside the list, in the order of
+//! the pairs in contact. Pairs across periodic faces are in a separate list with their shifts, so that the main loop
 //! needs no periodic shifts. Each thread has a partition of the rows ([`crate::share`]).
 
 use crate::cells::Cells;

@@ -192,8 +192,8 @@ impl<S: Geometry> DemSimulation<S> {
         self.one_by_one && self.rows() <= most_rows
     }
 
-    /// Returns an upper bound of the number of contacts, before the first force evaluation. It counts overlapping pairs
-    /// of grains, and all pairs listed at walls, even without overlap.
+    /// Returns an upper bound of the number of contacts, before the first force evaluation. It counts overlapping pairs of
+    /// grains, and all pairs listed at walls, even without overlap.
     fn touching_at_start(&self) -> usize {
         let touch = |a: usize, b: usize, shift: Vector3<f64>| {
             let apart = self.grains.position(b) - self.grains.position(a) - shift;

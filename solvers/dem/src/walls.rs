@@ -211,8 +211,8 @@ impl MovingWall {
         self.shape = self.wall.shape.moved(motion, &displacement);
     }
 
-    /// Returns an upper bound of the displacement since the neighbour list was built (m), for points within `extent` (m)
-    /// of the centre of rotation.
+    /// Returns an upper bound of the displacement since the neighbour list was built (m), for points within `extent` (m) of
+    /// the centre of rotation.
     pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
         let translation = (self.displacement.translation - self.at_list.translation).norm();
         translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent

@@ -144,8 +144,8 @@ fn mindlin(overlap: f64) -> f64 {
 }
 
 /// A contact is sheared by s = 5 µm at δ = 50 µm, pressed to 100 µm, sheared back and released. The force stays at F =
-/// k_t(50 µm) s while the contact is pressed, and the closed cycle yields no work. Without slip, only the receding edge
-/// of the contact can release energy.
+/// k_t(50 µm) s while the contact is pressed, and the closed cycle yields no work. Without slip, only the receding edge of
+/// the contact can release energy.
 #[test]
 fn a_closed_cycle_of_a_hertz_contact_yields_no_work() {
     let press = "[0.0, 0.0, 0.0, 0.0], [0.01, 0.0, 0.0, -5.0e-5], [0.02, 5.0e-6, 0.0, -5.0e-5], \

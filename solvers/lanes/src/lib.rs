@@ -91,8 +91,8 @@ pub trait Lanes: Copy + 'static {
     /// Gathers quad `number` of the table entries at the first indices of `at`, and transposes these quads. The first
     /// register holds the first number of every quad, the second register the second number, and so on.
     fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [Self::Register; 4];
-    /// Returns the differences `to` − `from` between quad `number` of the table entries at the first indices of `to` and
-    /// of `from`, transposed as in [`gather`](Self::gather). The fourth register holds sums instead of differences.
+    /// Returns the differences `to` − `from` between quad `number` of the table entries at the first indices of `to` and of
+    /// `from`, transposed as in [`gather`](Self::gather). The fourth register holds sums instead of differences.
     fn between<const N: usize>(
         self,
         table: &[[Quad; N]],

@@ -78,8 +78,8 @@ impl<S: Space> DrivenGroups<S> {
         }
     }
 
-    /// Finds the nodes with prescribed velocity. If all bodies share one velocity field, these are the nodes that points
-    /// of driven bodies influence. If each body has its own field, they are all nodes of the driven bodies' fields.
+    /// Finds the nodes with prescribed velocity. If all bodies share one velocity field, these are the nodes that points of
+    /// driven bodies influence. If each body has its own field, they are all nodes of the driven bodies' fields.
     pub(crate) fn find_held(
         &mut self,
         lattice: &Lattice,

@@ -57,8 +57,8 @@ impl Window {
         }
     }
 
-    /// Returns a slot after all nodes of the block with first node `base`. It is the end of a row, in three dimensions
-    /// of a layer.
+    /// Returns a slot after all nodes of the block with first node `base`. It is the end of a row, in three dimensions of
+    /// a layer.
     pub(crate) fn end_of<S: Space, B: Basis>(&self, base: [i32; 3]) -> usize {
         let slowest = S::DIMENSION - 1;
         let layer = self.len() / self.size[slowest] as usize;

@@ -395,8 +395,8 @@ fn a_rerun_gives_the_same_bits() {
     }
 }
 
-/// A plane in contact with a grain at rest moves along its normal and pushes the grain without a rebound. After n steps
-/// of Δt, the displacement of the grain differs from V n Δt by less than V Δt/4, because the grain rests only during
+/// A plane in contact with a grain at rest moves along its normal and pushes the grain without a rebound. After n steps of
+/// Δt, the displacement of the grain differs from V n Δt by less than V Δt/4, because the grain rests only during
 /// the first of the four small steps. A plane that starts one step late, or is 1 % slower, causes a larger difference.
 #[test]
 fn a_pushed_grain_goes_as_far_as_its_wall() {

@@ -19,8 +19,8 @@ const MOST: usize = 15;
 /// Result of a trial of an effect with its neutral value.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct NeutralTrial {
-    /// True if positions, velocities and forces of all grains and the number of contacts are equal at the end. The sign
-    /// of zero is ignored.
+    /// True if positions, velocities and forces of all grains and the number of contacts are equal at the end. The sign of
+    /// zero is ignored.
     pub same: bool,
     /// Sum of particle-steps and contact evaluations with the effect, divided by the sum without it.
     pub counts: f64,

@@ -106,8 +106,8 @@ impl StudyInput<'_> {
     }
 }
 
-/// Returns the largest difference of a column between two runs at equal samples, relative to the largest absolute value
-/// of the column with the effect.
+/// Returns the largest difference of a column between two runs at equal samples, relative to the largest absolute value of
+/// the column with the effect.
 ///
 /// The result is NaN if the run without the effect has another number of samples or a value that is NaN. It is `None`
 /// if the column is empty.

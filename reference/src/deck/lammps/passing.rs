@@ -4,8 +4,8 @@
 //! deck moves it so far away that it has no more contacts.
 //!
 //! A piston is a plane that follows an atom without contacts. The atom has the mass M of the piston. The forces on it
-//! are the applied force F, the force −F_n of the grains, and a drag −M c v. LAMMPS computes forces with the velocity v
-//! of half a step before. With the time step Δt, the velocity of the piston after a step is
+//! are the applied force F, the force −F_n of the grains, and a drag −M c v. LAMMPS computes forces with the velocity v of
+//! half a step before. With the time step Δt, the velocity of the piston after a step is
 //! v' = (v (1 − c Δt/2) + (F − F_n)/M Δt)/(1 + c Δt/2).
 //! LAMMPS obtains this velocity with the force (F − F_n − M c v)/(1 + c Δt/2).
 

@@ -89,8 +89,8 @@ impl<S: Geometry, X: Number> MidStepNormal<S, X> {
         Self { normal, chord: like.like(1.0) }
     }
 
-    /// Returns the normal in the middle of a step of Δt = `elapsed` (s). The arguments are the unit normal e at the end
-    /// of the step, the inverse 1/d of the distance between the centres (1/m), and the relative velocity v = v₁ − v₂
+    /// Returns the normal in the middle of a step of Δt = `elapsed` (s). The arguments are the unit normal e at the end of
+    /// the step, the inverse 1/d of the distance between the centres (1/m), and the relative velocity v = v₁ − v₂
     /// (m/s).
     ///
     /// With h = Δt/2d, the vector between the centres in the middle is d (e + h v). Its squared length is d² (1 + y)
