@@ -10,7 +10,7 @@ const BUDGETS: [(&str, usize, usize); 15] = [
     ("solvers/scene", 13_270, 26),
     ("solvers/lanes", 1_500, 0),
     ("solvers/dem", 9_030, 6),
-    ("solvers/mpm", 11_460, 7),
+    ("solvers/mpm", 11_480, 7),
     ("solvers/rigid", 1_620, 0),
     ("harness", 7_690, 5),
     ("store", 1_190, 0),
