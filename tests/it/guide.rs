@@ -15,7 +15,7 @@ use grainbench::harness::evidence::Evidence;
 use grainbench::harness::run::ExpectedOutcome;
 use grainbench::harness::verdict::Outcome;
 use pages::{Chapter, chapters, lost_links, untold, with_files};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::fmt::Write as _;
 use std::fs;
 
@@ -194,4 +194,30 @@ fn chapters_show_their_files() {
     assert!(shown.contains("A disc is set down on a belt") && !shown.contains("other") && shown.ends_with("end\n"));
     assert!(with_files("<!-- file: ../scenes/nowhere.toml -->\n```toml\n```\n").is_err());
     assert!(with_files("<!-- file: ../scenes/belt.toml -->\n```toml\n").is_err());
+}
+
+/// The tables of the guide contain each key of the files that users write. The keys are the fields of the structs that
+/// read these files.
+#[test]
+fn keys_of_files_are_in_the_guide() {
+    for (source, chapter, least) in [
+        ("cases/src/folder/claims_file.rs", "guide/src/case.md", 30),
+        ("campaign/src/sweep/file.rs", "guide/src/campaign.md", 30),
+        ("reference/src/outside/manifest.rs", "guide/src/judge.md", 20),
+    ] {
+        let [source, chapter] = [source, chapter].map(|path| fs::read_to_string(root(path)).unwrap());
+        let rows = chapter.lines().filter(|line| line.starts_with("| "));
+        let code = rows.flat_map(|row| row.split('`').skip(1).step_by(2));
+        let shown: BTreeSet<&str> =
+            code.flat_map(|text| text.split(|c: char| !c.is_alphanumeric() && c != '_')).collect();
+        let structs = source.split("pub struct ManifestError").next().unwrap().lines();
+        let public = |line| str::strip_prefix(line, "    pub ").or_else(|| str::strip_prefix(line, "    pub(super) "));
+        let fields = structs.filter_map(|line| public(line)?.split_once(": "));
+        let keys: Vec<&str> = fields.map(|(name, _)| name).filter(|name| !name.contains(' ')).collect();
+        let lost: Vec<&&str> = keys
+            .iter()
+            .filter(|key| !key.split('_').all(|part| shown.contains(part)) && !shown.contains(*key))
+            .collect();
+        assert!(lost.is_empty() && keys.len() >= least, "{lost:?} of {} keys are not in the guide", keys.len());
+    }
 }
