@@ -21,7 +21,9 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                         li {
                             a href={ "#" (anchor) } data-case=(section.name) {
                                 @if wrong > 0 { span.n.fail { "✗ " (wrong) } }
-                                @else if counts.amber() > 0 { span.n.amber { "▲ " (counts.amber()) } }
+                                @else if counts.amber() > 0 {
+                                    span.n.amber title={ (counts.amber()) " amber results" } { "▲ " (counts.amber()) }
+                                }
                                 (section.name)
                             }
                         }

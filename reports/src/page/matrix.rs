@@ -1,6 +1,6 @@
 //! Matrix of cases and solvers. Each cell shows the largest |error|/allowed as colour and number.
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
 
 use super::cards;
@@ -12,14 +12,26 @@ use crate::report::{Report, Section};
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
 
+/// Names of solvers with a published convention or method, and its description.
+const NAMES: [(&str, &str); 8] = [
+    ("dem:lammps", "dem with the contact conventions of LAMMPS"),
+    ("dem:liggghts", "dem with the contact conventions of LIGGGHTS"),
+    ("dem:1979", "dem with the conventions of Cundall & Strack (1979)"),
+    ("mpm:2000", "mpm with nodal contact while bodies approach (Bardenhagen et al. 2000)"),
+    ("mpm:2001", "mpm with nodal contact under compressive traction (Bardenhagen et al. 2001)"),
+    ("mpm:gap", "mpm with nodal contact where surfaces have met"),
+    ("mpm:penalty", "mpm with springs between surfaces"),
+    ("mpm:no-slip", "mpm with one velocity field, so that bodies stick together"),
+];
+
 /// Content of a cell: the results of one case with one solver.
 struct Cell<'a> {
     /// Largest |error|/allowed; none if no result has an error.
     worst: Option<f64>,
     /// Outcome of the worst result.
     outcome: Outcome,
-    rows: usize,
-    pass: usize,
+    /// Number of results of each outcome, with the most important outcome first.
+    counts: Vec<(Outcome, usize)>,
     /// Solver of the results.
     solver: &'a str,
 }
@@ -44,10 +56,29 @@ fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
     Some(Cell {
         worst: has_error.map(|row| used_tolerance(row)).reduce(f64::max),
         outcome: worst.outcome,
-        rows: rows.len(),
-        pass: rows.iter().filter(|row| row.outcome == Outcome::Pass).count(),
+        counts: counts(rows.iter().map(|row| row.outcome)),
         solver: &rows.first()?.solver,
     })
+}
+
+/// Counts results by outcome, with the most important outcome first.
+fn counts(outcomes: impl Iterator<Item = Outcome>) -> Vec<(Outcome, usize)> {
+    let mut outcomes: Vec<Outcome> = outcomes.collect();
+    outcomes.sort_by_key(|&outcome| std::cmp::Reverse((order(outcome), outcome.word())));
+    outcomes.chunk_by(|a, b| a == b).filter_map(|same| Some((*same.first()?, same.len()))).collect()
+}
+
+/// Returns the CSS class of a stripe for cells with results that are neither passed nor of the outcome that the cell
+/// shows. Without the stripe, a passed result would hide that others were not judged.
+fn stripe(counts: &[(Outcome, usize)]) -> &'static str {
+    let is_hidden = |&(outcome, _): &(Outcome, usize)| outcome.severity() == Severity::Amber;
+    if counts.iter().skip(1).any(is_hidden) { " part" } else { "" }
+}
+
+/// Describes the results of a cell.
+fn description(case: &str, solver: &str, counts: &[(Outcome, usize)]) -> String {
+    let parts: Vec<String> = counts.iter().map(|(outcome, count)| format!("{count} {}", outcome.word())).collect();
+    format!("{case}, {solver}: {}", parts.join(", "))
 }
 
 /// Returns the CSS class of a cell. Its shade depends on |error|/allowed for passed results and for known errors.
@@ -114,7 +145,12 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 × tolerance" }
                 span { i.k0 {} i.k1 {} i.k2 {} "known error of a published method: ≤ 10, ≤ 1000, > 1000 × tolerance" }
                 span { i.f0 {} "fails" } span { i.old {} "stored result of older solver sources" }
-                span { i.cannot {} "unsupported or no reference" }
+                span { i.cannot {} "unsupported, no reference, or data not available" }
+                span { i.c2.part {} "some results of the case are amber" }
+            }
+            @let named: Vec<_> = NAMES.iter().filter(|(name, _)| columns.contains(name)).collect();
+            @if !named.is_empty() {
+                p.note { "Names: " @for (name, meaning) in named { code { (name) } ": " (meaning) ". " } }
             }
             @if !report.judged.is_empty() {
                 p.note {
@@ -130,10 +166,10 @@ fn ours(section: &Section, column: &str, anchor: &str) -> Markup {
     let is_mine = |row: &&Verdict| if column == OTHERS { row.solver.contains('+') } else { row.solver == column };
     let rows: Vec<&Verdict> = section.verdicts.iter().filter(is_mine).collect();
     let Some(cell) = cell(&rows) else { return html! {} };
-    let words =
-        format!("{}, {column}: {} of {} rows pass; worst {}", section.name, cell.pass, cell.rows, cell.outcome.word());
+    let words = description(&section.name, column, &cell.counts);
     html! {
-        a class=(class(cell.outcome, cell.worst)) href={ "#" (super::rows_of(anchor)) } title=(words) data-solver=(cell.solver)
+        a class={ (class(cell.outcome, cell.worst)) (stripe(&cell.counts)) } href={ "#" (super::rows_of(anchor)) }
+            title=(words) data-solver=(cell.solver)
             data-case=(section.name) { (text(cell.outcome, cell.worst)) }
     }
 }
@@ -151,6 +187,7 @@ fn theirs(results: &ExternalResults, case: &str) -> Markup {
     let rows: Vec<&Row> = results.rows.iter().filter(|row| row.case == case).collect();
     let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
     let used = results.count(Some(case)).worst;
-    let words = format!("{case}, {}: {}", results.program, worst.verdict.word());
-    html! { span class=(class(worst.verdict, used)) title=(words) { (text(worst.verdict, used)) } }
+    let counts = counts(rows.iter().map(|row| row.verdict));
+    let words = description(case, &results.program, &counts);
+    html! { span class={ (class(worst.verdict, used)) (stripe(&counts)) } title=(words) { (text(worst.verdict, used)) } }
 }

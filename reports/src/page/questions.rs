@@ -81,7 +81,7 @@ fn age(measured: &Measurements, id: &str) -> Markup {
     let changed: Vec<&str> = palette::SOLVERS.into_iter().filter(|solver| stamp.is_old(solver)).collect();
     html! {
         "measured " (stamp.day())
-        @if !changed.is_empty() { "; " span.old { "▲ outdated" } ": " (changed.join(", ")) " changed since" }
+        @if !changed.is_empty() { "; " span.old { "outdated" } ": " (changed.join(", ")) " changed since" }
     }
 }
 
@@ -183,7 +183,7 @@ fn steps(stability: &Stability) -> Markup {
         @if let Some(figure) = &figure { (drawn(figure)) }
         p { (limits(&lines)) }
         (scrolling("Hard cases by solver", &table))
-        p.note { "✓ holds · ▲ holds at a smaller step, or ends with an error · ✗ wrong without an error · – \
+        p.note { "✓ holds · ↓ holds at a smaller time step · ! ends with an error message · ✗ wrong without an error · – \
                   unsupported" }
     }
 }

@@ -270,7 +270,8 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
 pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
     match standing {
         Hardness::Holds => ("✓", "pass"),
-        Hardness::HoldsAtASmallerStep | Hardness::TypedFailure => ("▲", "amber"),
+        Hardness::HoldsAtASmallerStep => ("↓", "amber"),
+        Hardness::TypedFailure => ("!", "amber"),
         Hardness::QuietlyWrong => ("✗", "fail"),
         Hardness::Unsupported | Hardness::NotAvailable => ("–", ""),
     }
