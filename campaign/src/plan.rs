@@ -33,7 +33,7 @@ pub enum Kind {
     Cost,
     /// Stability study.
     Stability,
-    /// A design over the keys of a scene.
+    /// Parameter sweep over keys of a scene.
     Sweep,
 }
 

@@ -1,5 +1,5 @@
-//! A sphere rolls to rest and rocks on its rolling spring. In two further variants, a disc rocks between two discs that
-//! continue to spin.
+//! A sphere rolls to rest and rocks on its rolling spring. In two further variants, a disc rocks between two driven
+//! discs, which translate without rotation.
 
 use grainbench_harness::prelude::*;
 

@@ -40,7 +40,7 @@ struct View {
 }
 
 impl View {
-    /// Returns a projection that shows all grains, material points and finite walls.
+    /// Returns a projection that shows all grains, material points and outlined walls.
     fn from_shots(shots: &[Shot<'_>]) -> Option<Self> {
         let toward = EYE.normalize();
         let right = Vector3::z().cross(&toward).normalize();

@@ -20,8 +20,9 @@ pub(crate) struct Arguments {
     /// Program that reads the input: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
     program: String,
-    /// Use the scene for which the exact solution holds for any solver, for example with a stiffer contact. `check`
-    /// recognizes this scene by its initial state.
+    /// Use the scene of the first solver-independent claim of the case. The claim may change the scene, for example to a
+    /// stiffer contact, so that its expected value holds for any solver. `check` recognizes this scene by its initial
+    /// state.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
     /// Override one key of the scene. Repeatable.

@@ -77,7 +77,7 @@ enum Command {
     Compare(compare::Arguments),
     /// Measure the error of each solver against its computing time.
     Cost(cost::Arguments),
-    /// Find the largest stable time step of each solver, and run difficult cases.
+    /// Find the largest stable time step of each solver, and run hard cases.
     Stability(stability::Arguments),
     /// Measure the influence of each physical effect, by switching it off or giving it a neutral value.
     Effects(effects::Arguments),

@@ -31,7 +31,8 @@ const EVERY: Duration = Duration::from_secs(5);
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Assemblies and hard cases, by name or by the beginning of the name. Default: all.
+    /// Assemblies of grains with a known stability limit, and hard cases, by name or by the beginning of the name. Default:
+    /// all.
     #[arg(value_name = "CASE")]
     pub(crate) cases: Vec<String>,
     /// Test only this solver, by name or manifest. Repeatable.

@@ -1,4 +1,4 @@
-//! Sweeps: a design over the keys of a scene, for several solvers and levels.
+//! Parameter sweeps over keys of a scene, for several solvers and levels.
 
 mod design;
 mod file;
@@ -120,7 +120,7 @@ impl Sweep {
         let text = written(path).map_err(input_fault)?;
         let file: File = toml::from_str(&text).map_err(|error| {
             let place = format!("{}:{}", path.display(), line_of(&text, &error).unwrap_or(1));
-            Fault::expected(place, "the keys of a sweep", error.message().replace('\n', ", "))
+            Fault::expected(place, "the keys and values of a sweep", error.message().replace('\n', ", "))
         })?;
         let wrong = |key: &str, expected: &str, found: String| {
             Fault::expected(format!("{}: {key}", path.display()), expected, found)

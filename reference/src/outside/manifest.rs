@@ -230,7 +230,7 @@ impl Manifest {
         let text = written(path).map_err(|(expected, found)| error("", expected, found))?;
         let wrong = |reason: toml::de::Error| {
             let place = line_of(&text, &reason).map(|line| format!("line {line}")).unwrap_or_default();
-            error(&place, "the keys of a manifest", one_line(reason.message()))
+            error(&place, "the keys and values of a manifest", one_line(reason.message()))
         };
         let manifest: Self = toml::from_str(&text).map_err(wrong)?;
         manifest.check().map_err(|(place, expected, found)| error(place, &expected, found))?;

@@ -37,7 +37,7 @@ pub struct Model {
     pub probe: Probe,
 }
 
-/// Renders the table with its text.
+/// Renders the costs of the parts of a step as a table with an explanation.
 pub(crate) fn render(model: &Model) -> Markup {
     let [streamed, computed] = [&model.probe.streamed, &model.probe.computed].map(|laps| median(laps));
     let table = html! {

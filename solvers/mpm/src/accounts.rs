@@ -308,7 +308,8 @@ impl<S: Space> Accounts<S> {
         sums.taken += taken;
     }
 
-    /// Adds the energies of stresses. It must be called after stresses have changed.
+    /// Adds the plastic and the viscous work of a step, and stores the stress work Σ V σ:Δε of the step. It must be called
+    /// after the stress update.
     pub(crate) fn add_flow(&mut self, flow: Flow) {
         self.sums.stressed = flow.taken;
         self.sums.plastic += flow.plastic;

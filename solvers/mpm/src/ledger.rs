@@ -37,7 +37,7 @@ impl Ledger for &mut Tally {
     }
 }
 
-/// Energies of stresses in a step.
+/// Stress work, plastic work and viscous work of a step (J).
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub(crate) struct Flow {
     /// Σ V σ:Δε with the stresses after the step (J).

@@ -126,7 +126,7 @@ impl Setting {
     pub fn words(&self) -> Vec<String> {
         let mut words = vec![self.basis.to_string(), self.transfer.to_string(), self.stress_update.to_string()];
         if self.moves_with_stress && self.stress_update == StressUpdate::ModifiedLast {
-            words.push("points move with the velocities that stresses follow".to_owned());
+            words.push("points move with the reprojected velocities of the stress update".to_owned());
         }
         words.push(self.contact.to_string());
         if self.contact == Contact::Penalty {

@@ -92,8 +92,8 @@ impl<S: Space> ThreadPartition<S> {
         self.pieces.iter().map(|piece| (&bodies[piece.body], &self.runs[piece.runs.clone()]))
     }
 
-    /// Moves the points of the partition to their next positions, computes the bounding boxes of bodies and marks
-    /// batches that are still known.
+    /// Moves the points of the partition to their next positions and computes the bounding boxes of bodies. Sets
+    /// `is_known` of each batch: true if all its points influence the nodes of its stencil block at the new positions.
     ///
     /// `start` is the [`Basis::START`] of the basis. Returns the largest displacement.
     pub(crate) fn move_points(

@@ -62,7 +62,7 @@ impl Peer for Liggghts {
 fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
     passing::refuse(scene)?;
     if let Some(what) = scene.round_wall() {
-        return Err(format!("{what}, but LIGGGHTS has only cylinders without ends and meshes of flat triangles"));
+        return Err(format!("{what}, but LIGGGHTS has only infinite cylinders and meshes of flat triangles"));
     }
     if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
         let reason = "which `move/mesh` supports only along its own path and from the first step on";
