@@ -70,6 +70,16 @@ fn tables_are_generated() {
     expect_file(CHAPTER, &chapter);
 }
 
+/// The page explains the name of each convention and each method that a claim uses.
+#[test]
+fn the_page_explains_names_of_solvers() {
+    let claims = CASES.iter().flat_map(|case| (case.claims)());
+    let names: BTreeSet<String> = claims.flat_map(|claim| claim.runs).map(|run| run.solver.to_owned()).collect();
+    let named: Vec<&String> = names.iter().filter(|name| name.contains(':')).collect();
+    let unexplained: Vec<_> = named.iter().filter(|name| grainbench::reports::page::meaning(name).is_none()).collect();
+    assert!(named.len() >= 8 && unexplained.is_empty(), "{unexplained:?}");
+}
+
 /// Returns the wrong cells of the feature matrix as `case: evidence`. A cell is wrong if its case has no claim with the
 /// evidence of the column. An empty matrix is an error too.
 fn wrong_cells(readme: &str) -> Vec<String> {

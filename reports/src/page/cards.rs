@@ -10,6 +10,24 @@ use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
 
+/// Solvers whose names do not explain themselves, with the meaning of each name.
+const NAMES: [(&str, &str); 8] = [
+    ("dem:lammps", "dem with the contact conventions of LAMMPS"),
+    ("dem:liggghts", "dem with the contact conventions of LIGGGHTS"),
+    ("dem:1979", "dem with the conventions of Cundall & Strack (1979)"),
+    ("mpm:2000", "mpm with nodal contact while bodies approach (Bardenhagen et al. 2000)"),
+    ("mpm:2001", "mpm with nodal contact under compressive traction (Bardenhagen et al. 2001)"),
+    ("mpm:gap", "mpm with nodal contact where surfaces have met"),
+    ("mpm:penalty", "mpm with springs between surfaces"),
+    ("mpm:no-slip", "mpm with one velocity field, so that bodies stick together"),
+];
+
+/// Returns the meaning of a solver's name; `None` if the name needs no explanation.
+#[must_use]
+pub fn meaning(solver: &str) -> Option<&'static str> {
+    NAMES.iter().find(|(name, _)| *name == solver).map(|(_, meaning)| *meaning)
+}
+
 /// Returns the solvers of a report. Methods and programs come first, in a fixed order, then conventions such as `dem:lammps`.
 /// Solvers with settings for single cases, such as `mpm+…`, are last.
 pub(crate) fn solvers(report: &Report) -> Vec<&str> {
@@ -97,7 +115,7 @@ fn card(
     });
     let filter = |outcome: Option<&'static str>, text: Markup| {
         html! {
-            a href="#matrix" data-solver=(solver) data-outcome=[outcome] { (text) }
+            a href="#matrix" title=[meaning(solver)] data-solver=(solver) data-outcome=[outcome] { (text) }
         }
     };
     html! {

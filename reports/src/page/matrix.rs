@@ -3,7 +3,7 @@
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
 
-use super::cards;
+use super::cards::{self, meaning};
 use crate::headline::used_tolerance;
 use crate::judged::{ExternalResults, Row};
 use crate::number;
@@ -11,18 +11,6 @@ use crate::report::{Report, Section};
 
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
-
-/// Names of solvers with a published convention or method, and its description.
-const NAMES: [(&str, &str); 8] = [
-    ("dem:lammps", "dem with the contact conventions of LAMMPS"),
-    ("dem:liggghts", "dem with the contact conventions of LIGGGHTS"),
-    ("dem:1979", "dem with the conventions of Cundall & Strack (1979)"),
-    ("mpm:2000", "mpm with nodal contact while bodies approach (Bardenhagen et al. 2000)"),
-    ("mpm:2001", "mpm with nodal contact under compressive traction (Bardenhagen et al. 2001)"),
-    ("mpm:gap", "mpm with nodal contact where surfaces have met"),
-    ("mpm:penalty", "mpm with springs between surfaces"),
-    ("mpm:no-slip", "mpm with one velocity field, so that bodies stick together"),
-];
 
 /// Content of a cell: the results of one case with one solver.
 struct Cell<'a> {
@@ -68,8 +56,8 @@ fn counts(outcomes: impl Iterator<Item = Outcome>) -> Vec<(Outcome, usize)> {
     outcomes.chunk_by(|a, b| a == b).filter_map(|same| Some((*same.first()?, same.len()))).collect()
 }
 
-/// Returns the CSS class of a stripe for cells with results that are neither passed nor of the outcome that the cell
-/// shows. Without the stripe, a passed result would hide that others were not judged.
+/// Returns the CSS class of a stripe if a cell has amber results with an outcome other than the one that it shows.
+/// Without the stripe, passed results would hide results that were not judged.
 fn stripe(counts: &[(Outcome, usize)]) -> &'static str {
     let is_hidden = |&(outcome, _): &(Outcome, usize)| outcome.severity() == Severity::Amber;
     if counts.iter().skip(1).any(is_hidden) { " part" } else { "" }
@@ -146,9 +134,9 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                 span { i.k0 {} i.k1 {} i.k2 {} "known error of a published method: ≤ 10, ≤ 1000, > 1000 × tolerance" }
                 span { i.f0 {} "fails" } span { i.old {} "stored result of older solver sources" }
                 span { i.cannot {} "unsupported, no reference, or data not available" }
-                span { i.c2.part {} "some results of the case are amber" }
+                span { i.c2.part {} "stripe: further results are amber" }
             }
-            @let named: Vec<_> = NAMES.iter().filter(|(name, _)| columns.contains(name)).collect();
+            @let named: Vec<_> = columns.iter().filter_map(|name| Some((name, meaning(name)?))).collect();
             @if !named.is_empty() {
                 p.note { "Names: " @for (name, meaning) in named { code { (name) } ": " (meaning) ". " } }
             }
@@ -190,4 +178,22 @@ fn theirs(results: &ExternalResults, case: &str) -> Markup {
     let counts = counts(rows.iter().map(|row| row.verdict));
     let words = description(case, &results.program, &counts);
     html! { span class={ (class(worst.verdict, used)) (stripe(&counts)) } title=(words) { (text(worst.verdict, used)) } }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A passed result does not hide amber results, and a cell with one outcome has no stripe.
+    #[test]
+    fn a_stripe_shows_hidden_amber_results() {
+        let of = |outcomes: &[Outcome]| counts(outcomes.iter().copied());
+        let mixed = of(&[Outcome::Pass, Outcome::Unsupported, Outcome::Pass]);
+        assert_eq!(stripe(&mixed), " part");
+        assert_eq!(description("chain", "dem", &mixed), "chain, dem: 2 pass, 1 unsupported");
+        assert_eq!(stripe(&of(&[Outcome::Known, Outcome::Pass, Outcome::Outdated])), " part");
+        for alike in [&[Outcome::Pass; 3][..], &[Outcome::Known; 2], &[Outcome::Known, Outcome::Pass], &[]] {
+            assert_eq!(stripe(&of(alike)), "");
+        }
+    }
 }

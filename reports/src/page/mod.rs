@@ -16,6 +16,8 @@ mod section;
 pub(crate) mod summary;
 mod tables;
 
+pub use cards::meaning;
+
 use std::collections::BTreeSet;
 
 use grainbench_harness::verdict::{Outcome, Severity};

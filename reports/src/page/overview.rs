@@ -92,7 +92,10 @@ fn by_solver(report: &Report, outcome: Outcome) -> Markup {
             " errors: "
             @for (at, (solver, count)) in counts.into_iter().enumerate() {
                 @if at > 0 { ", " }
-                a href="#matrix" data-solver=(solver) data-outcome=(outcome.word()) { (solver) } " " (count)
+                a href="#matrix" title=[cards::meaning(solver)] data-solver=(solver) data-outcome=(outcome.word()) {
+                    (solver)
+                }
+                " " (count)
             }
         }
     }
