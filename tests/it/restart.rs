@@ -287,8 +287,9 @@ fn a_run_that_breaks_leaves_what_there_is() {
     }
 }
 
-/// Memory does not depend on the number of snapshots. For 10,000 discs, it is at most three times the memory of a run without
-/// snapshots. Each snapshot would take 5 MB in memory. The short test has 60 snapshots, and the long test has 1000.
+/// Memory does not depend on the number of snapshots. Rows that wait to be written and one checkpoint took 36 MB to 53 MB for
+/// 10,000 discs (memory of the allocator included). A program that also kept 60 snapshots in memory took 170 MB more. The
+/// limit lies between. The short test has 60 snapshots, and the long test has 1000.
 #[test]
 #[cfg(target_os = "linux")]
 fn snapshots_and_checkpoints_take_no_memory() {
@@ -308,7 +309,8 @@ fn snapshots_and_checkpoints_take_no_memory() {
     let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "50"];
     let many = [&["simulate", "many.toml", "--solver", "dem", "--out", "many"], &checkpoints[..]].concat();
     let many = crate::common::peak_memory(path, &many);
-    assert!(many < 3 * none, "{many} kB with {snapshots} snapshots, {none} kB without");
+    let most = none + 100_000;
+    assert!(many < most, "{many} kB with {snapshots} snapshots, {none} kB without, at most {most} kB expected");
 }
 
 /// After Ctrl-C, the finished results are written, and a message reports the interrupt.
