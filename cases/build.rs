@@ -131,11 +131,14 @@ fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
         text.ok_or_else(|| wrong(&format!("expected a text `{key}`")))
     };
     let [title, claim, weakness] = [text("title")?, text("claim")?, text("weakness")?];
+    let physics = text("physics")?;
+    let physics = physics[..1].to_uppercase() + &physics[1..];
     let [claims, scene, derivation] = ["claims.toml", "scene.toml", "derivation.md"].map(|name| folder.join(name));
     Ok(Some(format!(
         "static CLAIMS: std::sync::OnceLock<Vec<grainbench_harness::claim::Claim>> = std::sync::OnceLock::new();\n\
          pub(crate) static CASE: crate::Case = crate::Case {{\n\
          name: {name:?}, title: {title:?}, claim: {claim:?}, weakness: {weakness:?},\n\
+         physics: grainbench_harness::case::Physics::{physics},\n\
          scene: include_str!({scene:?}), derivation: include_str!({derivation:?}),\n\
          claims: &|| CLAIMS.get_or_init(|| crate::folder::claims(&CASE, include_str!({claims:?}))).clone(),\n\
          ..crate::folder::EMPTY }};\n"

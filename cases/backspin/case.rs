@@ -19,6 +19,7 @@ const RIGID: &[Row] =
 pub(crate) static CASE: Case = Case {
     name: "backspin",
     title: "Backspin",
+    physics: Physics::Rolling,
     claim: "A spinning grain on a flat plane slides, is accelerated forwards by friction, and finally rolls at f RΩ₀, \
             with f = 1/3 for a disc and 2/7 for a sphere.",
     scene: include_str!("scene.toml"),

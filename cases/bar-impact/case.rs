@@ -19,6 +19,7 @@ const VELOCITY: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "bar-impact",
     title: "Two bars meet end to end",
+    physics: Physics::Waves,
     claim: "Two equal bars collide, are in contact for the time of a wave to the free end and back, and exchange their \
             velocities.",
     scene: include_str!("scene.toml"),

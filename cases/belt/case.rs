@@ -25,6 +25,7 @@ const STOPPED: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "belt",
     title: "A grain on a belt",
+    physics: Physics::Rolling,
     claim: "A grain on a belt of speed V slides with the acceleration μ g and then rolls at f V, with f = 1/3 for a \
             disc and 2/7 for a sphere. When the belt stops, the grain comes to rest.",
     scene: include_str!("scene.toml"),

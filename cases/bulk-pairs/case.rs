@@ -10,6 +10,7 @@ const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::Ti
 pub(crate) static CASE: Case = Case {
     name: "bulk-pairs",
     title: "Pairs of the round robin of bulk processes",
+    physics: Physics::Contacts,
     claim: "In oblique impacts between M1, M2 and steel, and at steel walls, force and torque agree with LIGGGHTS in \
             each step.",
     scene: include_str!("scene.toml"),

@@ -11,6 +11,7 @@ const STEP: Level = LEVELS[2];
 pub(crate) static CASE: Case = Case {
     name: "carried-grain",
     title: "A grain moves in a circle between two grains",
+    physics: Physics::Rolling,
     claim: "Tangential springs between grains rotate with their contact: with its normal and about its normal.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

@@ -26,6 +26,7 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "chain",
     title: "A linear chain, driven at one end",
+    physics: Physics::Waves,
     claim: "A disturbance travels along a chain of discs with the dispersion of the discrete lattice: bead velocities \
             follow the Bessel solution to second order in Δt.",
     scene: include_str!("scene.toml"),

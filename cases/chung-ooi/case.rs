@@ -31,6 +31,7 @@ const SLIDING: Source = Source::Derived("a contact that slides throughout has th
 pub(crate) static CASE: Case = Case {
     name: "chung-ooi",
     title: "Impacts of Hertz spheres",
+    physics: Physics::Contacts,
     claim: "Elastic impacts have the overlap, force and duration of Hertz. A prescribed coefficient of restitution is \
             reproduced exactly. Velocity and spin after a sliding contact follow from the friction impulse, on a plane \
             and between equal and unequal spheres. Angular momentum about the contact is conserved on any branch.",

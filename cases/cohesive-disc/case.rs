@@ -13,6 +13,7 @@ const STRENGTH: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "cohesive-disc",
     title: "A cohesive disc on an inclined plane",
+    physics: Physics::Rolling,
     claim: "Cohesion adds to the strength of a contact: the threshold between rolling and sliding is correct to a \
             thousandth, and beyond it the slip grows at the exact rate.",
     scene: include_str!("scene.toml"),

@@ -15,6 +15,7 @@ const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-
 pub(crate) static CASE: Case = Case {
     name: "collision",
     title: "Two discs collide",
+    physics: Physics::Contacts,
     claim: "A linear spring and dashpot give the restitution of their closed form, with and without tension of the \
             dashpot at release. Momentum is conserved to rounding, and angular momentum too if the tangential forces \
             act at one point.",

@@ -20,6 +20,7 @@ const DISPLACEMENT: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "column",
     title: "A column under its own weight",
+    physics: Physics::Bodies,
     claim: "A column vibrates about its static shape with the period 4H/c, and comes to rest with the stress of its \
             weight.",
     scene: include_str!("scene.toml"),

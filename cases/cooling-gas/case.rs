@@ -12,6 +12,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 pub(crate) static CASE: Case = Case {
     name: "cooling-gas",
     title: "A gas that cools",
+    physics: Physics::Flows,
     claim: "Ten thousand smooth discs with e = .9 lose their energy according to Haff's law, at the rate of hard \
             discs. LAMMPS and LIGGGHTS have the same cooling rate for the same gas.",
     scene: include_str!("scene.toml"),

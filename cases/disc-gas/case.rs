@@ -9,6 +9,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 pub(crate) static CASE: Case = Case {
     name: "disc-gas",
     title: "A gas of discs",
+    physics: Physics::Flows,
     claim: "Without damping and friction the sum of kinetic and elastic energy is conserved over 10⁵ steps and \
             hundreds of collisions.",
     scene: include_str!("scene.toml"),

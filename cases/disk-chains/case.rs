@@ -32,6 +32,7 @@ const GLUED: &str = "zig-zag-glued";
 pub(crate) static CASE: Case = Case {
     name: "disk-chains",
     title: "Chains of discs, struck at one end",
+    physics: Physics::Waves,
     claim: "The arrival times of the force at the contacts of a line and of a zig-zag of discs follow from the modes \
             of the assembly. A sticking zig-zag, and the line, transmit the force faster than a slipping zig-zag.",
     scene: include_str!("scene.toml"),

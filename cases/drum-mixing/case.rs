@@ -23,6 +23,7 @@ const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::Ti
 pub(crate) static CASE: Case = Case {
     name: "drum-mixing",
     title: "Mixing in a rotating drum",
+    physics: Physics::Flows,
     claim: "From the published start, the number of small spheres in the lower quarter of the drum agrees with \
             LIGGGHTS and MUSEN at every tenth of a second up to one second. In a small drum the bed moves as in \
             LIGGGHTS.",

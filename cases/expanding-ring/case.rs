@@ -25,6 +25,7 @@ const RADIAL: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "expanding-ring",
     title: "An expanding ring",
+    physics: Physics::Bodies,
     claim: "An elastic ring with an initial outward velocity vibrates with the frequency of its breathing mode, thin \
             or thick, and keeps its amplitude and energy.",
     scene: include_str!("scene.toml"),

@@ -19,6 +19,7 @@ const SINKING: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "heavy-cantilever",
     title: "A heavy cantilever",
+    physics: Physics::Bodies,
     claim: "A strip whose weight is ten times EI/L³ per length comes to rest in the shape of the elastica, .70 of its \
             length below its clamp, and stays there, although its upper face is under tension.",
     scene: include_str!("scene.toml"),

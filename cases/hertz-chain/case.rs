@@ -17,6 +17,7 @@ const BEADS: f64 = 40.0;
 pub(crate) static CASE: Case = Case {
     name: "hertz-chain",
     title: "A solitary wave in a chain of spheres",
+    physics: Physics::Waves,
     claim: "A pulse in a chain of touching Hertz spheres travels at a speed ∝ F^{1/6} with the coefficient of the discrete \
             chain.",
     scene: include_str!("scene.toml"),

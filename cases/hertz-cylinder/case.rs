@@ -23,6 +23,7 @@ const SOURCE: Source =
 pub(crate) static CASE: Case = Case {
     name: "hertz-cylinder",
     title: "An elastic cylinder on an elastic block",
+    physics: Physics::Bodies,
     claim: "A cylinder pressed on a block of another modulus has the contact width and the peak pressure of Hertz.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

@@ -36,6 +36,7 @@ const DERIVATION: &str = {
 pub(crate) static CASE: Case = Case {
     name: "impact-bed",
     title: "Impact of a ball on a bed",
+    physics: Physics::Flows,
     claim: "The position and the rebound of a steel ball that falls into a bed of 25,000 spheres agree with seven \
             codes of the round robin of 2024, within the spread between codes and between beds.",
     scene: include_str!("scene.toml"),

@@ -19,6 +19,7 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "janssen",
     title: "Janssen's silo",
+    physics: Physics::Packings,
     claim: "The floor of a column of spheres that slides down its side carries the load of Janssen's law, with the \
             mobilised friction and the stress ratio measured at half height. Without friction the floor carries all of \
             the weight. LAMMPS gives the same loads from the same start.",

@@ -17,6 +17,7 @@ const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 pub(crate) static CASE: Case = Case {
     name: "mesh-seam",
     title: "A sphere on a mesh",
+    physics: Physics::Walls,
     claim: "The seams of coplanar triangles have no effect on a rolling sphere. A mesh of a plane gives the result of \
             the plane to 1e-9. At ridges, at corners and inside corners the mesh acts like the solid that it bounds.",
     scene: include_str!("scene.toml"),

@@ -21,6 +21,7 @@ const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 pub(crate) static CASE: Case = Case {
     name: "mms-axis-aligned",
     title: "Manufactured motion along an axis",
+    physics: Physics::Bodies,
     claim: "Displacements converge at second order with smooth basis functions; with hat functions the error stalls, \
             as expected.",
     scene: include_str!("scene.toml"),

@@ -24,6 +24,7 @@ const fn level(name: &'static str, cells: f64) -> Level {
 pub(crate) static CASE: Case = Case {
     name: "mms-vortex",
     title: "Manufactured vortex",
+    physics: Physics::Bodies,
     claim: "Displacements converge in a motion with large rotation and shear. Strongly stretched material does not \
             separate numerically until the noise of FLIP has grown.",
     scene: include_str!("scene.toml"),

@@ -32,6 +32,7 @@ const MODES: Source =
 pub(crate) static CASE: Case = Case {
     name: "nine-discs",
     title: "Nine discs in a box",
+    physics: Physics::Contacts,
     claim: "Compressed without slip, nine discs come to rest at closed-form forces and oscillate in two known modes: \
             the solver follows the continuous solution to second order in Δt and the exact solution of its cycle to \
             rounding. The findings of the paper on loading speed, damping, stiffness ratio and friction angle are \

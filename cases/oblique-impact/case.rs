@@ -11,6 +11,7 @@ const VARIANTS: [&str; 2] = ["elastic", "damped"];
 pub(crate) static CASE: Case = Case {
     name: "oblique-impact",
     title: "A disc meets a wall at an angle",
+    physics: Physics::Rolling,
     claim: "A disc that slips on a wall throughout an impact leaves with the velocities that Coulomb's limit on the whole \
             normal force gives, elastic or damped.",
     scene: include_str!("scene.toml"),

@@ -22,6 +22,7 @@ const STEP: Resolution = Resolution::TimeStep(5e-3);
 pub(crate) static CASE: Case = Case {
     name: "photoelastic-packing",
     title: "197 discs between four walls",
+    physics: Physics::Packings,
     claim: "Packings of the discs of the photoelastic test, with the ratio of wall forces of its stage A, are in \
             equilibrium. After shear until the vertical force has grown by 4.348 %, the horizontal force is between \
             the value of the experiment and the largest value of the paper's runs. LAMMPS and LIGGGHTS give the same \

@@ -20,6 +20,7 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "plane-shear-pressure",
     title: "Plane shear at a given pressure",
+    physics: Physics::Flows,
     claim: "A layer that is sheared under a pressed lid carries the pressure of the lid and the shear stress of its walls \
             everywhere. Its friction and packing fraction depend on the inertial number alone, and agree with LAMMPS \
             from the same start.",

@@ -16,6 +16,7 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "plane-shear",
     title: "Ten thousand discs in plane shear",
+    physics: Physics::Flows,
     claim: "In the conventions of LAMMPS and LIGGGHTS a dense, polydisperse, frictional and damped packing in shear \
             moves as in these programs until rounding differences dominate. Afterwards it has the same mean energy, \
             stress and coordination.",

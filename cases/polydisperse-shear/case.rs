@@ -37,6 +37,7 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "polydisperse-shear",
     title: "A sheared slab of 369 grains",
+    physics: Physics::Flows,
     claim: "Grains that stick to each other yield several times as much as grains with friction, which roll and slide \
             past each other in a band at the moving side. The work of the walls is stored or dissipated by plastic \
             flow and friction, with very little numerical loss.",

@@ -25,6 +25,7 @@ const TIME: f64 = 20.0;
 pub(crate) static CASE: Case = Case {
     name: "pressed-block",
     title: "A block that yields is pressed between smooth sides",
+    physics: Physics::Bodies,
     claim: "A compressed block flows according to von Mises with hardening. Its volume changes only elastically.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

@@ -9,6 +9,7 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "rocking",
     title: "Rolling springs",
+    physics: Physics::Rolling,
     claim: "The rolling spring yields at its limit, and a grain then rocks about its rest position. The stored angle \
             belongs to the contact, for either order of the grains.",
     scene: include_str!("scene.toml"),

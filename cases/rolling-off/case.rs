@@ -8,6 +8,7 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "rolling-off",
     title: "A ball rolls off a fixed ball",
+    physics: Physics::Rolling,
     claim: "A ball that rolls off another ball separates at the angle of the exact solution, cos θ = (10/17) cos θ₀ if \
             it is rough, and according to Coulomb's law if it slips.",
     scene: include_str!("scene.toml"),

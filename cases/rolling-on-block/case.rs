@@ -9,6 +9,7 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 pub(crate) static CASE: Case = Case {
     name: "rolling-on-block",
     title: "A disc rolls on a deformable block",
+    physics: Physics::Rolling,
     claim: "Between two deformable bodies the disc rolls as on a rigid plane: a deformable body at the contact does \
             not reduce the accuracy.",
     scene: include_str!("scene.toml"),

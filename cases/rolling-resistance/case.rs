@@ -14,6 +14,7 @@ const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 pub(crate) static CASE: Case = Case {
     name: "rolling-resistance",
     title: "Rolling resistance",
+    physics: Physics::Rolling,
     claim: "A rolling grain decelerates at μ_r g/(1 + i), and stays at rest on a slope up to tan θ = μ_r.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

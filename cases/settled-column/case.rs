@@ -11,6 +11,7 @@ const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 pub(crate) static CASE: Case = Case {
     name: "settled-column",
     title: "Spheres settle in a column",
+    physics: Physics::Packings,
     claim: "Two thousand spheres that fall into a column come to rest, walls and floor carry their weight, and \
             packing fraction and coordination agree with LAMMPS and LIGGGHTS within the spread of one column.",
     scene: include_str!("scene.toml"),

@@ -14,6 +14,7 @@ const LEVELS: &[Level] = &[
 pub(crate) static CASE: Case = Case {
     name: "silo-discharge",
     title: "Discharge of a silo",
+    physics: Physics::Flows,
     claim: "A silo of 100,000 spheres (own filling) discharges through the large orifice at the mean rate of LIGGGHTS \
             and MUSEN in the 2024 round robin, and through the small one at the rate of MUSEN.",
     scene: include_str!("scene.toml"),

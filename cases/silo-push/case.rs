@@ -11,6 +11,7 @@ use grainbench_harness::source::CitedNumber;
 pub(crate) static CASE: Case = Case {
     name: "silo-push",
     title: "Wide silo, pushed from below: averages over granular elements",
+    physics: Physics::Flows,
     claim: "Elements of 2.5 d in a pushed deposit have the friction and the packing fraction of an independent \
             prototype, and of LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),

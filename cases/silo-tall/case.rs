@@ -11,6 +11,7 @@ use grainbench_harness::prelude::*;
 pub(crate) static CASE: Case = Case {
     name: "silo-tall",
     title: "Tall silo, drained: averages over granular elements",
+    physics: Physics::Flows,
     claim: "Dilation, shear and stress of elements of 2.5 d in a draining silo agree with an independent prototype, \
             and with LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),

@@ -11,6 +11,7 @@ use grainbench_harness::prelude::*;
 pub(crate) static CASE: Case = Case {
     name: "silo-wide",
     title: "Wide silo, drained: averages over granular elements",
+    physics: Physics::Flows,
     claim: "Elements of 2.5 d in a wide draining silo lie on the curves of the tall silo, as in an independent \
             prototype, and in LAMMPS from the same deposit.",
     scene: include_str!("scene.toml"),

@@ -9,6 +9,7 @@ const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg carries the weight (
 pub(crate) static CASE: Case = Case {
     name: "soil-at-rest",
     title: "Soil at rest",
+    physics: Physics::Bodies,
     claim: "Soil that starts with the stress of its own weight does not move, on any grid.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

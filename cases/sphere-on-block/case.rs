@@ -19,6 +19,7 @@ const FLAT: &str = "nodal contact acts before surfaces touch and supports the sp
 pub(crate) static CASE: Case = Case {
     name: "sphere-on-block",
     title: "A sphere rolls on a deformable plane",
+    physics: Physics::Rolling,
     claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; \
             the nodal contacts of the papers have their known errors.",
     scene: include_str!("scene.toml"),

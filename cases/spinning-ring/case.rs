@@ -13,6 +13,7 @@ const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain
 pub(crate) static CASE: Case = Case {
     name: "spinning-ring",
     title: "A spinning ring",
+    physics: Physics::Bodies,
     claim: "A spinning ring conserves its angular momentum and expands by the strain of the centrifugal forces, for \
             laws of the total deformation and for rate laws.",
     scene: include_str!("scene.toml"),

@@ -26,6 +26,7 @@ const FORCES: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "squash",
     title: "Two discs squashed between two walls",
+    physics: Physics::Contacts,
     claim: "The calculation cycle is that of the 1979 paper: the forces of the first three cycles, and of 200 cycles, \
             follow from the equations of the paper to rounding.",
     scene: include_str!("scene.toml"),

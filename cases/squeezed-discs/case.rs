@@ -21,6 +21,7 @@ const SOURCE: Source = Source::Derived(
 pub(crate) static CASE: Case = Case {
     name: "squeezed-discs",
     title: "Nine elastic discs squeezed",
+    physics: Physics::Bodies,
     claim: "Elastic discs press on each other and on walls with the exact elastic force, equal at all contacts.",
     scene: include_str!("scene.toml"),
     derivation: include_str!("derivation.md"),

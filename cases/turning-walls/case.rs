@@ -11,6 +11,7 @@ const STEP: Level = LEVELS[1];
 pub(crate) static CASE: Case = Case {
     name: "turning-walls",
     title: "Grains on rotating walls",
+    physics: Physics::Rolling,
     claim: "Grains at rest relative to rotating walls stay at rest relative to them: friction, tangential springs and \
             rolling resistance include the spin of the walls.",
     scene: include_str!("scene.toml"),

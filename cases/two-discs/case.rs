@@ -12,6 +12,7 @@ const TOUCH: f64 = 3.0 - SQRT_2;
 pub(crate) static CASE: Case = Case {
     name: "two-discs",
     title: "Two elastic discs collide",
+    physics: Physics::Bodies,
     claim: "Contact of elastic discs begins when their surfaces touch and conserves energy and momentum. The rebound \
             lacks only the energy of vibration, and friction gives the correct spins.",
     scene: include_str!("scene.toml"),

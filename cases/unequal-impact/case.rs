@@ -10,6 +10,7 @@ const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
 pub(crate) static CASE: Case = Case {
     name: "unequal-impact",
     title: "A small grain meets a large one at an angle",
+    physics: Physics::Rolling,
     claim: "Friction between grains of unequal size gives both the same impulse, and each grain a spin with its own \
             lever arm.",
     scene: include_str!("scene.toml"),

@@ -45,6 +45,7 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
 pub(crate) static CASE: Case = Case {
     name: "vibrating-bar",
     title: "A bar vibrates along its length",
+    physics: Physics::Waves,
     claim: "A bar in its first mode keeps its period, its amplitude and its energy. With viscous material it decays at \
             the exact rate. A stretched and released bar follows the front that runs through it.",
     scene: include_str!("scene.toml"),

@@ -32,12 +32,57 @@ pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
     Level { name, resolution: Resolution::grid(cells, points) }
 }
 
+/// Field of physics of a case.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, PartialOrd, Ord, serde::Serialize, serde::Deserialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Physics {
+    /// Contact forces and collisions.
+    Contacts,
+    /// Rolling, sliding and friction.
+    Rolling,
+    /// Waves in chains and bars.
+    Waves,
+    /// Moving, curved and triangulated walls; insertion and removal of grains.
+    Walls,
+    /// Packings at rest.
+    Packings,
+    /// Gases, shear flows, silos and drums.
+    Flows,
+    /// Elastic and plastic bodies.
+    Bodies,
+    /// Properties that every solver must satisfy, such as objectivity.
+    Properties,
+    /// Cases outside the registry.
+    #[default]
+    Own,
+}
+
+impl Physics {
+    /// Returns the field in words, for a heading.
+    #[must_use]
+    pub const fn title(self) -> &'static str {
+        match self {
+            Self::Contacts => "contacts, collisions",
+            Self::Rolling => "rolling, sliding",
+            Self::Waves => "waves",
+            Self::Walls => "walls, insertion",
+            Self::Packings => "packings at rest",
+            Self::Flows => "gases, flows, silos",
+            Self::Bodies => "deformable bodies",
+            Self::Properties => "rotation, energy",
+            Self::Own => "own cases",
+        }
+    }
+}
+
 /// A benchmark case. Its folder holds the scene, the claims and the derivation.
 pub struct Case {
     /// Name of the case on the command line and of its folder.
     pub name: &'static str,
     /// Title of the case in the report.
     pub title: &'static str,
+    /// Field of physics.
+    pub physics: Physics,
     /// Summary of all claims, in one or two sentences.
     pub claim: &'static str,
     /// Text of `scene.toml`.
@@ -65,7 +110,7 @@ pub struct Home {
     /// Directory that contains one folder for each case.
     pub folder: &'static str,
     /// Reads grains for a scene from a data file.
-    pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, String>,
+    pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, SceneError>,
     /// Cache of scenes with many grains, shared by all runners. None if the scene files can change while the program runs.
     pub made: Option<&'static SceneCache>,
 }

@@ -62,6 +62,12 @@ impl Outcome {
         matches!(self.severity(), Severity::Red)
     }
 
+    /// Returns true if a value was compared with its expected value, or could not be because the run broke.
+    #[must_use]
+    pub const fn is_judged(self) -> bool {
+        matches!(self, Self::Pass | Self::Known | Self::Fail | Self::Broken | Self::Stale)
+    }
+
     /// Returns the name used in result files and tables.
     #[must_use]
     pub const fn word(self) -> &'static str {

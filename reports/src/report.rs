@@ -1,5 +1,6 @@
 //! Data of a report. With them, all output files can be written again without a solver.
 
+use grainbench_harness::case::Physics;
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Control, Outcome, Verdict};
 use serde::{Deserialize, Serialize};
@@ -84,6 +85,9 @@ pub struct Section {
     pub name: String,
     /// Title in words.
     pub title: String,
+    /// Field of physics; `own` in reports without fields.
+    #[serde(default)]
+    pub physics: Physics,
     /// Claim of the case in words.
     pub claim: String,
     /// Derivation of the expected values, in Markdown without raw HTML. Formulas are text.

@@ -3,6 +3,7 @@
 use crate::study::effects::{EffectResult, Entry, Shift};
 use crate::study::point::{Counts, Diagram, Point, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
+use grainbench_harness::case::Physics;
 use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
@@ -141,6 +142,7 @@ fn backspin() -> Section {
     Section {
         name: case.into(),
         title: "A sphere with backspin on a rough floor".into(),
+        physics: Physics::Rolling,
         claim: "A sphere set down with velocity v₀ and backspin slides, slows at μg and rolls from t* on at a speed \
                 that depends neither on friction nor on stiffness. A solver that has Coulomb friction, the lever arm \
                 and the moment of inertia right must reach it."
@@ -250,6 +252,7 @@ fn nine_discs() -> Section {
     Section {
         name: case.into(),
         title: "Nine discs in a box whose walls close".into(),
+        physics: Physics::Contacts,
         claim: "Nine discs between four walls carry the load of the paper's first test, contact by contact.".into(),
         derivation: "The expected forces are those that the paper prints.".into(),
         weak: "Three digits were printed.".into(),
@@ -423,6 +426,7 @@ pub(crate) fn hostile() -> Report {
                 let fixed = ["Line", "Dashed", "Markers", "MarkedLine"];
                 let is_word = fixed.contains(&text.as_str())
                     || serde_json::from_value::<Outcome>(text.as_str().into()).is_ok()
+                    || serde_json::from_value::<Physics>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Evidence>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<PointStatus>(text.as_str().into()).is_ok()
                     || serde_json::from_value::<Hardness>(text.as_str().into()).is_ok()

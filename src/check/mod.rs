@@ -246,8 +246,7 @@ fn section(
         weak: weak.to_owned(),
         figures,
         verdicts,
-        controls: Vec::new(),
-        runs: Vec::new(),
+        ..Section::default()
     }
 }
 

@@ -130,8 +130,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
             )
             .chain(lonely(comparison, &a, &b))
             .collect(),
-        controls: Vec::new(),
-        runs: Vec::new(),
+        ..Section::default()
     }
 }
 

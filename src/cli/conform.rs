@@ -7,9 +7,9 @@ use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish, says_nothing};
 use super::solver;
 use grainbench::cases::solvers;
-use grainbench::harness::conformance;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{Control, Verdict};
+use grainbench::harness::{case::Physics, conformance};
 use grainbench::reports::{Report, Section};
 use grainbench::scene::solver::Solver;
 use grainbench::scene::terms::Terms;
@@ -92,6 +92,7 @@ pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Ve
 pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
     Section {
         name: "conformance".to_owned(),
+        physics: Physics::Properties,
         title: "Conformance properties".to_owned(),
         claim: format!("For each method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
         derivation: "Each property is tested in its own scenes. Examples are a grain that collides with four others, \

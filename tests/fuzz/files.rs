@@ -256,7 +256,7 @@ fn report() -> &'static Vec<u8> {
             figures: vec![Figure::graph("error", "Error", "Of the displacement.", axes(), curves)],
             verdicts: claims.iter().map(|claim| runner.judge(claim)).collect(),
             controls: claims.iter().map(|claim| runner.control(claim)).collect(),
-            runs: Vec::new(),
+            ..Section::default()
         };
         let provenance = Provenance {
             version: "0.1.0".to_owned(),

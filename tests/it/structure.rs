@@ -7,20 +7,20 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 15] = [
-    ("solvers/scene", 13_270, 26),
+    ("solvers/scene", 13_280, 26),
     ("solvers/lanes", 1_500, 0),
     ("solvers/dem", 9_030, 6),
     ("solvers/mpm", 11_480, 7),
     ("solvers/rigid", 1_620, 0),
-    ("harness", 7_690, 5),
+    ("harness", 7_730, 5),
     ("store", 1_190, 0),
     ("reference", 14_650, 13),
-    ("cases", 21_130, 14),
+    ("cases", 21_170, 14),
     ("fields", 3_220, 4),
-    ("reports", 14_160, 16),
+    ("reports", 14_270, 16),
     ("studies", 4_215, 0),
     ("campaign", 3_215, 0),
-    ("src", 9_520, 0),
+    ("src", 9_530, 0),
     ("tests", 10_600, 0),
 ];
 

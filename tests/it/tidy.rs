@@ -2,7 +2,7 @@
 
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
-use grainbench::harness::case::PLAIN;
+use grainbench::harness::case::{PLAIN, Physics};
 use grainbench::harness::evidence::Evidence;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
@@ -221,6 +221,7 @@ fn every_case_folder_is_whole() {
 fn every_case_and_claim_says_what_it_claims_and_why() {
     CASES.par_iter().for_each(|case| {
         let words = [case.title, case.claim, case.derivation, case.weakness];
+        assert_ne!(case.physics, Physics::Own, "{}: a field of physics", case.name);
         assert!(words.iter().all(|text| !text.trim().is_empty()), "{}: title, claim, derivation, weakness", case.name);
         // Claims in a file state their resolutions. If the file is invalid, its claims are missing.
         let of_file = fs::read_to_string(case.directory().join("claims.toml"));

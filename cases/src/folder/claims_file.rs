@@ -1,5 +1,6 @@
 //! The file `claims.toml`: claims about the scene in the same folder.
 
+use grainbench_harness::case::Physics;
 use serde::Deserialize;
 
 /// Contents of `claims.toml`.
@@ -8,6 +9,9 @@ use serde::Deserialize;
 pub(super) struct ClaimsFile {
     /// Title of the case.
     pub(super) title: String,
+    /// Field of physics under which the report counts the case; `own` by default.
+    #[serde(default)]
+    pub(super) physics: Physics,
     /// Statement that the case tests as a whole; empty by default.
     #[serde(default)]
     pub(super) claim: String,

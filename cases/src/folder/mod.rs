@@ -16,7 +16,7 @@ pub use read::RecordExpression;
 
 use crate::registry::HOME;
 use claims_file::{ClaimEntry, ClaimsFile};
-use grainbench_harness::case::{Case, Home, fraction};
+use grainbench_harness::case::{Case, Home, Physics, fraction};
 use grainbench_harness::claim::{Claim, claim};
 use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
@@ -92,6 +92,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     Ok(Box::leak(Box::new(Case {
         name: kept(name.to_string_lossy().into_owned()),
         title: kept(claims.title),
+        physics: claims.physics,
         claim: kept(claims.claim),
         scene: kept(source.text().to_owned()),
         derivation: kept(derivation),
@@ -106,6 +107,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
 pub(crate) const EMPTY: Case = Case {
     name: "",
     title: "",
+    physics: Physics::Own,
     claim: "",
     scene: "",
     derivation: "",

@@ -29,6 +29,7 @@ pub(crate) const fn case(
     Case {
         name,
         title,
+        physics: Physics::Rolling,
         claim: "A grain released from rest rolls or slips according to Coulomb friction: displacement, velocity and \
                 spin follow the rigid solution up to the compliance of the contact, and the compliant solution up to \
                 the error of the time step.",

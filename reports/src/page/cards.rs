@@ -99,9 +99,9 @@ fn card(
 ) -> Markup {
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
-    let is_judged =
-        rows(report, solver).any(|row| !matches!(row.outcome, Outcome::Unsupported | Outcome::NotAvailable));
+    let not_judged = rows(report, solver).filter(|row| !row.outcome.is_judged()).count();
     let class = match rows(report, solver).map(|row| row.outcome.severity()).max() {
+        _ if not_judged == all => "",
         Some(Severity::Red) => "fail",
         Some(Severity::Amber) => "amber",
         Some(Severity::Green) | None => "pass",
@@ -122,7 +122,7 @@ fn card(
         div class={ "card " (class) } data-card=(solver) {
             h3 {
                 (filter(None, html! { (solver) }))
-                span { @if is_judged { (pass) "/" (all) } @else { "none judged" } }
+                span { @if not_judged < all { (pass) "/" (all) } @else { "none judged" } }
             }
             dl {
                 (compared(report, solver))
@@ -136,6 +136,7 @@ fn card(
                         }
                     }
                 }
+                @if (1..all).contains(&not_judged) { div { dt { "not judged" } dd { (not_judged) } } }
                 @if let Some((stability_of_case, hold)) = hold { (stable(stability_of_case, hold)) }
                 @if let Some((costs, line)) = line { (price(costs, line)) }
             }
@@ -172,7 +173,8 @@ fn stable(stability: &Stability, hold: &Hold) -> Markup {
             div class=[class] {
                 dt { "hard cases" }
                 dd {
-                    (hold.holds) "/" (hold.asked()) " held"
+                    (hold.holds) " of " (hold.asked()) " hold"
+                    @if hold.smaller > 0 { ", " (hold.smaller) " at a smaller step" }
                     @if hold.wrong > 0 { ", " b.bad { (hold.wrong) " wrong without an error" } }
                 }
             }

@@ -1,5 +1,6 @@
 //! Matrix of cases and solvers. Each cell shows the largest |error|/allowed as colour and number.
 
+use grainbench_harness::case::Physics;
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
 
@@ -98,12 +99,73 @@ fn short(worst: f64) -> String {
     }
 }
 
-/// Renders the matrix.
+/// Returns the fields of physics of a report in their order.
+fn fields_of(report: &Report) -> Vec<Physics> {
+    let mut fields: Vec<Physics> = report.sections.iter().map(|section| section.physics).collect();
+    fields.sort_unstable();
+    fields.dedup();
+    fields
+}
+
+/// Renders the number of passed and judged results by field of physics, for solvers without settings for single cases.
+/// Empty if all cases are in one field.
+pub(crate) fn by_physics(report: &Report) -> Markup {
+    const MAIN: [&str; 5] = ["dem", "rigid", "mpm", "dem:lammps", "dem:liggghts"];
+    let fields = fields_of(report);
+    let rows = |physics: Physics, solver: &str| -> Vec<Outcome> {
+        let sections = report.sections.iter().filter(|section| section.physics == physics);
+        let of_solver = sections.flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
+        of_solver.map(|row| row.outcome).filter(|outcome| outcome.is_judged()).collect()
+    };
+    let count = |physics: Physics, solver: &str| {
+        let outcomes = rows(physics, solver);
+        let counts = counts(outcomes.iter().copied());
+        let worst = counts.first()?.0;
+        let passed = outcomes.iter().filter(|outcome| **outcome == Outcome::Pass).count();
+        let title = description(physics.title(), solver, &counts);
+        let class = if worst == Outcome::Pass { "c1" } else { class(worst, Some(1.0)) };
+        Some(html! { a class=(class) href="#matrix" title=(title) { (passed) "/" (outcomes.len()) } })
+    };
+    let there = |solver: &&str| fields.iter().any(|physics| !rows(*physics, solver).is_empty());
+    let solvers: Vec<&str> = MAIN.into_iter().filter(there).collect();
+    if fields.len() < 2 || solvers.is_empty() {
+        return html! {};
+    }
+    let table = html! {
+        table.physics {
+            thead { tr { th scope="col" { "Passed / judged" } @for solver in &solvers { th scope="col" { (broken(solver)) } } } }
+            tbody {
+                @for physics in fields {
+                    tr {
+                        th scope="row" { (physics.title()) }
+                        @for solver in &solvers { td { (count(physics, solver).unwrap_or_default()) } }
+                    }
+                }
+            }
+        }
+    };
+    html! {
+        h3 { a href="#matrix" { "Which solver for which physics" } }
+        (super::scrolling("Passed results by field of physics and solver", &table))
+    }
+}
+
+/// Renders a solver's name that may break after its colon.
+fn broken(solver: &str) -> Markup {
+    html! { @for part in solver.split_inclusive(':') { (part) wbr; } }
+}
+
+/// Renders the matrix. The cases are grouped by field of physics.
 pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     let all = cards::solvers(report);
     let mut columns: Vec<&str> = all.iter().copied().filter(|name| !name.contains('+')).collect();
     if columns.len() < all.len() {
         columns.push(OTHERS);
+    }
+    let mut fields: Vec<(Physics, Vec<(&Section, &String)>)> = Vec::new();
+    for physics in fields_of(report) {
+        let is_in = |(section, _): &(&Section, &String)| section.physics == physics;
+        fields.push((physics, report.sections.iter().zip(anchors).filter(is_in).collect()));
     }
     let table = html! {
         table {
@@ -114,12 +176,15 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                     @for results in &report.judged { th scope="col" { span { (results.program) } } }
                 }
             }
-            tbody {
-                @for (section, anchor) in report.sections.iter().zip(anchors) {
-                    tr data-case=(section.name) {
-                        th scope="row" { a href={ "#" (anchor) } { (section.name) } }
-                        @for column in &columns { td { (ours(section, column, anchor)) } }
-                        @for results in &report.judged { td { (theirs(results, &section.name)) } }
+            @for (physics, of_field) in &fields {
+                tbody {
+                    tr.field { th scope="rowgroup" colspan=(columns.len() + report.judged.len() + 1) { (physics.title()) } }
+                    @for (section, anchor) in of_field {
+                        tr data-case=(section.name) {
+                            th scope="row" { a href={ "#" (anchor) } { (section.name) } }
+                            @for column in &columns { td { (ours(section, column, anchor)) } }
+                            @for results in &report.judged { td { (theirs(results, &section.name)) } }
+                        }
                     }
                 }
             }
@@ -195,5 +260,36 @@ mod tests {
         for alike in [&[Outcome::Pass; 3][..], &[Outcome::Known; 2], &[Outcome::Known, Outcome::Pass], &[]] {
             assert_eq!(stripe(&of(alike)), "");
         }
+    }
+
+    /// The counts are those of the judged results. One result that fails makes its cell red.
+    #[test]
+    fn results_are_counted_by_field_of_physics() {
+        let mut report = crate::sample::report();
+        for section in &mut report.sections {
+            section.verdicts.truncate(2);
+            for row in &mut section.verdicts {
+                (row.solver, row.outcome) = ("dem".to_owned(), Outcome::Pass);
+            }
+        }
+        let cells = |report: &Report| -> Vec<String> {
+            let page = by_physics(report).into_string();
+            page.split("<td>")
+                .skip(1)
+                .map(|cell| cell.split("</a>").next().unwrap().replace(" href=\"#matrix\"", ""))
+                .collect()
+        };
+        let cell = |class: &str, field: &str, results: &str, shown: &str| {
+            format!("<a class=\"{class}\" title=\"{field}, dem: {results}\">{shown}")
+        };
+        let contacts = cell("c1", "contacts, collisions", "2 pass", "2/2");
+        assert_eq!(cells(&report), [contacts.clone(), cell("c1", "rolling, sliding", "2 pass", "2/2")]);
+        let rolling = report.sections.iter().position(|section| section.physics == Physics::Rolling).unwrap();
+        report.sections[rolling].verdicts[1].outcome = Outcome::Fail;
+        assert_eq!(cells(&report), [contacts.clone(), cell("f0", "rolling, sliding", "1 fail, 1 pass", "1/2")]);
+        report.sections[rolling].verdicts[1].outcome = Outcome::Unsupported;
+        assert_eq!(cells(&report), [contacts, cell("c1", "rolling, sliding", "1 pass", "1/1")]);
+        report.sections.remove(rolling);
+        assert_eq!(by_physics(&report).into_string(), "");
     }
 }

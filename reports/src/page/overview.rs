@@ -14,6 +14,8 @@ use grainbench_harness::verdict::{Outcome, Severity};
 pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
     let cases = report.sections.len();
+    let external = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.verdict.is_judged());
+    let external = external.fold((0, 0), |(red, all), row| (red + usize::from(row.verdict.is_red()), all + 1));
     html! {
         header id="summary" {
             p.kicker {
@@ -36,13 +38,19 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
                     }
                 }
                 @if counts.regression > 0 {
-                    li { b { (counts.regression) } " of the passed results are compared only with earlier values" }
+                    @let verb = if counts.regression == 1 { "is" } else { "are" };
+                    li { b { (counts.regression) } " of the passed results " (verb) " compared only with earlier values" }
+                }
+                @if external.0 > 0 {
+                    li {
+                        b { (external.0) } " of " (external.1) " results of " a href="#peers" { "external solvers" } " fail"
+                    }
                 }
                 @if counts.controls_broken > 0 { li { b { (counts.controls_broken) } " controls failed by an error" } }
             }
             (summary::failing(report, anchors))
         }
-        (questions::render(report))
+        (questions::render(report, &matrix::by_physics(report)))
         (cards::render(report, anchors, is_there))
         (tools())
         div.overview {

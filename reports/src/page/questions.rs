@@ -1,7 +1,6 @@
 //! Three questions on the first screen, each with a figure and a sentence, and the sections with all numbers.
 
 use grainbench_harness::figure::{Drawing, Figure};
-use grainbench_harness::verdict::Outcome;
 use maud::{Markup, PreEscaped, html};
 
 use super::scrolling;
@@ -31,8 +30,8 @@ pub(crate) fn links(measured: &Measurements) -> impl Iterator<Item = (&'static s
     QUESTIONS.into_iter().zip(is_there).filter(|(_, is_there)| *is_there).map(|(question, _)| question)
 }
 
-/// Renders the three questions of the first screen.
-pub(crate) fn render(report: &Report) -> Markup {
+/// Renders the three questions of the first screen. `physics` is a table below the first question.
+pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
     let measured = &report.measured;
     html! {
         div.questions {
@@ -45,6 +44,7 @@ pub(crate) fn render(report: &Report) -> Markup {
                         _ => { @if let Some(effects) = &measured.effects { (changes(effects)) } }
                     }
                     p.note { a href={ "#" (id) } { "All numbers" } " · " (age(measured, id)) }
+                    @if id == "costs" { (physics) }
                 }
             }
         }
@@ -112,23 +112,12 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
             Some(format!("{} {}", line.solver, number::seconds(point.wall_seconds?)))
         })
         .collect();
-    let passed = |solver: &str| {
-        let rows = section.into_iter().flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
-        let (pass, all) =
-            rows.fold((0, 0), |(pass, all), row| (pass + usize::from(row.outcome == Outcome::Pass), all + 1));
-        (all > 0).then(|| format!("{solver} {pass}/{all}"))
-    };
-    let is_drawn = |solver: &&str| costs.lines.iter().any(|line| line.solver == **solver);
-    let solvers = super::cards::solvers(report).into_iter().filter(is_drawn);
-    let passed: Vec<String> = solvers.filter_map(passed).collect();
     html! {
         (drawn(&figure))
         p {
-            (number::fraction(TARGETS[AT])) " of the " (diagram.quantity)
-            @if let Some(section) = section { " (" (section.title) ")" }
-            " costs " b { (times.join(", ")) } "."
+            "Fastest setting with an error of at most " (number::fraction(TARGETS[AT])) " of the " (diagram.quantity) ": "
+            b { (times.join(", ")) } "."
         }
-        @if !passed.is_empty() { p { "Results that pass in this case: " (passed.join(", ")) "." } }
     }
 }
 
@@ -292,9 +281,9 @@ mod tests {
 
     #[test]
     fn each_question_has_a_picture_and_a_sentence() {
-        let page = render(&sample::report()).into_string();
+        let page = render(&sample::report(), &html! {}).into_string();
         for sentence in [
-            ") costs <b>dem 1",
+            "Fastest setting with an error of at most 1\u{202f}% of the velocity: <b>dem 1\u{202f}ms",
             "Largest stable step: dem, lammps 0.995–0.996 of the exact limit; mpm 2.1–2.1 h/c, without an exact limit.",
             "A claim fails <b>without friction in 1 of 1, without gravity in 0 of 1</b> scenes.",
             "dem (and lammps: equal)",

@@ -59,7 +59,7 @@ fn over_cases(costs: &Costs) -> Graph {
         .zip(&costs.lines)
         .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
         .collect();
-    Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error|"), curves }
+    Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error| / scale"), curves }
 }
 
 /// Returns the figure of error against time over all cases as SVG.
@@ -102,8 +102,8 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
                  cases."
             @if !stamp.changed.is_empty() {
-                " Hatched: the sources of " (stamp.changed.join(", "))
-                " have changed since the measurement, or it is unknown if they changed."
+                " A dotted line marks measurements of older sources: " (stamp.changed.join(", "))
+                " changed since then, or it is unknown if they changed."
             }
         }
     }

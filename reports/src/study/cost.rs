@@ -153,7 +153,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
              is both faster and more accurate. Hollow markers are the remaining settings.{crosses} Exact solution: {}.",
             diagram.source
         ),
-        [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error|")],
+        [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error| / scale")],
         curves,
     )
 }

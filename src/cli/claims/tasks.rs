@@ -319,6 +319,7 @@ fn blank(selected: &CaseSelection) -> Section {
             Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
             None => case.title.to_owned(),
         },
+        physics: case.physics,
         claim: case.claim.to_owned(),
         derivation: case.derivation.to_owned(),
         weak: case.weakness.to_owned(),
