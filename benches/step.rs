@@ -40,7 +40,7 @@ lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {c
 "#
     );
     SceneSource::from_text("lattice", Path::new(""), &text)
-        .scene(&|_| Err("no data files here".to_owned()))
+        .scene(&grainbench::scene::resolve::no_data_file)
         .expect("the scene is right")
 }
 

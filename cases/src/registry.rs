@@ -4,6 +4,7 @@ use grainbench_harness::case::{Case, Home, SceneCache};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{TargetQuantity, from_claims};
 use grainbench_reference::{DataFile, parse_data};
+use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
@@ -45,8 +46,8 @@ pub fn subjects(case: &'static Case) -> Vec<TargetQuantity> {
 ///
 /// # Errors
 /// The message names the file, the line, the expected text and the found text.
-pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
-    Ok(grains_of(&grainbench_reference::read_data_file(path).map_err(|error| error.to_string())?))
+pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, SceneError> {
+    Ok(grains_of(&grainbench_reference::read_data_file(path)?))
 }
 
 /// Returns the scene of a source that reads its grains from LAMMPS data files. `files` contains the name and the text of
@@ -57,8 +58,9 @@ pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, String> {
 pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<Scene, String> {
     let read = |path: &Path| {
         let named = files.iter().find(|(name, _)| path.ends_with(name));
-        let (name, text) = named.ok_or_else(|| format!("{}: expected a file of the start", path.display()))?;
-        Ok(grains_of(&parse_data(text.as_bytes(), name).map_err(|error| error.to_string())?))
+        let (name, text) = named
+            .ok_or_else(|| source.error("grains", "a data file of the start", &path.display().to_string(), None))?;
+        Ok(grains_of(&parse_data(text.as_bytes(), name)?))
     };
     source.scene(&read).map_err(|error| error.to_string())
 }

@@ -15,7 +15,7 @@ fn scene(text: &str) -> Scene {
         "title = 'forces'\nduration = 1.0\nmaterials.m.density = 1.0\n\
          contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e3, tangential_stiffness = 1.0e3, friction = 0.5 }}\n{text}"
     );
-    SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
+    SceneSource::from_text("test", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 /// Returns the quantities of a scene from files with the given texts. `names` are pairs of our column names and the

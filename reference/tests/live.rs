@@ -41,7 +41,7 @@ disc = { grain = "disc" }
 "#;
 
 fn scene() -> Scene {
-    SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&|_| Err("no file".to_owned())).unwrap()
+    SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 /// Creates an executable script in a folder.

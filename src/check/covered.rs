@@ -115,7 +115,10 @@ impl Coverage {
 
     /// Returns the number of compared samples and, if the output ends early, the time of the last sample.
     pub(super) fn words(&self) -> String {
-        let samples = format!("worst of {} samples", self.samples);
+        let samples = match self.samples {
+            1 => "one sample".to_owned(),
+            samples => format!("worst of {samples} samples"),
+        };
         if self.is_whole() { samples } else { format!("{samples} to t = {} s", number::significant(self.reached, 6)) }
     }
 

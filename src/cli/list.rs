@@ -10,8 +10,8 @@ use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases whose claims are listed. Default: all cases.
-    #[arg(value_name = "CASE|CASE/VARIANT", requires = "rows")]
+    /// Cases whose claims are listed, as with `--rows`. Default: the cases themselves.
+    #[arg(value_name = "CASE|CASE/VARIANT")]
     cases: Vec<String>,
     /// List the solver-independent claims with their controls instead of the cases.
     #[arg(long)]
@@ -46,7 +46,7 @@ struct Entry {
 }
 
 pub(crate) fn list(arguments: &Arguments) -> Outcome {
-    if arguments.rows {
+    if arguments.rows || !arguments.cases.is_empty() {
         return list_rows(arguments);
     }
     let entries = CASES.iter().map(|case| entry(case)).collect::<Result<Vec<_>, _>>()?;

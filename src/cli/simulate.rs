@@ -171,10 +171,10 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     if arguments.plan.is_some() || Sweep::is_in(&arguments.scene) {
         return sweep(arguments);
     }
+    let mut source = SceneSource::read(&arguments.scene)?;
     if arguments.solver.is_empty() {
         return Err(Fault::input("--solver: expected a solver, such as `dem`, found none"));
     }
-    let mut source = SceneSource::read(&arguments.scene)?;
     if let Some(variant) = &arguments.variant {
         source = source.variant(variant);
     }

@@ -33,7 +33,7 @@ fn lattice() -> Scene {
          count = [{SIDE}, {SIDE}] }} }}\n"
     );
     let source = SceneSource::from_text("lattice", Path::new(""), &text);
-    source.scene(&|_| Err("no data files here".to_owned())).unwrap()
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 /// Returns dense shear of 10,000 discs without friction.

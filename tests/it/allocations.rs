@@ -29,7 +29,8 @@ fn counted(run: impl Fn(u64)) -> i64 {
 /// Reads a scene, and removes all output between its start and its end.
 fn scene(directory: &Path, text: &str) -> Scene {
     let source = SceneSource::from_text("scene", directory, text);
-    let mut scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let mut scene =
+        source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}\n{text}"));
     (scene.sampling, scene.snapshots) = (Sampling::Cycles(u64::MAX), 0);
     scene
 }

@@ -59,7 +59,7 @@ snapshots = 3
 /// Returns the snapshot of the packing at rest.
 fn packing() -> Snapshot {
     let source = SceneSource::from_text("packing", Path::new(""), SCENE);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
     let solver = solvers::by_name("dem").unwrap();
     let record = solver.run(&scene, &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
     record.snapshots.into_iter().next_back().unwrap()

@@ -33,7 +33,8 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
     [output]\nevery = 0.004\nsnapshots = 2\n";
 
 fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, RunObserver) {
-    let scene: Scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err(String::new())).unwrap();
+    let scene: Scene =
+        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let mut observer =
         RunObserver::new(RunOptions { threads, most_rows, keep_snapshots: false, ..RunOptions::DEFAULT });
     let resolution = match solver {

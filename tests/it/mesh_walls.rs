@@ -63,7 +63,7 @@ lattice = { origin = [-0.79, -0.8, -0.79], spacing = [0.5, 0.51, 0.52], count = 
 
 fn scene_in(directory: &Path, text: &str) -> Result<Scene, String> {
     SceneSource::from_text("mesh", directory, text)
-        .scene(&|_| Err("no files".to_owned()))
+        .scene(&grainbench_scene::resolve::no_data_file)
         .map_err(|error| error.to_string())
 }
 

@@ -26,7 +26,7 @@ fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
          [output]\nsnapshots = 0\n[probes]\ndisc.grain = 'disc'\n"
     );
     let source = SceneSource::from_text("belt", Path::new(""), &text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
     let record = solvers::by_name(solver).unwrap().run(&scene, resolution, &mut ()).unwrap();
     *record.series.column("disc.x").unwrap().last().unwrap()
 }

@@ -21,7 +21,7 @@ const LID: &str = "[walls.lid]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 2.1
 
 fn scene(text: &str) -> Scene {
     let source = SceneSource::from_text("passing", Path::new(""), text);
-    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}\n{text}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}\n{text}"))
 }
 
 /// Returns our run and the run of an external program, in its convention. `None` if it is not installed, an error in CI.

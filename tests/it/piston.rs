@@ -43,7 +43,7 @@ piston = {{ force = {FORCE:?}, mass = {MASS:?}, damping = {damping:?} }}
 
 fn run(text: &str) -> Record {
     let source = SceneSource::from_text("lid", Path::new(""), text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"));
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
     let solver = solvers::by_name("dem").unwrap();
     solver.run(&scene, &Resolution::CriticalFraction(0.01), &mut ()).unwrap_or_else(|error| panic!("{error}"))
 }

@@ -17,7 +17,7 @@ const SCENE: &str = include_str!("../scenes/falling.toml");
 
 fn scene(output: &str) -> Scene {
     let source = SceneSource::from_text("falling", Path::new(""), &format!("{SCENE}{output}\n"));
-    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);

@@ -25,7 +25,7 @@ fn scene(duration: f64, friction: f64, grain: &str, wall: &str) -> Scene {
         if friction > 0.0 { 2.0 / 7.0 * STIFFNESS } else { 0.0 },
     );
     let source = SceneSource::from_text("round", Path::new(""), &text);
-    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn run(scene: &Scene) -> Record {
@@ -151,7 +151,7 @@ fn lammps_has_the_same_round_walls() {
         return;
     }
     let source = SceneSource::from_text("round", Path::new(""), DRUM_AND_FUNNEL);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let [ours, theirs] = ["dem:lammps", "lammps"].map(|name| {
         let solver = solvers::by_name(name).unwrap();
         solver.run(&scene, &Resolution::TimeStep(2e-4), &mut ()).unwrap_or_else(|error| panic!("{error}"))

@@ -29,7 +29,7 @@ const FLOOR: &str = "walls.floor = { material = 'm', plane = { point = [0.0, 0.0
 
 fn scene(text: &str) -> Scene {
     let source = SceneSource::from_text("passing", Path::new(""), text);
-    source.scene(&|_| Err("no files".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 fn run(text: &str, threads: usize) -> Record {
@@ -209,6 +209,6 @@ fn nothing_is_poured_into_what_stands_there() {
     // A grain that is inserted at time zero exists from the start and is checked at the start.
     let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
     let source = SceneSource::from_text("passing", Path::new(""), &text);
-    let first = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+    let first = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string();
     assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
 }

@@ -1,5 +1,6 @@
 //! Scenes with random mistakes.
 
+use grainbench::scene::error::SceneError;
 use grainbench::scene::resolve::FileGrain;
 use proptest::prelude::*;
 use std::path::Path;
@@ -139,7 +140,7 @@ pub(crate) fn make(text: &str, mistake: &Mistake) -> String {
 }
 
 /// Returns the content of a data file: two grains.
-pub(crate) fn two_grains(_: &Path) -> Result<Vec<FileGrain>, String> {
+pub(crate) fn two_grains(_: &Path) -> Result<Vec<FileGrain>, SceneError> {
     let grain = |x: f64| FileGrain {
         type_number: 1,
         radius: 0.1,

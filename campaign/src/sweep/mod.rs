@@ -18,7 +18,7 @@ use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::Outcome;
 use grainbench_reports::study::point::Timing;
 use grainbench_reports::sweep::{Factor, PointOutput, Quantity, RunCounts};
-use grainbench_scene::error::did_you_mean;
+use grainbench_scene::error::{did_you_mean, expected_and_found};
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver};
@@ -120,7 +120,8 @@ impl Sweep {
         let text = written(path).map_err(input_fault)?;
         let file: File = toml::from_str(&text).map_err(|error| {
             let place = format!("{}:{}", path.display(), line_of(&text, &error).unwrap_or(1));
-            Fault::expected(place, "the keys and values of a sweep", error.message().replace('\n', ", "))
+            let (expected, found) = expected_and_found(error.message());
+            Fault::expected(place, &expected, found)
         })?;
         let wrong = |key: &str, expected: &str, found: String| {
             Fault::expected(format!("{}: {key}", path.display()), expected, found)

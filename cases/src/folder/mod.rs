@@ -22,6 +22,7 @@ use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
 use grainbench_harness::run::MissingData;
 use grainbench_harness::tolerance::exactly;
+use grainbench_scene::error::expected_and_found;
 use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::{line_of, written};
 use row::Reader;
@@ -70,7 +71,8 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     let text = text_of(&file)?;
     let claims: ClaimsFile = toml::from_str(&text).map_err(|error| {
         let line = line_of(&text, &error).unwrap_or(1);
-        no_case(format!("line {line}: expected the keys of claims, found {}", error.message().replace('\n', " ")))
+        let (expected, found) = expected_and_found(error.message());
+        no_case(format!("line {line}: expected {expected}, found {found}"))
     })?;
     let words = [&claims.title, &claims.claim, &claims.weakness];
     if claims.title.trim().is_empty() || words.iter().any(|text| text.chars().any(char::is_control)) {

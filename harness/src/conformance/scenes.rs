@@ -137,7 +137,7 @@ fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedSc
 /// Builds a scene from the text of a scene file. `frictional` states that grains exert torques on each other.
 pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<NamedScene, SceneError> {
     let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
-    Ok(NamedScene { name, scene: source.scene(&|_| Err("this scene reads no file".to_owned()))?, frictional })
+    Ok(NamedScene { name, scene: source.scene(&grainbench_scene::resolve::no_data_file)?, frictional })
 }
 
 /// Returns collisions in free space in two and three dimensions, without friction or with friction and dashpots.

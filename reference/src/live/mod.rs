@@ -189,8 +189,9 @@ mod tests {
 
     #[test]
     fn reading_ends_when_the_time_is_over() {
-        let scene =
-            SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&|_| Err("none".to_owned())).unwrap();
+        let scene = SceneSource::from_text("scene.toml", Path::new("."), SCENE)
+            .scene(&grainbench_scene::resolve::no_data_file)
+            .unwrap();
         let deck = write_deck(&scene, &Resolution::TimeStep(0.01), Program::LAMMPS).unwrap();
         let folder = tempfile::tempdir().unwrap();
         fs::write(folder.path().join(SAMPLES), DUMP).unwrap();

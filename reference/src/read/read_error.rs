@@ -1,5 +1,6 @@
 //! Common error of all readers.
 
+use grainbench_scene::error::SceneError;
 use grainbench_scene::text::tamed;
 use std::fmt;
 use std::io;
@@ -95,6 +96,18 @@ impl ReadError {
     #[must_use]
     pub fn found(&self) -> &str {
         &self.found
+    }
+}
+
+impl From<ReadError> for SceneError {
+    fn from(error: ReadError) -> Self {
+        Self {
+            place: Place(&error.file, error.line, error.column).to_string(),
+            key: String::new(),
+            expected: error.expected.into_string(),
+            found: error.found.into_string(),
+            help: None,
+        }
     }
 }
 

@@ -239,7 +239,8 @@ mod tests {
 
     #[test]
     fn physics_counts_and_titles_do_not() {
-        let scene = SceneSource::from_text("s", Path::new("."), SCENE).scene(&|_| Err(String::new())).unwrap();
+        let scene =
+            SceneSource::from_text("s", Path::new("."), SCENE).scene(&grainbench_scene::resolve::no_data_file).unwrap();
         let hash = |change: fn(&mut Scene), step: f64| {
             let mut scene = scene.clone();
             change(&mut scene);

@@ -49,7 +49,7 @@ fn scene(dimension: usize) -> Scene {
         );
     }
     let source = SceneSource::from_text("grains", Path::new(""), &text);
-    source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns the state after 300 steps and the recorded contacts, as text.
@@ -167,7 +167,7 @@ fn ball_under_beads() -> Scene {
          [grains.beads]\nmaterial = 'm'\nradius = 0.5\n\
          lattice = { origin = [0.0, 0.0, 0.0], spacing = [0.99, 0.99, 0.99], count = [14, 14, 8] }\n";
     let source = SceneSource::from_text("ball", Path::new(""), text);
-    source.scene(&|_| Err("no data files here".to_owned())).unwrap_or_else(|error| panic!("{error}"))
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// In a call with many cycles, the beads must not move before the forces in the row of the ball are computed. The final

@@ -411,7 +411,7 @@ fn a_dashpot_shortens_the_stable_step() {
              grains.a = {{ material = 'n', radius = 0.1, position = [0.0, 0.0] }}\n{partner}\n"
         );
         let source = SceneSource::from_text("test", Path::new(""), &text);
-        damped_step(&source.scene(&|_| Err("no files".to_owned())).unwrap(), &Convention::LAMMPS)
+        damped_step(&source.scene(&grainbench_scene::resolve::no_data_file).unwrap(), &Convention::LAMMPS)
     };
     let (mass, ratio) = (10.0 * PI, 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt());
     for (partner, mass) in [

@@ -96,7 +96,7 @@ fn times_that_make_no_span_are_refused() {
              [driven.d]\ngrains = 'g'\n{span}\n"
         );
         let source = SceneSource::from_text("test", Path::new(""), &text);
-        let error = source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string();
+        let error = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string();
         assert!(error.contains(says), "{span}: {error}");
     };
     refused("start = -1.0", "driven.d.start: expected");

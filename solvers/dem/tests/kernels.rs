@@ -61,7 +61,7 @@ fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
         if dimension == 2 { "0.1, 0.0" } else { "0.1, 0.0, 0.0" },
     );
     let source = SceneSource::from_text("everything", Path::new(""), &text);
-    let mut scene = source.scene(&|_| Err("no data files here".to_owned())).unwrap();
+    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     scene.change_laws(|law| *law = law_with_everything(hertz));
     let off: Vec<Effect> = effects().filter(|effect| !effect.is_on(&scene)).collect();
     assert!(off == if hertz { vec![] } else { vec![Effect::Hertz] }, "{off:?} are off");

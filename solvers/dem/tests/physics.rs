@@ -176,7 +176,7 @@ fn driven_grains_give_what_they_say() {
          budget.budget = true\nright.driven = 'right'\n"
     );
     let source = SceneSource::from_text("test", Path::new(""), &text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     assert_eq!(scene.driven.iter().map(|driven| driven.grains.clone()).collect::<Vec<_>>(), [[0], [2]]);
     let record =
         Dem::new(Convention::CUNDALL_STRACK).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap();
@@ -223,7 +223,7 @@ fn grains_of_a_region_are_held_against_a_wall() {
          [probes]\nall.system = true\nfirst.grain = 'row.1'\nlast.grain = 'row.3'\nc.contact = ['row.1', 'left']\n";
     let scene = |text: &str| {
         let source = SceneSource::from_text("test", Path::new(""), &format!("{}{text}", support::MATERIAL));
-        source.scene(&|_| Err("no files".to_owned()))
+        source.scene(&grainbench_scene::resolve::no_data_file)
     };
     assert_eq!(scene(text).unwrap().driven[0].grains, [0, 1]);
     let record = run(text);

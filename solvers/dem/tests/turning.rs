@@ -17,7 +17,7 @@ use support::{column, last};
 
 fn scene(text: &str) -> Scene {
     let text = format!("title = 'test'\n{text}");
-    SceneSource::from_text("test", Path::new(""), &text).scene(&|_| Err("no files".to_owned())).unwrap()
+    SceneSource::from_text("test", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 fn run(text: &str, fraction: f64) -> Record {

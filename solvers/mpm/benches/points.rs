@@ -17,7 +17,7 @@ use std::time::Duration;
 
 fn scene(text: &str) -> Scene {
     let source = SceneSource::from_text("bench", Path::new(""), &format!("title = 'bench'\ndimension = 2\n{text}"));
-    source.scene(&|_| Err("no data files here".to_owned())).expect("the scene is right")
+    source.scene(&grainbench_scene::resolve::no_data_file).expect("the scene is right")
 }
 
 /// Returns a free vibrating square of 122.5 × 122.5 cells.

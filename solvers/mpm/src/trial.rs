@@ -12,7 +12,7 @@ use std::path::Path;
 pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, points: u32) -> (Simulation<S>, u64) {
     let text = format!("title = 'test'\n{text}");
     let source = SceneSource::from_text("test", Path::new(""), &text);
-    let scene = source.scene(&|_| Err("no files".to_owned())).expect("the scene is right");
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).expect("the scene is right");
     let solver = Mpm { setting, ..Mpm::BEST };
     let plan = solver.plan(&scene, &Resolution::grid(cells, points)).expect("the resolution is right");
     let Plan { lattice, points, time_step, critical, steps } = plan;

@@ -13,7 +13,7 @@ use std::f64::consts::{PI, TAU};
 use std::path::Path;
 
 fn scene(text: &str) -> Scene {
-    SceneSource::from_text("test", Path::new(""), text).scene(&|_: &Path| Err("no files".to_owned())).unwrap()
+    SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 fn run(scene: &Scene, substeps: u32) -> Record {

@@ -364,7 +364,7 @@ mod tests {
                     grains.a = { material = 'disc', radius = 1.0, position = [0.0, 1.0] }\n\
                     walls.floor = { material = 'disc', plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }\n";
         let source = SceneSource::from_text("two-discs", Path::new(""), text);
-        let scene = source.scene(&|_| Err("no data files here".to_owned())).unwrap();
+        let scene = source.scene(&crate::resolve::no_data_file).unwrap();
         for effect in Effect::ALL {
             let mut idle = scene.clone();
             assert!(!effect.is_on(&scene), "{effect:?}");

@@ -1,6 +1,6 @@
 //! Text of a scene file: parsing, variants, overrides, and line numbers of keys.
 
-use crate::error::{SceneError, did_you_mean};
+use crate::error::{SceneError, did_you_mean, expected_and_found};
 use crate::file::SceneFile;
 use crate::scene::Dimension;
 use crate::shape;
@@ -234,7 +234,7 @@ impl SceneSource {
 
     /// Returns the origin of a key for error messages: the `--set` option, or the file and the line of the key or of
     /// its nearest existing parent.
-    fn place(&self, key: &str) -> String {
+    pub(crate) fn place(&self, key: &str) -> String {
         if let Some((set, value)) = self.overrides.iter().rev().find(|(set, _)| within(key, set)) {
             return format!("--set {set}={value}");
         }
@@ -273,44 +273,33 @@ impl SceneSource {
     /// Converts an error message of serde to a scene error.
     fn explain(&self, path: &str, message: &str, table: &toml::Table) -> SceneError {
         let message = message.trim();
-        let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
         let path = if path == "." { "" } else { path };
         let dimension = match table.get("dimension").and_then(toml::Value::as_integer) {
             Some(3) => Dimension::Three,
             _ => Dimension::Two,
         };
         let shape = shape::expected(path, dimension);
-        if message.starts_with("unknown field") || message.starts_with("unknown variant") {
-            let word = quoted.first().copied().unwrap_or_default();
-            let known = quoted.get(1..).unwrap_or_default();
-            let key = match (message.starts_with("unknown field"), path.is_empty()) {
-                (false, _) => path.to_owned(),
-                (true, true) => word.to_owned(),
-                (true, false) if path.ends_with(&format!(".{word}")) || path == word => path.to_owned(),
-                (true, false) => format!("{path}.{word}"),
-            };
-            let kind = if message.starts_with("unknown field") { "one of the keys" } else { "one of" };
-            let expected = format!("{kind} {}", known.join(", "));
-            return self.error(&key, &expected, &format!("`{word}`"), did_you_mean(word, known.iter().copied()));
+        let word = message.split('`').nth(1).unwrap_or_default();
+        let (expected, found) = expected_and_found(message);
+        if message.starts_with("unknown variant") {
+            return self.error(path, &expected, &found, None);
+        }
+        if message.starts_with("unknown field") {
+            let is_last = path == word || path.ends_with(&format!(".{word}"));
+            let key = if path.is_empty() || is_last { path.to_owned() } else { format!("{path}.{word}") };
+            return self.error(if key.is_empty() { word } else { &key }, &expected, &found, None);
         }
         if message.starts_with("missing field") {
-            let word = quoted.first().copied().unwrap_or_default();
             let key = if path.is_empty() { word.to_owned() } else { format!("{path}.{word}") };
             let help = shape.filter(|(_, shape)| shape.starts_with('{')).map(|(_, shape)| format!("as in {shape}"));
-            return self.error(&key, &format!("the key `{word}`"), "none", help);
+            return self.error(&key, &expected, &found, help);
         }
         if let Some((key, shape)) = shape {
             let found = value_at(table, key).map_or_else(|| message.to_owned(), describe);
             return self.error(key, &shape, &found, None);
         }
-        if let Some((found, expected)) = message.split_once(", expected ") {
-            let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
-            let expected = match expected {
-                "f64" => "a number",
-                "u8" | "u32" | "u64" => "a whole number",
-                other => other,
-            };
-            return self.error(path, expected, found, None);
+        if message.contains(", expected ") {
+            return self.error(path, &expected, &found, None);
         }
         let found = value_at(table, path).map_or_else(|| "something else".to_owned(), describe);
         self.error(path, message, &found, None)

@@ -14,7 +14,7 @@ const SCENE: &str = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.den
 
 fn read(periodic: &str, group: &str) -> Result<Scene, String> {
     let text = SCENE.replace("PERIODIC", periodic) + group;
-    let scene = SceneSource::from_text("s.toml", Path::new(""), &text).scene(&|_| Err("none".to_owned()));
+    let scene = SceneSource::from_text("s.toml", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file);
     scene.map_err(|error| error.to_string())
 }
 
@@ -62,7 +62,7 @@ fn a_variant_takes_keys_away() {
         [variants.open]\nwalls.floor = ''\ndomain.periodic = ''\n[variants.nothing]\nwalls.roof = ''\n";
     let text = SCENE.replace("PERIODIC", "['x']") + LATTICE + VARIANTS;
     let source = || SceneSource::from_text("s.toml", Path::new(""), &text);
-    let resolve = |source: SceneSource| source.scene(&|_| Err("none".to_owned()));
+    let resolve = |source: SceneSource| source.scene(&grainbench_scene::resolve::no_data_file);
     let (plain, open) = (resolve(source()).unwrap(), resolve(source().variant("open")).unwrap());
     assert_eq!((plain.walls.len(), open.walls.len()), (1, 0));
     assert_eq!((plain.domain.unwrap().periodic[0], open.domain.unwrap().periodic[0]), (true, false));

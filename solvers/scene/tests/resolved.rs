@@ -10,13 +10,13 @@ use std::path::Path;
 
 fn scene(text: &str) -> Scene {
     let source = SceneSource::from_text("test", Path::new(""), text);
-    source.scene(&|_| Err("no files".to_owned())).unwrap()
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap()
 }
 
 /// Returns the error message of an invalid scene.
 fn refusal(text: &str) -> String {
     let source = SceneSource::from_text("test", Path::new(""), text);
-    source.scene(&|_| Err("no files".to_owned())).unwrap_err().to_string()
+    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string()
 }
 
 fn close(found: f64, expected: f64) {

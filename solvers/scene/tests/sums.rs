@@ -21,7 +21,8 @@ fn energies_and_momenta() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\ngravity = [3.0, -10.0]\n\
                 materials.m.density = 1273.2395447351628\n\
                 [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.0, 3.0]\n[probes]\nall.system = true\n";
-    let scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene =
+        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let disc = GrainState {
         velocity: Vector3::new(4.0, 5.0, 0.0),
         spin: Vector3::new(0.0, 0.0, 6.0),
@@ -81,7 +82,8 @@ fn mean_stress_and_coordination() {
                 grains.b = { material = 'm', radius = 0.5, position = [0.9, 0.0] }\n\
                 grains.c = { material = 'm', radius = 0.5, position = [0.0, 0.8] }\n\
                 [walls.w]\nmaterial = 'm'\nsegment = [[-0.1, -0.45], [0.1, -0.45]]\n[probes]\nall.stress = true\n";
-    let scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene =
+        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let grains = scene.grains.iter().zip(1..).map(|(grain, id)| GrainState::start(id, grain)).collect();
     let touch = |partner, normal: [f64; 2], overlap, normal_force, shear: [f64; 2]| ContactState {
         grain: 1,
@@ -138,6 +140,7 @@ fn a_snapshot_is_taken_at_the_nearest_step() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
                 [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\n\
                 [output]\nevery = 0.5\nsnapshots = 0\nsnapshot_times = [0.24, 0.26, 0.5, 0.76]\n";
-    let scene = SceneSource::from_text("test", Path::new(""), text).scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene =
+        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
     assert_eq!(Recorder::new(&scene, 0.1, 10).snapshot_steps(), [0, 2, 3, 5, 8, 10]);
 }

@@ -153,7 +153,7 @@ fn box_of_discs(edge: u32) -> Result<Scene, SceneError> {
          [output]\nevery = 1.0\n",
         f64::from(edge)
     );
-    SceneSource::from_text("discs in a box", Path::new(""), &text).scene(&|_| Err("there are no files here".to_owned()))
+    SceneSource::from_text("discs in a box", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file)
 }
 
 #[cfg(test)]

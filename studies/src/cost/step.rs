@@ -241,7 +241,7 @@ fn block() -> Result<Scene, SceneError> {
 
 fn scene(title: &str, text: &str) -> Result<Scene, SceneError> {
     let text = format!("title = '{title}'\n{text}[output]\nevery = 1.0\n");
-    SceneSource::from_text(title, Path::new(""), &text).scene(&|_| Err("there are no files here".to_owned()))
+    SceneSource::from_text(title, Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file)
 }
 
 #[cfg(test)]

@@ -145,7 +145,7 @@ mod tests {
 
     fn worth(effect: Effect, matters: f64) -> EffectResult {
         let source = SceneSource::from_text("rolls", Path::new(""), ROLLS);
-        let scene = source.scene(&|_| Err("this scene reads no file".to_owned())).unwrap();
+        let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
         let solver = Dem::new(Convention::DEFAULT);
         let resolution = Resolution::CriticalFraction(0.1);
         let asked = StudyInput { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };

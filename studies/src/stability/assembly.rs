@@ -160,7 +160,7 @@ fn finish(
     judge: Judge,
 ) -> Result<Assembly, SceneError> {
     let source = SceneSource::from_text(&format!("stability/{name}"), Path::new(""), text);
-    let mut scene = source.scene(&|_| Err("this scene reads no file".to_owned()))?;
+    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file)?;
     scene.sampling = Sampling::Count(1);
     scene.snapshots = 20;
     let rest = scene.grains.iter().map(|grain| grain.position).collect();

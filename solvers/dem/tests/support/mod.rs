@@ -25,7 +25,7 @@ pub fn run_as(text: &str, convention: Convention) -> Record {
 
 pub fn run_at(text: &str, convention: Convention, resolution: &Resolution) -> Record {
     let source = SceneSource::from_text("test", Path::new(""), &format!("{MATERIAL}{text}"));
-    let scene = source.scene(&|_| Err("no files".to_owned())).unwrap();
+    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     Dem::new(convention).run(&scene, resolution, &mut ()).unwrap()
 }
 

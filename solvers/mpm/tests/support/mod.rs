@@ -11,7 +11,7 @@ use std::path::Path;
 
 pub fn scene(text: &str) -> Scene {
     SceneSource::from_text("test", Path::new(""), &format!("title = 'test'\n{text}"))
-        .scene(&|_| Err("no files".to_owned()))
+        .scene(&grainbench_scene::resolve::no_data_file)
         .unwrap()
 }
 

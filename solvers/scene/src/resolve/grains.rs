@@ -277,8 +277,9 @@ impl Resolver<'_> {
             .map(|material| self.material(&format!("grains.{name}.file.types"), material))
             .collect::<Result<_, _>>()?;
         let path = self.check.source.directory.join(&file.path);
-        let read = (self.read_grains)(&path).map_err(|message| {
-            self.check.error(&key, "a LAMMPS data file of atom style sphere", &format!("`{message}`"))
+        let read = (self.read_grains)(&path).map_err(|error| SceneError {
+            place: format!("{}: {key}: {}", self.check.source.place(&key), error.place),
+            ..error
         })?;
         for atom in read {
             let material = if types.is_empty() {

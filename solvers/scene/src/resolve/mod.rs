@@ -48,7 +48,21 @@ pub struct FileGrain {
 }
 
 /// Reader of grains from a data file. Its error states file, line, expected and found value.
-pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, String>;
+pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, SceneError>;
+
+/// Refuses a data file, for scenes whose grains are all in the scene file.
+///
+/// # Errors
+/// Always.
+pub fn no_data_file(path: &Path) -> Result<Vec<FileGrain>, SceneError> {
+    Err(SceneError {
+        place: path.display().to_string(),
+        key: String::new(),
+        expected: "a scene without data files".to_owned(),
+        found: "a data file".to_owned(),
+        help: None,
+    })
+}
 
 impl SceneSource {
     /// Returns the resolved scene, with variant and overrides applied and all values checked.

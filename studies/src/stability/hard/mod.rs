@@ -76,7 +76,7 @@ fn changed(
 ) -> HardCase {
     let name = name.into();
     let source = SceneSource::from_text(&format!("hard/{name}"), Path::new(""), text);
-    let mut scene = source.scene(&|_| Err("this scene reads no file".to_owned()));
+    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file);
     if let Ok(scene) = &mut scene {
         change(scene);
     }
