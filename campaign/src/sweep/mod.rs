@@ -139,7 +139,7 @@ impl Sweep {
         }
         for name in file.map.iter().flatten() {
             if !file.factors.contains_key(name) {
-                return Err(wrong("map", "two factors", format!("`{name}`")));
+                return Err(wrong("map", "a factor", format!("`{name}`")));
             }
         }
         let mut levels = Vec::new();

@@ -37,11 +37,9 @@ impl Ids {
         self.0.sort_unstable();
         let twice = self.0.windows(2).find(|pair| pair[0].0 == pair[1].0);
         match twice {
-            Some(pair) => Err(fault(
-                pair[1].1,
-                "an id that does not occur in an earlier row".to_owned(),
-                format!("{} again", pair[1].0),
-            )),
+            Some(pair) => {
+                Err(fault(pair[1].1, "each id only once per snapshot".to_owned(), format!("{} again", pair[1].0)))
+            }
             None => Ok(()),
         }
     }

@@ -159,7 +159,7 @@ impl DumpSnapshot {
     /// Checks that the numbers equal those of an earlier snapshot with the same step.
     pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
         let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
-        let expected = format!("{expected} as before at step {}, which occurs twice", self.step);
+        let expected = format!("{expected} as in the earlier frame of step {}", self.step);
         Err(ReadError::at(file, self.first_line + row as u64, expected, found))
     }
 

@@ -159,14 +159,14 @@ impl Convention {
     pub fn words(&self) -> Vec<String> {
         vec![
             format!(
-                "Coulomb cap on {}",
+                "Coulomb limit on {}",
                 match self.coulomb_cap {
                     CoulombCap::Spring => "the spring",
                     CoulombCap::SpringAndDashpot => "spring and dashpot",
                 }
             ),
             format!(
-                "cap ∝ {}",
+                "limit ∝ {}",
                 match self.cap_normal {
                     CapNormal::Spring => "normal spring force",
                     CapNormal::Total => "total normal force",
@@ -174,7 +174,7 @@ impl Convention {
                 }
             ),
             format!(
-                "torque arm {}",
+                "lever arm {}",
                 match self.torque_arm {
                     TorqueArm::Radius => "R",
                     TorqueArm::ContactPoint => "R − overlap/2",
@@ -188,21 +188,21 @@ impl Convention {
                 }
             ),
             format!(
-                "stretch {}",
+                "tangential spring {}",
                 match self.history {
                     History::Turned => "turned with the contact",
                     History::Projected => "projected on the tangent",
                 }
             ),
             format!(
-                "velocities on the normal of {}",
+                "velocities on the normal at {}",
                 match self.velocity_normal {
                     VelocityNormal::MidStep => "mid-step",
                     VelocityNormal::EndOfStep => "the end of the step",
                 }
             ),
             format!(
-                "rolling at walls by {}",
+                "rolling at walls from {}",
                 match self.wall_rolling {
                     WallRolling::RelativeSpin => "the spin relative to the wall",
                     WallRolling::Spin => "the spin",

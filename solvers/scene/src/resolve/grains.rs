@@ -64,6 +64,15 @@ impl Resolver<'_> {
                 ("file", spec.file.is_some()),
             ],
         )?;
+        // The grains of a state or of a data file have their own size and motion.
+        let sources = [("state", spec.state.is_some()), ("file", spec.file.is_some())];
+        let keys =
+            [("radius", spec.radius.is_some()), ("velocity", spec.velocity.is_some()), ("spin", spec.spin.is_some())];
+        if let (Some((source, _)), Some((part, _))) =
+            (sources.into_iter().find(|(_, is_given)| *is_given), keys.into_iter().find(|(_, is_given)| *is_given))
+        {
+            return Err(check.error(&key(part), &format!("none, because `{source}` contains it"), "one"));
+        }
         let material = self.material(&key("material"), &spec.material)?;
         let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
         let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
@@ -167,7 +176,7 @@ impl Resolver<'_> {
             }
         }
         if let Some(state) = &spec.state {
-            self.grains_from_state(name, spec, state, material, (grains, springs))?;
+            self.grains_from_state(name, state, material, (grains, springs))?;
         }
         if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;

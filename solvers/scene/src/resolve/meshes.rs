@@ -44,7 +44,7 @@ impl Resolver<'_> {
         let reading = Reading { unit, merge, open: spec.open, inward: spec.inward };
         let read = stl::read(&bytes).and_then(|facets| Surface::new(&facets, reading));
         let surface = read.map_err(|Flaw { expected, found, help }| {
-            check.source.error(&key(".file"), &expected, &format!("in `{}` {found}", spec.file), help)
+            check.source.error(&key(".file"), &format!("{expected} in `{}`", spec.file), &found, help)
         })?;
         Ok(WallShape::Mesh(Mesh::at_rest(surface)))
     }

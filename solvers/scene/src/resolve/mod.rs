@@ -236,7 +236,7 @@ impl Resolver<'_> {
         let mut high = check.vector("domain.high", &spec.high)?;
         for axis in 0..check.dimension.count() {
             if high[axis] <= low[axis] {
-                let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+                let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
                 return Err(check.error("domain.high", "a corner above `low`", &found));
             }
         }

@@ -47,7 +47,7 @@ impl Resolver<'_> {
         let forms = [
             ("table", spec.table.is_some()),
             ("sine", spec.sine.is_some()),
-            ("a `ramp` to a `velocity`", spec.ramp.is_some()),
+            ("ramp", spec.ramp.is_some()),
             ("spin", spec.spin.is_some()),
         ];
         if forms[..3].iter().all(|(_, is)| !is) {

@@ -75,7 +75,7 @@ impl Resolver<'_> {
         let mut part = *domain;
         for axis in 0..self.check.dimension.count() {
             if low[axis] < domain.low[axis] || high[axis] > domain.high[axis] {
-                let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+                let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
                 let expected = format!("a box within the domain, {} to {}", domain.low[axis], domain.high[axis]);
                 return Err(self.check.error(key, &expected, &found));
             }

@@ -3,14 +3,13 @@
 use super::Resolver;
 use crate::end_state::{EndState, Springs};
 use crate::error::SceneError;
-use crate::file::{GrainsSpec, StateSpec};
+use crate::file::StateSpec;
 use crate::scene::Grain;
 
 impl Resolver<'_> {
     pub(super) fn grains_from_state(
         &self,
         name: &str,
-        group: &GrainsSpec,
         spec: &StateSpec,
         material: u16,
         (grains, springs): (&mut Vec<Grain>, &mut Option<Springs>),
@@ -23,13 +22,6 @@ impl Resolver<'_> {
         let state = EndState::from_bytes(&bytes).map_err(refuse)?;
         if state.dimension != check.dimension.count() {
             return Err(refuse(format!("a state in {} dimensions", state.dimension)));
-        }
-        if let Some(given) = [("velocity", group.velocity.is_some()), ("spin", group.spin.is_some())]
-            .into_iter()
-            .find_map(|(part, given)| given.then_some(part))
-        {
-            let key = format!("grains.{name}.{given}");
-            return Err(check.error(&key, "none, because the state contains it", "one"));
         }
         // A state with a single material gets the material of the group, even if the names differ.
         let materials: Vec<u16> = match &state.materials[..] {

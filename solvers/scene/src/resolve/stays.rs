@@ -24,7 +24,7 @@ impl Resolver<'_> {
         let low = check.vector(&key("low"), &spec.low)?;
         let high = check.vector(&key("high"), &spec.high)?;
         if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] > high[axis]) {
-            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+            let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
             return Err(check.error(&key("high"), "a corner not below `low`", &found));
         }
         if spec.count == 0 {
@@ -86,7 +86,7 @@ impl Resolver<'_> {
         let (of_low, of_high) = (format!("{key}.low"), format!("{key}.high"));
         let (low, high) = (check.vector(&of_low, low)?, check.vector(&of_high, high)?);
         if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] >= high[axis]) {
-            let found = format!("{} to {} along axis {}", low[axis], high[axis], axis + 1);
+            let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
             return Err(check.error(&of_high, "a corner above `low`", &found));
         }
         Ok([low, high])
