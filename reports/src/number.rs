@@ -1,7 +1,7 @@
 //! Numbers as text: few digits, `×10ⁿ` for very large or small values, and a true minus sign.
 
 /// Narrow non-breaking space between a number and its unit, and between groups of digits.
-const THIN: char = '\u{202f}';
+pub(crate) const THIN: char = '\u{202f}';
 
 /// Returns `value` with at most `digits` significant digits. A value below 10⁴ keeps all digits before the decimal point.
 #[must_use]

@@ -10,7 +10,7 @@ use grainbench_harness::raster::{COLOURS, HIGH, LIGHTS, LOW, RIM, Raster, VOID, 
 use maud::{Markup, html};
 
 use super::scale::Scale;
-use super::{FONTS, WIDTH, text_width};
+use super::{WIDTH, apart, document, fine as px, text_width};
 use crate::number;
 
 const MARGIN: f64 = 10.0;
@@ -76,40 +76,34 @@ pub fn draw(title: &str, field: &Field) -> io::Result<String> {
     let foot = bottom + if is_film { 2.0 * seam * scale } else { 0.0 };
     let bars = foot + if is_film { CLOCK } else { 0.0 };
     let height = bars + if each_its_own { BARS } else { 0.0 } + FOOT;
-    Ok(html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
-            aria-label=(title) font-family=(FONTS) {
-            title { (title) }
-            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
-            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
-            @for (at, panel_of) in field.panels.iter().enumerate() {
-                @let (x, y) = corner(at);
-                @let size = (15.0 * panel.0 / text_width(&panel_of.title, 15.0)).min(15.0);
-                text x=(px(x)) y=(px(y - 8.0)) font-size=(px(size)) fill="#222" { (panel_of.title) }
-            }
-            @for ((x, y), (width, height), image) in &images {
-                image x=(px(*x)) y=(px(*y)) width=(px(*width)) height=(px(*height)) preserveAspectRatio="none"
-                    href=(format!("data:image/png;base64,{}", STANDARD.encode(image))) {}
-            }
-            @for at in 0..count {
-                @let (x, y) = corner(at);
-                rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
-            }
-            @if is_film { (clock(field, full, foot)) }
-            // A field whose lengths have no unit has no scale bar.
-            @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, &field.length, panel.0, height - FOOT + 24.0)) }
-            @if each_its_own {
-                @for (at, panel_of) in field.panels.iter().enumerate() {
-                    @if let Some((range, unit)) = &panel_of.own {
-                        (level_bar(field.shades, *range, unit, [corner(at).0, bars + 14.0], panel.0 - 16.0))
-                    }
-                }
-            } @else {
-                (colour_bar(field, MARGIN + full + 30.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
-            }
+    let body = html! {
+        @for (at, panel_of) in field.panels.iter().enumerate() {
+            @let (x, y) = corner(at);
+            @let size = (15.0 * panel.0 / text_width(&panel_of.title, 15.0)).min(15.0);
+            text x=(px(x)) y=(px(y - 8.0)) font-size=(px(size)) fill="#222" { (panel_of.title) }
         }
-    }
-    .into_string())
+        @for ((x, y), (width, height), image) in &images {
+            image x=(px(*x)) y=(px(*y)) width=(px(*width)) height=(px(*height)) preserveAspectRatio="none"
+                href=(format!("data:image/png;base64,{}", STANDARD.encode(image))) {}
+        }
+        @for at in 0..count {
+            @let (x, y) = corner(at);
+            rect x=(px(x)) y=(px(y)) width=(px(panel.0)) height=(px(panel.1)) fill="none" stroke="#777" stroke-width=".8" {}
+        }
+        @if is_film { (clock(field, full, foot)) }
+        // A field whose lengths have no unit has no scale bar.
+        @if field.pixel > 0.0 { (scale_bar(field.pixel / scale, &field.length, panel.0, height - FOOT + 24.0)) }
+        @if each_its_own {
+            @for (at, panel_of) in field.panels.iter().enumerate() {
+                @if let Some((range, unit)) = &panel_of.own {
+                    (level_bar(field.shades, *range, unit, [corner(at).0, bars + 14.0], panel.0 - 16.0))
+                }
+            }
+        } @else {
+            (colour_bar(field, MARGIN + full + 30.0, TOP + head, (panel.1 * rows as f64).clamp(120.0, 320.0)))
+        }
+    };
+    Ok(document(title, [WIDTH, height], &body))
 }
 
 /// Returns the distance between the panels of a film (pixels of the film).
@@ -301,6 +295,12 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
     const STEPS: u8 = 48;
     let (factor, unit) = with_prefix(low.abs().max(high.abs()), unit);
     let scale = Scale::fit([low / factor, high / factor].into_iter(), false, 0.0, 3);
+    // The first label starts at the left end of the bar, not before it.
+    let labels = apart(scale.ticks().into_iter().map(|tick| {
+        let label = tick.label.unwrap_or_default();
+        let length = text_width(&label, 13.0);
+        ((x + width * scale.position(tick.value)).max(x + 0.5 * length), length, label)
+    }));
     let step = width / f64::from(STEPS);
     html! {
         g font-size="13" fill="#222" {
@@ -311,12 +311,10 @@ fn level_bar(shades: Shades, (low, high): (f64, f64), unit: &str, [x, y]: [f64; 
             }
             rect x=(px(x)) y=(px(y)) width=(px(width)) height="12" fill="none" stroke="#777" stroke-width=".8" {}
             @for tick in scale.ticks() {
-                @let at = x + width * scale.position(tick.value);
-                @let label = tick.label.unwrap_or_default();
-                @let anchor = if at < x + 4.0 { "start" } else { "middle" };
-                line x1=(px(at)) y1=(px(y + 12.0)) x2=(px(at)) y2=(px(y + 17.0)) stroke="#222" {}
-                text x=(px(at)) y=(px(y + 30.0)) text-anchor=(anchor) { (label) }
+                @let at = px(x + width * scale.position(tick.value));
+                line x1=(at) y1=(px(y + 12.0)) x2=(at) y2=(px(y + 17.0)) stroke="#222" {}
             }
+            @for (at, label) in labels { text x=(px(at)) y=(px(y + 30.0)) text-anchor="middle" { (label) } }
             @if unit != "1" { text x=(px(x + 0.5 * width)) y=(px(y + 46.0)) text-anchor="middle" { (unit) } }
         }
     }
@@ -367,11 +365,6 @@ fn with_prefix(value: f64, unit: &str) -> (f64, String) {
     };
     let fits = prefixes.iter().find(|(factor, _)| value >= *factor * (1.0 - 1e-9)).or(prefixes.last());
     fits.map_or_else(|| (1.0, unit.to_owned()), |(factor, prefix)| (*factor, format!("{prefix}{unit}")))
-}
-
-fn px(length: f64) -> String {
-    let text = format!("{length:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]

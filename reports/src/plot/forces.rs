@@ -4,7 +4,7 @@
 use grainbench_harness::figure::{ForceBar, ForcePlot};
 use maud::{Markup, html};
 
-use super::{FONTS, WIDTH};
+use super::{WIDTH, document, fine as px};
 use crate::number;
 
 const MARGIN: f64 = 24.0;
@@ -86,26 +86,23 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
     };
     let hairline = (0.04 * radius).clamp(0.5, 1.1);
 
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
-            aria-label=(title) font-family=(FONTS) {
-            title { (title) }
-            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
-            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (title) }
-            @for contact in &bars { (bar_between(&view, contact, width_of(contact.force))) }
-            g fill="none" stroke="#555" stroke-width=(format!("{hairline:.2}")) {
-                @for (centre, radius, angle) in &discs { (disc(&view, *centre, *radius, *angle)) }
-            }
-            g stroke="#222" stroke-width="4" stroke-linecap="round" {
-                @for (a, b) in &walls {
-                    @let (a, b) = (view.at(*a), view.at(*b));
-                    line x1=(px(a.0)) y1=(px(a.1)) x2=(px(b.0)) y2=(px(b.1)) {}
-                }
-            }
-            (key(view.bottom + 40.0, strongest, &width_of, &bars, missing))
+    let body = html! {
+        @for contact in &bars { (bar_between(&view, contact, width_of(contact.force))) }
+        g fill="none" stroke="#555" stroke-width=(format!("{hairline:.2}")) {
+            @for (centre, radius, angle) in &discs { (disc(&view, *centre, *radius, *angle)) }
         }
-    }
-    .into_string()
+        g stroke="#222" stroke-width="4" stroke-linecap="round" {
+            @for (a, b) in &walls {
+                @let (a, b) = (view.at(*a), view.at(*b));
+                line x1=(px(a.0)) y1=(px(a.1)) x2=(px(b.0)) y2=(px(b.1)) {}
+            }
+        }
+        (key(view.bottom + 40.0, strongest, &width_of, &bars))
+        @if let Some(note) = super::missing(missing, "part") {
+            text x=(px(WIDTH - MARGIN)) y=(px(height - 4.0)) text-anchor="end" fill="#666" font-size="13" { (note) }
+        }
+    };
+    document(title, [WIDTH, height], &body)
 }
 
 /// Draws the outline of a disc and, if its angle is known, a radius that rotates with the disc.
@@ -149,14 +146,9 @@ fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
 }
 
 /// Draws the key: the force that corresponds to a width, and the style of slipping contacts.
-fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar], missing: usize) -> Markup {
+fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar]) -> Markup {
     let slipping = bars.iter().any(|bar| bar.slipping);
     let shown = round_below(strongest);
-    let note = match missing {
-        0 => None,
-        1 => Some("(1 part without a finite place not shown)".to_owned()),
-        more => Some(format!("({more} parts without a finite place not shown)")),
-    };
     html! {
         g font-size="17" fill="#222" {
             @if strongest > 0.0 {
@@ -173,9 +165,6 @@ fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar
             } @else {
                 text x=(MARGIN) y=(px(y + 5.0)) { "no contact forces" }
             }
-            @if let Some(note) = note {
-                text x=(px(WIDTH - MARGIN)) y=(px(y + 5.0)) text-anchor="end" fill="#666" font-size="13" { (note) }
-            }
         }
     }
 }
@@ -191,11 +180,6 @@ fn round_below(value: f64) -> f64 {
         .map(|multiple| multiple * decade)
         .find(|round| *round <= value * (1.0 + 1e-9))
         .unwrap_or(decade)
-}
-
-fn px(length: f64) -> String {
-    let text = format!("{length:.2}");
-    text.trim_end_matches('0').trim_end_matches('.').to_owned()
 }
 
 #[cfg(test)]

@@ -5,7 +5,7 @@ use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
 
 use super::scale::Scale;
-use super::{FONTS, WIDTH, text, wrap};
+use super::{WIDTH, document, px, text_width, wrap};
 
 /// Width to the left of a sheet, for numbers and label (drawing units).
 const LEFT: f64 = 62.0;
@@ -71,25 +71,14 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
         y += LINE * lines.len() as f64;
     }
     let height = y + if missing > 0 { LINE } else { 4.0 };
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
-            aria-label=(title) font-family=(FONTS) {
-            title { (title) }
-            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
-            text x="10" y="29" font-size="17" font-weight="bold" fill="#222" { (text::svg(title)) }
-            @for sheet in &sheets { (sheet) }
-            @for key in &keys { (key) }
-            @if missing > 0 {
-                text x=(px(WIDTH - 10.0)) y=(px(y + 8.0)) text-anchor="end" fill="#666" font-size="13" {
-                    (match missing {
-                        1 => "(1 line without a finite place not shown)".to_owned(),
-                        more => format!("({more} lines without a finite place not shown)"),
-                    })
-                }
-            }
+    let body = html! {
+        @for sheet in &sheets { (sheet) }
+        @for key in &keys { (key) }
+        @if let Some(note) = super::missing(missing, "line") {
+            text x=(px(WIDTH - 10.0)) y=(px(y + 8.0)) text-anchor="end" fill="#666" font-size="13" { (note) }
         }
-    }
-    .into_string()
+    };
+    document(title, [WIDTH, height], &body)
 }
 
 fn size(sheet: &Sheet) -> [f64; 2] {
@@ -159,9 +148,9 @@ fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[Stri
                 text x=(px(view.left - 8.0)) y=(px(y + 4.5)) text-anchor="end" { (tick.label.unwrap_or_default()) }
             }
             text x=(px(middle[0])) y=(px(foot + 39.0)) text-anchor="middle" font-size="14" { (across) }
-            // A digit of this font size is 7.5 units wide. The label is to the left of the widest number.
-            @let widest = ticks(1).into_iter().filter_map(|tick| tick.label).map(|label| label.chars().count()).max();
-            @let x = px(view.left - (16.0 + 7.5 * widest.unwrap_or(0) as f64).max(40.0));
+            // The label is to the left of the widest number.
+            @let widths = ticks(1).into_iter().filter_map(|tick| tick.label).map(|label| text_width(&label, 13.0));
+            @let x = px(view.left - (16.0 + widths.fold(0.0, f64::max)).max(40.0));
             text x=(x) y=(px(middle[1])) text-anchor="middle" font-size="14"
                 transform=(format!("rotate(-90 {x} {})", px(middle[1]))) { (up) }
         }
@@ -217,11 +206,6 @@ fn key(place: usize, lines: &[String], y: f64, dash: Option<&'static str>) -> Ma
             text x=(px(LEFT + 46.0)) y=(px(y + 5.0 + LINE * number as f64)) font-size="15" fill="#222" { (line) }
         }
     }
-}
-
-fn px(length: f64) -> String {
-    let text = format!("{length:.1}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 #[cfg(test)]

@@ -11,10 +11,16 @@ pub(crate) mod text;
 
 use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_scene::text::tamed;
+use maud::{Markup, html};
 use thiserror::Error;
+
+use crate::number::THIN;
 
 /// Width of every figure (drawing units). Pages scale the figures.
 pub(crate) const WIDTH: f64 = 860.0;
+
+/// Smallest distance between two labels of an axis (drawing units).
+const GAP: f64 = 6.0;
 
 /// Fonts that are available on desktops and phones.
 pub(crate) const FONTS: &str =
@@ -30,6 +36,10 @@ pub struct DrawError {
     pub reason: String,
 }
 
+fn wrong(figure: &Figure) -> impl Fn(std::io::Error) -> DrawError {
+    |reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }
+}
+
 /// Draws a figure as a complete SVG document.
 ///
 /// # Errors
@@ -39,8 +49,7 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
         Drawing::Graph(graph) => graph::draw(&figure.title, graph),
         Drawing::Forces(plot) => forces::draw(&figure.title, plot),
         Drawing::Lines(plot) => lines::draw(&figure.title, plot),
-        Drawing::Field(field) => field::draw(&figure.title, field)
-            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() })?,
+        Drawing::Field(field) => field::draw(&figure.title, field).map_err(wrong(figure))?,
     };
     Ok(markup(&svg))
 }
@@ -52,9 +61,8 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
 /// When a field has no panel, or when its frames differ in size or number.
 pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError> {
     let Drawing::Field(field) = &figure.drawing else { return Ok((draw(figure)?, None)) };
-    let wrong = |reason: std::io::Error| DrawError { figure: figure.name.clone(), reason: reason.to_string() };
-    let (light, reel) = reel::light(field).map_err(wrong)?;
-    Ok((markup(&field::draw(&figure.title, &light).map_err(wrong)?), reel))
+    let (light, reel) = reel::light(field).map_err(wrong(figure))?;
+    Ok((markup(&field::draw(&figure.title, &light).map_err(wrong(figure))?), reel))
 }
 
 /// Returns an SVG document without characters that XML does not allow.
@@ -68,21 +76,21 @@ pub(crate) fn markup(document: &str) -> String {
 /// When the field has no panel, or when its frames differ in size or number.
 pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     match &figure.drawing {
-        Drawing::Field(field) if field.times.len() > 1 => field::film(field)
-            .map(Some)
-            .map_err(|reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }),
+        Drawing::Field(field) if field.times.len() > 1 => field::film(field).map(Some).map_err(wrong(figure)),
         _ => Ok(None),
     }
 }
 
-/// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so average widths of
-/// letters are used.
+/// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so widths of the
+/// letters of DejaVu Sans are used, the widest of [`FONTS`].
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     let letters: f64 = text
         .chars()
         .map(|letter| match letter {
-            '⁰'..='⁹' | '⁻' | '¹' | '²' | '³' => 0.42,
-            'i' | 'j' | 'l' | 't' | 'f' | '.' | ',' | ' ' | '(' | ')' => 0.36,
+            '⁰'..='⁹' | '¹' | '²' | '³' | '₀'..='₉' => 0.42,
+            'i' | 'j' | 'l' | 't' | 'f' | '.' | ',' | ' ' | '(' | ')' | ':' | THIN => 0.36,
+            '0'..='9' => 0.64,
+            '×' | '−' | '=' | '+' => 0.84,
             'm' | 'w' | 'M' | 'W' => 0.9,
             _ => 0.6,
         })
@@ -90,22 +98,77 @@ pub(crate) fn text_width(text: &str, size: f64) -> f64 {
     letters * size
 }
 
+/// Returns a drawing as a complete SVG document. A title that is wider than the drawing has smaller letters.
+pub(crate) fn document(title: &str, [width, height]: [f64; 2], body: &Markup) -> String {
+    // Bold letters are about a tenth wider than others.
+    let size = (17.0 * (width - 20.0) / (1.1 * text_width(title, 17.0))).min(17.0);
+    let svg = html! {
+        svg xmlns="http://www.w3.org/2000/svg" viewBox={ "0 0 " (width) " " (px(height)) } width="100%" role="img"
+            aria-label=(title) font-family=(FONTS) {
+            title { (title) }
+            rect width=(width) height=(px(height)) fill="#fff" {}
+            text x="10" y="29" font-size=(px(size)) font-weight="bold" fill="#222" { (text::svg(title)) }
+            (body)
+        }
+    };
+    svg.into_string()
+}
+
+/// Returns a length in drawing units with at most one decimal.
+pub(crate) fn px(length: f64) -> String {
+    let text = format!("{length:.1}");
+    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
+}
+
+/// Returns a length in drawing units with at most two decimals, for small parts.
+pub(crate) fn fine(length: f64) -> String {
+    format!("{length:.2}").trim_end_matches('0').trim_end_matches('.').to_owned()
+}
+
+/// Returns the labels of an axis that do not overlap. Each label has a position and a length along the axis.
+pub(crate) fn apart<T>(labels: impl Iterator<Item = (f64, f64, T)>) -> Vec<(f64, T)> {
+    let mut before: Option<(f64, f64)> = None;
+    let mut is_free = |at: f64, length: f64| {
+        let is_free = before.is_none_or(|(other, reach)| (at - other).abs() > 0.5 * (length + reach) + GAP);
+        before = if is_free { Some((at, length)) } else { before };
+        is_free
+    };
+    labels.filter(|(at, length, _)| is_free(*at, *length)).map(|(at, _, label)| (at, label)).collect()
+}
+
+/// Returns the note that states the number of parts of a drawing without finite coordinates.
+pub(crate) fn missing(count: usize, part: &str) -> Option<String> {
+    let plural = if count == 1 { "" } else { "s" };
+    (count > 0).then(|| format!("({count} {part}{plural} without a finite place not shown)"))
+}
+
 /// Breaks a text at spaces into lines of at most `width`. A longer word has a line of its own.
 pub(crate) fn wrap(text: &str, size: f64, width: f64) -> Vec<String> {
-    let mut lines = vec![String::new()];
-    for word in text.split_whitespace() {
-        if let Some(line) = lines.last_mut() {
-            if line.is_empty() {
-                line.push_str(word);
-                continue;
-            }
-            let longer = format!("{line} {word}");
-            if text_width(&longer, size) <= width {
-                *line = longer;
-                continue;
-            }
+    let mut lines: Vec<String> = Vec::new();
+    // A narrow space joins a number and its unit, so a text is not broken there.
+    for word in text.split(' ').filter(|word| !word.is_empty()) {
+        match lines.last_mut() {
+            Some(line) if text_width(&format!("{line} {word}"), size) <= width => *line = format!("{line} {word}"),
+            _ => lines.push(word.to_owned()),
         }
-        lines.push(word.to_owned());
     }
-    lines
+    if lines.is_empty() { vec![String::new()] } else { lines }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn texts_have_room() {
+        // Widths in DejaVu Sans.
+        for (text, width) in [("−2×10⁻³", 4.73), ("5×10⁻⁴", 3.67), ("0.125", 2.86)] {
+            assert!((text_width(text, 1.0) - width).abs() < 0.1 * width, "{text}: {}", text_width(text, 1.0));
+        }
+        assert_eq!(wrap("bias 0.55\u{202f}%, spread", 14.0, 80.0), ["bias", "0.55\u{202f}%,", "spread"]);
+        let is_large = |title: &str| document(title, [WIDTH; 2], &html! {}).contains("font-size=\"17\"");
+        assert!(is_large("Energy") && !is_large(&"long ".repeat(30)));
+        let labels = [(0.0, 20.0, "a"), (15.0, 20.0, "b"), (30.0, 20.0, "c")];
+        assert_eq!(apart(labels.into_iter()), [(0.0, "a"), (30.0, "c")]);
+    }
 }

@@ -3,7 +3,7 @@
 use super::figures::levels;
 use super::{Line, Point, Sweep, SweepStatus};
 use crate::number;
-use crate::plot::{FONTS, WIDTH, wrap};
+use crate::plot::{WIDTH, document, px};
 use maud::{Markup, html};
 use serde_json::Value;
 
@@ -50,19 +50,13 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let height = TOP + pitch * rows as f64 + if sweep.line.is_some() { 58.0 } else { 34.0 };
     let names: Vec<&str> = sweep.quantities.iter().map(|quantity| quantity.words.as_str()).collect();
     let title = format!("Solvers within the tolerance: {}", names.join("; "));
-    let svg = html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {WIDTH} {height:.1}")) width="100%" role="img"
-            aria-label=(title) font-family=(FONTS) {
-            title { (title) }
-            rect width=(WIDTH) height=(format!("{height:.1}")) fill="#fff" {}
-            text x="10" y="24" font-size="16" font-weight="bold" fill="#222" { (wrap(&title, 16.0, WIDTH - 20.0).swap_remove(0)) }
-            @for (place, (solver, level)) in panels.iter().enumerate() {
-                @let left = LEFT + (place % columns) as f64 * (wide + LEFT + GAP);
-                @let top = TOP + HEAD + (place / columns) as f64 * pitch;
-                (panel(sweep, [x, y], &axes, (solver, level), [left, top, wide]))
-            }
-            (legend(TOP + pitch * rows as f64 + 12.0, sweep.line.as_ref()))
+    let body = html! {
+        @for (place, (solver, level)) in panels.iter().enumerate() {
+            @let left = LEFT + (place % columns) as f64 * (wide + LEFT + GAP);
+            @let top = TOP + HEAD + (place / columns) as f64 * pitch;
+            (panel(sweep, [x, y], &axes, (solver, level), [left, top, wide]))
         }
+        (legend(TOP + pitch * rows as f64 + 12.0, sweep.line.as_ref()))
     };
     let labels = [x, y].map(|place| sweep.factors[place].label.as_str());
     let caption = format!(
@@ -71,7 +65,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
          fraction of its points within the tolerance.",
         labels[0], labels[1]
     );
-    vec![("map".to_owned(), caption, svg.into_string())]
+    vec![("map".to_owned(), caption, document(&title, [WIDTH, height], &body))]
 }
 
 /// Returns the first two factors that have several numeric values.
@@ -241,8 +235,4 @@ fn legend(y: f64, line: Option<&Line>) -> Markup {
             text x=(px(LEFT + 34.0)) y=(px(y + 36.0)) font-size="13" fill="#222" { (line.label) }
         }
     }
-}
-
-fn px(value: f64) -> String {
-    format!("{value:.1}")
 }

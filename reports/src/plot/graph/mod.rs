@@ -13,12 +13,11 @@ use plotters::coord::cartesian::Cartesian2d;
 
 use super::palette::{self, Marker};
 use super::scale::Scale;
-use super::{FONTS, WIDTH, text, text_width};
+use super::{WIDTH, document, px, text_width};
 
 const HEIGHT: f64 = 520.0;
 /// Additional height for the panel of differences (drawing units).
 const BELOW: f64 = 150.0;
-const TITLE: f64 = 17.0;
 const LABEL: f64 = 15.0;
 const TICK: f64 = 14.0;
 const NOTE: f64 = 12.5;
@@ -165,30 +164,22 @@ pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
         (Panel::new(frame, &x, &difference.scale), difference)
     });
     let body = html! {
-        rect width=(form.width) height=(height) fill="#fff" {}
-        text x="10" y="29" font-size=(TITLE) font-weight="bold" fill="#222" { (text::svg(title)) }
-        (axes::draw(&panel, &graph.y.label, below.is_none().then_some(graph.x.label.as_str())))
-        @for (curve, look) in in_order(&graph.curves, &looks) {
-            (curves::draw(curve.stroke, look, &panel.pieces(&curve.points)))
-        }
-        @if let Some((panel, difference)) = &below {
-            (axes::draw(panel, &difference::label(&graph.y.label), Some(&graph.x.label)))
-            @for (at, points) in &difference.curves { (curves::draw(Stroke::Line, &looks[*at], &panel.pieces(points))) }
-        }
-        (legend::draw(graph, &looks, &legend, &panel))
-        @for (line, note) in notes.iter().rev().enumerate() {
-            text x=(px(frame.left)) y=(px(height - 8.0 - 17.0 * line as f64)) font-size=(NOTE) fill="#666" { (note) }
+        g stroke-linejoin="round" stroke-linecap="round" {
+            (axes::draw(&panel, &graph.y.label, below.is_none().then_some(graph.x.label.as_str())))
+            @for (curve, look) in in_order(&graph.curves, &looks) {
+                (curves::draw(curve.stroke, look, &panel.pieces(&curve.points)))
+            }
+            @if let Some((panel, difference)) = &below {
+                (axes::draw(panel, &difference::label(&graph.y.label), Some(&graph.x.label)))
+                @for (at, points) in &difference.curves { (curves::draw(Stroke::Line, &looks[*at], &panel.pieces(points))) }
+            }
+            (legend::draw(graph, &looks, &legend, &panel))
+            @for (line, note) in notes.iter().rev().enumerate() {
+                text x=(px(frame.left)) y=(px(height - 8.0 - 17.0 * line as f64)) font-size=(NOTE) fill="#666" { (note) }
+            }
         }
     };
-    let body: Markup = body;
-    html! {
-        svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 {} {height}", form.width)) width="100%" role="img"
-            aria-label=(title) font-family=(FONTS) stroke-linejoin="round" stroke-linecap="round" {
-            title { (title) }
-            (body)
-        }
-    }
-    .into_string()
+    document(title, [form.width, height], &body)
 }
 
 /// Returns the resolution levels of a graph if all curves share a few levels, so that ticks are only at these levels. The
@@ -320,12 +311,6 @@ fn notes(graph: &Graph) -> Vec<String> {
         }
     }
     notes
-}
-
-/// Returns a length in drawing units with at most one decimal.
-fn px(length: f64) -> String {
-    let text = format!("{length:.1}");
-    text.strip_suffix(".0").map_or(text.clone(), str::to_owned)
 }
 
 #[cfg(test)]
