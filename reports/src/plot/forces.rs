@@ -34,11 +34,8 @@ impl View {
 #[must_use]
 pub fn draw(title: &str, plot: &ForcePlot) -> String {
     let finite = |point: &[f64; 2]| point[0].is_finite() && point[1].is_finite();
-    let discs: Vec<_> = plot
-        .discs
-        .iter()
-        .filter(|(centre, radius, angle)| finite(centre) && radius.is_finite() && angle.is_finite())
-        .collect();
+    let discs: Vec<_> = plot.discs.iter().filter(|(centre, radius, _)| finite(centre) && radius.is_finite()).collect();
+    let has_angles = discs.iter().any(|(_, _, angle)| angle.is_finite());
     let walls: Vec<_> = plot.walls.iter().filter(|(a, b)| finite(a) && finite(b)).collect();
     let mut bars: Vec<_> =
         plot.bars.iter().filter(|bar| finite(&bar.from) && finite(&bar.to) && bar.force.is_finite()).collect();
@@ -97,7 +94,7 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
                 line x1=(px(a.0)) y1=(px(a.1)) x2=(px(b.0)) y2=(px(b.1)) {}
             }
         }
-        (key(view.bottom + 40.0, strongest, &width_of, &bars))
+        (key(view.bottom + 40.0, strongest, &width_of, &bars, has_angles))
         @if let Some(note) = super::missing(missing, "part") {
             text x=(px(WIDTH - MARGIN)) y=(px(height - 4.0)) text-anchor="end" fill="#666" font-size="13" { (note) }
         }
@@ -145,8 +142,8 @@ fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
     }
 }
 
-/// Draws the key: the force that corresponds to a width, and the style of slipping contacts.
-fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar]) -> Markup {
+/// Draws the key: the force that corresponds to a width, the style of slipping contacts, and the mark of the rotation.
+fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar], has_angles: bool) -> Markup {
     let slipping = bars.iter().any(|bar| bar.slipping);
     let shown = round_below(strongest);
     html! {
@@ -157,13 +154,19 @@ fn key(y: f64, strongest: f64, width_of: &impl Fn(f64) -> f64, bars: &[&ForceBar
                     text x="66" y="5" { "contact force " (number::with_unit(shown, "N")) " (width ∝ force)" }
                 }
                 @if slipping {
-                    g transform=(format!("translate(470 {})", px(y))) {
+                    g transform=(format!("translate(450 {})", px(y))) {
                         (bar_along(56.0, width_of(shown), true))
                         text x="66" y="5" { "slipping" }
                     }
                 }
             } @else {
                 text x=(MARGIN) y=(px(y + 5.0)) { "no contact forces" }
+            }
+            @if has_angles {
+                g transform=(format!("translate(650 {})", px(y))) {
+                    path d="M-12 0a12 12 0 1 0 24 0a12 12 0 1 0-24 0M0 0H12" fill="none" stroke="#555" {}
+                    text x="22" y="5" { "rotation of a disc" }
+                }
             }
         }
     }
@@ -192,7 +195,7 @@ mod tests {
         let svg = draw(
             "forces <&>",
             &ForcePlot {
-                discs: vec![([0.0, 0.0], 0.5, 0.0), ([1.0, 0.0], 0.5, 1.0), ([f64::NAN, 0.0], 0.5, 0.0)],
+                discs: vec![([0.0, 0.0], 0.5, 0.0), ([1.0, 0.0], 0.5, f64::NAN), ([f64::NAN, 0.0], 0.5, 0.0)],
                 walls: vec![([-0.5, -0.5], [1.5, -0.5])],
                 bars: vec![bar(30.0, false), bar(15.0, true)],
             },
@@ -201,6 +204,7 @@ mod tests {
         assert!(svg.contains("20\u{202f}N") && svg.contains("slipping"));
         assert!(svg.contains("(1 part without a finite place not shown)"));
         assert!(svg.contains("forces &lt;&amp;&gt;") && !svg.contains("NaN"));
+        assert_eq!(svg.matches("<circle").count(), 2, "a disc without angle is an outline");
     }
 
     #[test]
