@@ -94,7 +94,8 @@ impl Scale {
     #[must_use]
     pub fn ticks(&self) -> Vec<Tick> {
         if !self.levels.is_empty() {
-            let plain: Vec<String> = self.levels.iter().map(|level| significant(*level, 3)).collect();
+            let digits = |level: f64| if is_round(level, 5) { 5 } else { 3 };
+            let plain: Vec<String> = self.levels.iter().map(|level| significant(*level, digits(*level))).collect();
             // If one label needs a power of ten, all labels have one, which makes them easy to compare.
             let is_plain = !plain.iter().any(|label| label.contains('×'));
             let label = |value: f64, plain: String| if is_plain { plain } else { with_power(value) };
@@ -189,6 +190,12 @@ impl Scale {
     }
 }
 
+/// Returns true if a value has at most `digits` significant digits.
+pub(super) fn is_round(value: f64, digits: usize) -> bool {
+    let rounded = format!("{value:.*e}", digits.saturating_sub(1)).parse::<f64>();
+    rounded.is_ok_and(|rounded| (rounded - value).abs() <= 1e-9 * value.abs())
+}
+
 /// Returns a positive value as a mantissa and a power of ten. A mantissa of 1 is omitted.
 fn with_power(value: f64) -> String {
     if value <= 0.0 {
@@ -252,6 +259,7 @@ mod tests {
         let fit = |levels: &[f64]| labels(&Scale::fit(levels.iter().copied(), true, 0.05, 8).at_levels(levels));
         assert_eq!(fit(&[1e-5, 3e-4, 1e-3]), ["10⁻⁵", "3×10⁻⁴", "10⁻³"]);
         assert_eq!(fit(&[0.025, 0.05, 0.1]), ["0.025", "0.05", "0.1"]);
+        assert_eq!(fit(&[0.03125, 0.0625]), ["0.03125", "0.0625"]);
     }
 
     #[test]

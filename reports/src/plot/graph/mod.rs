@@ -12,7 +12,7 @@ use plotters::coord::CoordTranslate;
 use plotters::coord::cartesian::Cartesian2d;
 
 use super::palette::{self, Marker};
-use super::scale::Scale;
+use super::scale::{Scale, is_round};
 use super::{WIDTH, document, px, text_width};
 
 const HEIGHT: f64 = 520.0;
@@ -194,8 +194,9 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     levels.dedup_by(|a, b| (*a - *b).abs() <= 1e-6 * b.abs());
     let is_run_at_levels = curves.iter().any(|curve| curve.stroke == Stroke::MarkedLine)
         && curves.iter().all(|curve| curve.stroke != Stroke::Beside);
-    // If every point has its own level, the levels are not shared.
-    let is_shared = count > levels.len() || levels.len() <= 4;
+    // If every point has its own level, the levels are not shared. Measured values, such as times, are not round.
+    let is_shared = (count > levels.len() || levels.len() <= 4)
+        && levels.iter().all(|level| is_round(*level, 3) || is_round(1.0 / level, 3));
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
@@ -356,6 +357,8 @@ mod tests {
             assert!(svg.contains(level), "{level}");
         }
         assert!(!svg.contains(">5<") && !svg.contains("5×10⁰"));
+        let measured = draw("times", &graph(true, vec![(5.3817e-5, 0.4), (2.2214e-4, 0.2), (1.6913e-3, 0.1)]));
+        assert!(measured.contains("10⁻⁴") && !measured.contains("5.38"));
     }
 
     #[test]
