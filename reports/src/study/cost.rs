@@ -114,6 +114,7 @@ pub fn figure(diagram: &Diagram) -> Figure {
         let label = match of_line(diagram, line).next() {
             None => format!("{line} (not measured)"),
             Some(_) if !own.is_empty() => line.to_owned(),
+            Some(point) if point.standing == PointStatus::Unsupported => format!("{line} (unsupported)"),
             Some(point) => format!("{line} ({})", word(point.standing)),
         };
         curves.push(Curve::new(label, Stroke::MarkedLine, own.iter().filter_map(|point| drawn(point)).collect()));
@@ -229,12 +230,9 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
     let mut span = (f64::INFINITY, 0.0_f64);
     for line in lines(&study.diagrams) {
         let points = best(study, unit, line);
-        let label = match bias(&points) {
-            Some((factor, spread)) => {
-                format!("{line}: bias {}, spread {}", number::fraction(factor - 1.0), number::fraction(spread))
-            }
-            None => continue,
-        };
+        let Some((factor, spread)) = bias(&points) else { continue };
+        let [factor, spread] = [factor - 1.0, spread].map(number::fraction);
+        let label = format!("{line}: bias {factor}, spread {spread}");
         let places: Vec<(f64, f64)> = points
             .iter()
             .filter_map(|point| Some((point.expected?.abs(), point.value?.abs())))
@@ -255,7 +253,7 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
         &format!("Measured against expected: {words}"),
         "Each marker is one solver in one case, at the setting with the smallest error. Bias and spread are the mean \
          and the standard deviation of ln(measured/expected).",
-        [Axis::log("expected"), Axis::log("measured")],
+        ["expected", "measured"].map(|value| Axis::log(&format!("{value} ({unit})"))),
         curves,
     ))
 }

@@ -152,20 +152,19 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         }
     }
     let name = if exact { "stable-step-springs" } else { "stable-step-grid" };
-    let title = if exact {
-        "Largest stable step of assemblies on springs"
-    } else {
-        "Largest stable step of the method with a grid"
-    };
+    let scenes = if exact { "assemblies on springs" } else { "the material point method" };
     let caption = if exact {
         "The largest stable step is found by bisection on the growth of a random perturbation of all degrees of \
-         freedom. Dashed lines join the exact limits."
+         freedom. Dashed lines join the exact limits. The parameter is the ratio of tangential and \
+         normal stiffness, and m is the mass of a grain."
     } else {
         "Largest Courant number for which the energy of a vibrating bar changes by less than a tenth over two periods."
     };
     let x = if exact { Axis::linear(&knob) } else { Axis::log(&knob) };
     let y = if unit.starts_with('√') { format!("Δt / {unit}") } else { format!("Δt / ({unit})") };
-    (!curves.is_empty()).then(|| Figure::graph(name, title, caption, [x, Axis::linear(&y)], curves))
+    (!curves.is_empty()).then(|| {
+        Figure::graph(name, &format!("Largest stable step of {scenes}"), caption, [x, Axis::linear(&y)], curves)
+    })
 }
 
 /// Returns the figure of the largest stable time step against the exact limit.
