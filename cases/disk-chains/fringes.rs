@@ -1,8 +1,8 @@
 //! Photoelastic fringes in the discs at the paper's frame times, and an animation of the line.
 //!
-//! The paper chose its fringe constant c by eye from its own pictures of the line and does not print it. Here c is
-//! fitted once, also to the line. In the last frame of the line, the first grey fringe, cos(Δσ/c) = 0, is at the centre of
-//! the fourth disc. The zig-zags use the same c.
+//! The paper chose its fringe constant f by eye from its own pictures of the line and does not print it. Here f is
+//! fitted once, also to the line. In the last frame of the line, the first grey fringe, cos(Δσ/f) = 0, is at the centre of
+//! the fourth disc. The zig-zags use the same f.
 
 use super::WAVE_SPEED;
 use super::elastic::{grid, principal_difference, run};
@@ -35,7 +35,7 @@ const CHAINS: [Chain; 3] = [
     },
     Chain {
         variant: "zig-zag",
-        title: "zig-zag, μ = .5, Fig. 10",
+        title: "zig-zag, μ = 0.5, Fig. 10",
         frames: [3.0, 6.0, 9.0],
         experiment: [5.3, 10.5, 15.8],
         seen: "As in the paper, the load first goes from the contact to the wall, and passes to the next disc when its \
@@ -88,7 +88,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let constant = constant(&line);
     let quantity = Quantity::Fringes(constant);
     let resolution = format!(
-        "{} cells per diameter, c = {:.3} ρcv. Regions without stress are bright. The striker is on the left; in the \
+        "{} cells per diameter, f = {:.3} ρcv. Regions without stress are bright. The striker is on the left; in the \
          paper it is on the right.",
         2.0 * cells,
         constant / impact_stress(&line)
@@ -107,7 +107,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             &format!("fringes-{variant}"),
             &format!("Fringes: {title}"),
             &format!(
-                "Fringes cos((σ₁ − σ₂)/c) at the times of the paper's frames. {resolution} The constant c is fitted \
+                "Fringes cos((σ₁ − σ₂)/f) at the times of the paper's frames. {resolution} The stress f is fitted \
                  once: at t c/d = 7.7, the first grey fringe is at the centre of the fourth disc of the line. {seen}"
             ),
             pictures(quantity, &shots, PIXELS, None),

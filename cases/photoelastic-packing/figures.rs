@@ -39,7 +39,8 @@ fn side_by_side(springs: &FinishedRun, elastic: &FinishedRun) -> Figure {
         "Fringes of fifty discs, on springs and elastic",
         &format!(
             "Both start from the same packing and have the same stages. The fringes show the stress from contact \
-             forces of springs, and the stress of material points; c = {constant:.3e} Pa."
+             forces of springs, and the stress of material points; f = {:.2} MPa.",
+            constant / 1e6
         ),
         pictures(Quantity::Fringes(constant), &shots, PIXELS / 2, None),
     )
@@ -65,9 +66,10 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "fringes",
             "Photoelastic fringes at stages A and B",
             &format!(
-                "Fringes between crossed polarisers: cos((σ₁ − σ₂)/c) from the elastic stress of each disc under its \
-                 contact forces. Regions without stress are bright. Both stages have c = {constant:.3e} Pa, which \
-                 gives three fringes at the stress that 2 % of the discs exceed."
+                "Fringes between crossed polarisers: cos((σ₁ − σ₂)/f) from the elastic stress of each disc under its \
+                 contact forces. Regions without stress are bright. Both stages have f = {:.2} MPa, which gives \
+                 three fringes at the stress difference that 2 % of the area exceeds. Lines mark the discs.",
+                constant / 1e6
             ),
             // The paper's lengths have no unit, so there is no scale bar in metres.
             Field { pixel: 0.0, ..pictures(Quantity::Fringes(constant), &shots, PIXELS, None) },

@@ -71,7 +71,7 @@ pub fn film(
     }
 }
 
-/// Returns the stress c (Pa) of [`Quantity::Fringes`] at which the largest stress difference has the fringe order
+/// Returns the stress f (Pa) of [`Quantity::Fringes`] at which the largest stress difference has the fringe order
 /// `fringes`.
 ///
 /// The largest stress difference is the largest of the 98th percentiles of σ₁ − σ₂ over the pixels of each snapshot.

@@ -9,7 +9,7 @@ use serde::{Deserialize, Serialize};
 pub enum Quantity {
     /// Difference of the principal stresses in the plane, σ₁ − σ₂ (Pa).
     StressDifference,
-    /// Photoelastic fringes cos((σ₁ − σ₂)/c) for a stress c (Pa), as in Bardenhagen and others (2001). They are bright
+    /// Photoelastic fringes cos((σ₁ − σ₂)/f) for a stress f (Pa), as in Bardenhagen and others (2001). They are bright
     /// at zero stress.
     Fringes(f64),
     /// Equivalent plastic strain.
@@ -26,7 +26,7 @@ impl Quantity {
     pub const fn label(self) -> (&'static str, &'static str) {
         match self {
             Self::StressDifference => ("σ₁ − σ₂", "Pa"),
-            Self::Fringes(_) => ("cos((σ₁ − σ₂)/c)", "1"),
+            Self::Fringes(_) => ("cos((σ₁ − σ₂)/f)", "1"),
             Self::PlasticStrain => ("plastic strain", "1"),
             Self::Rotation => ("rotation", "rad"),
             Self::Speed => ("speed", "m/s"),

@@ -22,7 +22,7 @@ const FRAMES: usize = 60;
 const PICTURES: usize = 3;
 /// Smallest number of snapshots from which a film is made.
 const FEWEST: usize = 8;
-/// Number of fringes between zero and the 98th percentile of the stress, if the stress c of a fringe is not given.
+/// Number of fringes between zero and the 98th percentile of the stress, if the stress f of a fringe is not given.
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
@@ -57,7 +57,7 @@ pub fn is_plane(record: &Record) -> bool {
 /// Options of the figures of records.
 #[derive(Clone, Copy, Debug)]
 pub struct FigureOptions {
-    /// Stress c of a photoelastic fringe (Pa). With none, about three fringes are shown.
+    /// Stress f of a photoelastic fringe (Pa). With none, about three fringes are shown.
     pub fringe: Option<f64>,
     /// First and last time of the figures (s).
     pub window: (f64, f64),
@@ -279,7 +279,7 @@ fn caption(quantity: Quantity) -> String {
                 .to_owned()
         }
         Quantity::Fringes(constant) => {
-            format!("Photoelastic fringes, bright at zero stress; c = {constant:.3e} Pa.")
+            format!("Photoelastic fringes, bright at zero stress; f = {}.", number::with_unit(constant, "Pa"))
         }
         Quantity::PlasticStrain => "Equivalent plastic strain of the material points.".to_owned(),
         Quantity::Rotation => "Rotation since the start, counter-clockwise positive.".to_owned(),

@@ -33,7 +33,7 @@ pub(crate) struct Arguments {
     /// Further directory written by `simulate`, which is compared with DIR at equal times. Repeatable.
     #[arg(long, value_name = "DIR")]
     beside: Vec<PathBuf>,
-    /// Stress c of the photoelastic fringes cos((σ₁ − σ₂)/c) in Pa, for figures of a simulation. Default: about three fringes.
+    /// Stress f of the photoelastic fringes cos((σ₁ − σ₂)/f) in Pa, for figures of a simulation. Default: about three fringes.
     #[arg(long, value_name = "PA", value_parser = positive, allow_hyphen_values = true)]
     fringe_stress: Option<f64>,
     /// Time interval of the figures in seconds, such as `.2..1`. Each end is optional.
