@@ -56,7 +56,7 @@ const fn column(
 /// All quantities of an element.
 pub const COLUMNS: [Column; 30] = [
     column("packing_fraction", "packing fraction φ", "1", |element, _| Some(element.packing_fraction)),
-    column("sine_of_friction", "sin φ of friction", "1", |element, _| element.sine_of_friction()),
+    column("sine_of_friction", "sine of friction angle", "1", |element, _| element.sine_of_friction()),
     column("drucker_prager", "Drucker and Prager's |T₀|/(√2 p)", "1", |element, _| element.drucker_prager()),
     column("shear_rate", "rate of shear |D₀|", "1/s", |element, _| element.shear_rate()),
     column("inertial_number", "inertial number |I₀|", "1", |element, grains| {

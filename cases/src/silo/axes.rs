@@ -44,7 +44,7 @@ fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
         },
         Lines { label: "stress T: major principal axis".to_owned(), lines: lines(&largest, scale, WIDTHS[1]) },
         Lines {
-            label: "rate of deformation D: principal axes, if |D₀| exceeds .02/τ".to_owned(),
+            label: "rate of deformation D: principal axes, if |D₀| exceeds 0.02/τ".to_owned(),
             lines: lines(&rates.concat(), RATE, WIDTHS[2]),
         },
     ])

@@ -76,9 +76,10 @@ fn film(done: &FinishedRun) -> Option<Figure> {
     }
     let field =
         Sheet { grid, units: Units { length: "d", time: "τ" }, clock: "time t (τ)".to_owned(), times, shown }.film()?;
-    let caption = "Speed, sin φ, packing fraction and rate of shear of elements of 2.5 d. Elements at the surface \
-                   and elements with fewer than eight grains are blank. The paper finds a funnel over the slit, a \
-                   plug with little shear above it, and sin φ between .2 and .6.";
+    let caption = "Speed, sine of the friction angle, packing fraction and rate of shear of elements of 2.5 d. Values \
+                   beyond a colour bar have the colour of its end. Elements at the surface and elements with fewer \
+                   than eight grains are blank. The paper finds a funnel over the slit, a plug with little shear \
+                   above it, and sines between 0.2 and 0.6.";
     Some(Figure::field("elements", "Granular elements of the flow", caption, field))
 }
 
@@ -100,7 +101,7 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     // The fit is a straight line on linear axes, and a curve against the logarithm of |I₀|.
     let line = (0..=40).map(|at| 5e-4 * 24_f64.powf(f64::from(at) / 40.0)).map(|rate| (rate, 0.635 - rate / 0.123));
     let caption = "Each small circle is an element at one time of the steady flow. The mean packing fraction of bins \
-                   of |I₀| is compared with a prototype. The dashed curve is the paper's fit |I₀| = .123 (.635 − φ), \
+                   of |I₀| is compared with a prototype. The dashed curve is the paper's fit |I₀| = 0.123 (0.635 − φ), \
                    which applies to slow elements only.";
     Some(Figure::graph(
         "inertia",
@@ -133,14 +134,14 @@ fn along_tracers(done: &FinishedRun) -> Option<Figure> {
         last.extend(course.last());
         cloud.extend(course);
     }
-    let caption = "Tracers start at a large packing fraction. They reach their largest sin φ before they dilate, and \
-                   then move to the left. The paper finds a largest sin φ of .6 before dilation. At a tenth of its \
-                   size it is .5 to .6.";
+    let caption = "Tracers start at a large packing fraction. Their sine of the friction angle is largest before they \
+                   dilate and move to the left. The paper finds a largest sine of 0.6 before dilation. At a tenth of its \
+                   size it is 0.5 to 0.6.";
     Some(Figure::graph(
         "tracers",
-        "sin φ over the packing fraction of tracer elements",
+        "Sine of the friction angle over the packing fraction of tracer elements",
         caption,
-        [Axis::linear("packing fraction φ (1)"), Axis::linear("sin φ of friction (1)")],
+        [Axis::linear("packing fraction φ (1)"), Axis::linear("sine of the friction angle (1)")],
         vec![
             Curve::new("start", Stroke::Markers, starts),
             Curve::new("in between", Stroke::Beside, thinned(cloud, CLOUD)),
@@ -156,7 +157,7 @@ fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let means =
         STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
     let caption = "Packing fraction of tracer elements of 5 d over their Hencky strain |E|. In the paper, the \
-                   packing fraction of all flows reaches one plateau at about |E| = .4.";
+                   packing fraction of all flows reaches one plateau at about |E| = 0.4.";
     Some(Figure::graph(
         "strain",
         "Packing fraction over strain",

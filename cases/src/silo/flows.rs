@@ -10,7 +10,7 @@ const FASTEST: f64 = 0.15;
 /// Number of successive frames in each mean along a tracer. Means are plotted because instantaneous stresses are noisy.
 const SMOOTH: usize = 5;
 /// Plotted ranges of packing fraction, sin φ and strain.
-const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.8], [0.0, 0.9]];
+const SEEN: [[f64; 2]; 3] = [[0.5, 0.65], [0.0, 0.9], [0.0, 1.5]];
 
 /// Finished runs of several flows with their labels.
 type Flows = [(&'static str, FinishedRun)];
@@ -78,7 +78,7 @@ fn traces(flows: &Flows, names: [&str; 2], axes: [&str; 2], seen: [[f64; 2]; 2],
 fn along_tracers(flows: &Flows) -> Figure {
     let [packing, sine, _] = SEEN;
     let names = ["packing_fraction", "sine_of_friction"];
-    let axes = ["packing fraction φ (1)", "sin φ of friction (1)"];
+    let axes = ["packing fraction φ (1)", "sine of the friction angle (1)"];
     let plot = traces(flows, names, axes, [[packing[0], sine[0]], [packing[1], sine[1]]], Vec::new());
     let medians: Vec<String> = flows
         .iter()
@@ -86,11 +86,13 @@ fn along_tracers(flows: &Flows) -> Figure {
         .collect();
     let caption = format!(
         "Each line is the path of a tracer element (figure 7 of the paper). Paths start at the right. Elements that \
-         fail first reach their largest sin φ and then dilate to the left. The paper finds about .6 before dilation. \
-         Here the median of the largest sin φ, before the packing fraction has dropped by .02, is {}.",
+         fail first reach their largest sine of the friction angle and then dilate to the left. The paper finds about \
+         0.6 before dilation. Here the median of the largest sine, before the packing fraction has dropped by 0.02, \
+         is {}.",
         medians.join(", ")
     );
-    Figure::lines("tracers-of-flows", "sin φ over the packing fraction of tracer elements, three flows", &caption, plot)
+    let title = "Sine of the friction angle over the packing fraction of tracer elements, three flows";
+    Figure::lines("tracers-of-flows", title, &caption, plot)
 }
 
 /// Returns the figure of φ against |E| (figure 8).
@@ -113,7 +115,7 @@ fn over_strain(flows: &Flows) -> Figure {
     let plot = traces(flows, ["strain", "packing_fraction"], axes, seen, means.into_iter().collect());
     let caption = format!(
         "Each line is the path of a tracer element (figure 8 of the paper, which shows a sharp collapse). Paths \
-         start at the packing fraction of the deposit and reach a plateau. Its values beyond |E| = .4 are {}.",
+         start at the packing fraction of the deposit and reach a plateau. Its values beyond |E| = 0.4 are {}.",
         plateau.join(", ")
     );
     Figure::lines("strain-of-flows", "Packing fraction over strain, three flows", &caption, plot)
