@@ -226,7 +226,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         "velocity",
         "From sliding to rolling",
         "The velocity v rises and the surface speed ΩR falls at constant rates until they are equal. Then the grain \
-         rolls. `dem:lammps` at overlap/R = 1e-3 (markers) is compared with the exact solution of a rigid grain \
+         rolls. `dem:lammps` at overlap/R = 10⁻³ (markers) is compared with the exact solution of a rigid grain \
          (dashes).",
         [Axis::linear("time t (s)"), Axis::linear("velocity v, surface speed ΩR (m/s)")],
         curves,

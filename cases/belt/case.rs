@@ -387,7 +387,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         "velocity",
         "From sliding to rolling on a belt",
         "The belt runs at 3 m/s. The velocity rises at μ g until the grain rolls, at 1/3 (disc) or 2/7 (sphere) of \
-         the belt's velocity. When the belt stops, the disc comes to rest. `dem:lammps` at overlap/R = 1e-3 \
+         the belt's velocity. When the belt stops, the disc comes to rest. `dem:lammps` at overlap/R = 10⁻³ \
          (markers) is compared with the exact solution of a rigid grain (dashes).",
         [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
         curves,

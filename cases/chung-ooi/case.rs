@@ -335,6 +335,12 @@ fn rigid() -> Vec<Claim> {
     ]
 }
 
+/// Returns the material of a variant and its test: `nylon (test 6)` for `6-nylon`.
+fn test(variant: &str) -> String {
+    let (number, material) = variant.split_once('-').unwrap_or_default();
+    format!("{} (test {number})", material.replace('-', " "))
+}
+
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut impacts = Vec::new();
     for variant in ["1-glass", "1-limestone"] {
@@ -342,7 +348,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let (force, time) = (done.series().column("contact.normal_force").unwrap_or_default(), &done.series().time);
         let every = force.len().div_ceil(300).max(1);
         let points = time.iter().zip(force).step_by(every).map(|(t, force)| (t * 1e6, force / 1e3)).collect();
-        impacts.push(Curve::new(variant, Stroke::Line, points));
+        impacts.push(Curve::new(test(variant), Stroke::Line, points));
     }
     let (mut restitution, mut spin) = (Vec::new(), Vec::new());
     for variant in OBLIQUE {
@@ -354,8 +360,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                 turned.push((angle, omega));
             }
         }
-        restitution.push(Curve::new(variant, Stroke::Markers, measured));
-        spin.push(Curve::new(variant, Stroke::Markers, turned));
+        restitution.push(Curve::new(test(variant), Stroke::Markers, measured));
+        spin.push(Curve::new(test(variant), Stroke::Markers, turned));
     }
     let scene = |angle: f64| runner.scene(&at_angle(OBLIQUE[0], angle));
     let (mut exact_restitution, mut exact_spin) = (Vec::new(), Vec::new());

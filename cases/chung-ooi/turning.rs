@@ -2,7 +2,7 @@
 //! contacts.
 
 use super::forms::ImpactParameters;
-use super::{SLIDING, STEP};
+use super::{SLIDING, STEP, test};
 use grainbench_harness::prelude::*;
 
 /// Variants of test 5.
@@ -97,14 +97,14 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         for along in [0.5, 1.0, 2.0, 3.0, 4.0, 5.0, 6.0, 7.0, 8.0, 9.0, 10.0, 12.0, 15.0, 20.0] {
             points.extend(slides(&runner.run(&sliding_along(variant, along))?, 0.3));
         }
-        plane.push(Curve::new(variant, Stroke::Markers, points));
+        plane.push(Curve::new(test(variant), Stroke::Markers, points));
     }
     for variant in BALLS {
         let mut points = Vec::new();
         for spin in [0.5, 1.0, 1.5, 2.0, 2.5, 3.0, 3.5, 4.0, 4.5, 5.0, 6.0, 9.0, 12.0] {
             points.extend(slides(&runner.run(&spinning(variant, spin))?, 1.0));
         }
-        balls.push(Curve::new(variant, Stroke::Markers, points));
+        balls.push(Curve::new(test(variant), Stroke::Markers, points));
     }
     let line = |from: f64, to: f64, value: fn(f64) -> f64| [from, to].map(|x| (x, value(x))).to_vec();
     plane.push(Curve::new("slides throughout", Stroke::Dashed, line(7.0, 13.4, |before| before - 7.0)));

@@ -100,7 +100,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "slip",
         "Slip of the surface",
-        "A disc on a plane at 60° with μ = .2. Without cohesion it slides. Above the threshold of cohesion it rolls \
+        "A disc on a plane at 60° with μ = 0.2. Without cohesion it slides. Above the threshold of cohesion it rolls \
          and the slip velocity stays zero.",
         [Axis::linear("time t (s)"), Axis::linear("slip velocity v − ΩR (m/s)")],
         curves,

@@ -336,7 +336,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                     points.push((done.record.provenance.time_step / critical, measured.error().abs()));
                 }
             }
-            errors.push(Curve::new(format!("{variant}, {release}"), Stroke::MarkedLine, points));
+            errors.push(Curve::new(format!("{}, {release}", crate::rows::label(variant)), Stroke::MarkedLine, points));
         }
         let done = runner.run(&Run::new("gamma-zeta.2", solver, LEVELS[1].resolution))?;
         let force = done.series().column("contact.normal_force").unwrap_or_default();
@@ -348,7 +348,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![
         Figure::graph(
             "force",
-            "Normal force during the impact, ζ = .2",
+            "Normal force during the impact, ζ = 0.2",
             "The two conventions differ only at the end. Either the dashpot pulls until the overlap is zero, or the \
              contact ends when the force is zero.",
             [Axis::linear("time t (ms)"), Axis::linear("normal force (N)")],

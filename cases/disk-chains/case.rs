@@ -186,7 +186,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut arrivals = Vec::new();
     for (variant, title) in [
         ("line", "Forces along the line of four"),
-        ("zig-zag", "Forces along the zig-zag, μ = .5"),
+        ("zig-zag", "Forces along the zig-zag, μ = 0.5"),
         (GLUED, "Forces along the glued zig-zag"),
     ] {
         let done = runner.run(&Run::new(variant, "dem", STEP.resolution))?;
@@ -212,7 +212,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             [Axis::linear("time t c/d (1)"), Axis::linear("normal force / V√(k m)")],
             curves,
         ));
-        arrivals.push(Curve::new(variant, Stroke::MarkedLine, arrived));
+        let label = if variant == GLUED { "glued zig-zag" } else { variant };
+        arrivals.push(Curve::new(label, Stroke::MarkedLine, arrived));
     }
     figures.push(Figure::graph(
         "arrivals",

@@ -163,7 +163,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     let shown = [
         ("line, mpm", run("line", "mpm", grid(8.0, 2), 15.0)),
-        ("zig-zag, μ = .5, mpm", run("zig-zag", "mpm", grid(8.0, 2), 15.0)),
+        ("zig-zag, μ = 0.5, mpm", run("zig-zag", "mpm", grid(8.0, 2), 15.0)),
         ("glued zig-zag, mpm", run("zig-zag-glued", "mpm", grid(8.0, 2), 15.0)),
         ("line, mpm:2001", run("line", PAPER, grid(8.0, 1), 15.0)),
         ("line, springs twice as stiff", run("line", STIFF, grid(8.0, 2), 15.0)),
@@ -179,7 +179,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "stress",
         "Arrival times of stress in elastic discs",
-        "Time at which the difference of the principal stresses at a disc's centre first exceeds .1 ρcv, with 16 \
+        "Time at which the difference of the principal stresses at a disc's centre first exceeds 0.1 ρcv, with 16 \
          cells per diameter. In the zig-zag, shear waves also reach the even discs. Fringes appear late there if \
          contacts are glued.",
         [Axis::linear("number of the disc"), Axis::linear("time of arrival t c/d (1)")],

@@ -225,7 +225,7 @@ fn claims() -> Vec<Claim> {
             )
             .refuses(softer())
             .fair_to_any_continuum()
-            .drawn(&RADIAL, "t/4"),
+            .drawn(&RADIAL, "cells of t/4"),
     );
     claims.push(
         claim("total energy over two periods, worst", "J")

@@ -138,8 +138,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         [Axis::log("peak force F (N)"), Axis::linear("coefficient of the speed (1)")],
         vec![
             Curve::new("dem", Stroke::Markers, measured),
-            Curve::new("discrete chain, .68867", Stroke::Dashed, discrete),
-            Curve::new("long-wave limit, .68024", Stroke::Dashed, long_wave),
+            Curve::new("discrete chain, 0.68867", Stroke::Dashed, discrete),
+            Curve::new("long-wave limit, 0.68024", Stroke::Dashed, long_wave),
         ],
     )])
 }

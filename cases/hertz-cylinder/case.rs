@@ -233,16 +233,16 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let mut points = pressed(&done, 1.0, 1.5).unwrap_or_default();
         points.sort_by(|a, b| a.x.total_cmp(&b.x));
         let seen = points.iter().map(|point| (point.x / exact.half_width, point.pressure / exact.peak));
-        curves.push(Curve::new(format!("mpm+apic, {}", level.name), Stroke::MarkedLine, seen.collect()));
+        curves.push(Curve::new(format!("mpm+apic, cells of {}", level.name), Stroke::MarkedLine, seen.collect()));
         let way = (-60..=60).map(|at| f64::from(at) * exact.half_width / 40.0);
         let below = way.map(|x| (x / exact.half_width, exact.pressure_below(x, 1.25 * cell) / exact.peak));
-        curves.push(Curve::new(format!("Hertz there, {}", level.name), Stroke::Dashed, below.collect()));
+        curves.push(Curve::new(format!("Hertz, cells of {}", level.name), Stroke::Dashed, below.collect()));
     }
     Ok(vec![Figure::graph(
         "pressure",
         "Pressure in the block under a cylinder, 1.25 cells below its surface",
         "Vertical stress of the material points in the second layer of cells (markers), compared with Hertz's \
-         contact on a half-space at the same depth (dashes). Lengths are over the half-width b of the contact.",
+         contact on a half-space at the same depth of 1.25 cells (dashes). Lengths are over the half-width b of the contact.",
         [Axis::linear("x / b"), Axis::linear("pressure / p₀")],
         curves,
     )])

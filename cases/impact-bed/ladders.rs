@@ -62,8 +62,8 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "steps",
         "Height of the ball over the time step",
-        "Height of the ball at 30 ms on three of our beds. The paper's step is .5 µs, 6 % of Rayleigh's. By the \
-         published spread between beds, 95 % of the pairs of beds differ by at most .39 mm.",
+        "Height of the ball at 30 ms on three of our beds. The paper's step is 0.5 µs, 6 % of Rayleigh's. By the \
+         published spread between beds, 95 % of the pairs of beds differ by at most 0.39 mm.",
         [Axis::log("time step (µs)"), Axis::linear("height at 30 ms (mm)")],
         curves,
     )])

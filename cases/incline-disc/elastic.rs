@@ -312,14 +312,15 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                     points.push((cells, (excess - slope.reference.value).abs()));
                 }
             }
-            curves.push(Curve::new(format!("{} {solver}", slope.variant), Stroke::MarkedLine, points));
+            let label = format!("{}, {solver}", crate::rows::label(slope.variant));
+            curves.push(Curve::new(label, Stroke::MarkedLine, points));
         }
     }
     Ok(vec![Figure::graph(
         "elastic",
         "An elastic disc: deviation from its converged displacement",
         "The disc starts in static equilibrium. `mpm` has springs at the surfaces. The contact of the 2000 paper \
-         (`mpm:2000`) acts at nodes, .6 to .9 of a cell before the surfaces meet. Its disc does not roll until cells \
+         (`mpm:2000`) acts at nodes, 0.6 to 0.9 of a cell before the surfaces meet. Its disc does not roll until cells \
          are small.",
         [Axis::log("cells per radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,

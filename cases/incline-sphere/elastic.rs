@@ -93,13 +93,14 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
                     points.push((cells, excess));
                 }
             }
-            curves.push(Curve::new(format!("{} {solver}", slope.variant), Stroke::MarkedLine, points));
+            let label = format!("{}, {solver}", crate::rows::label(slope.variant));
+            curves.push(Curve::new(label, Stroke::MarkedLine, points));
         }
     }
     Ok(Figure::graph(
         "elastic",
         "An elastic sphere on a rigid plane: deviation from a rigid sphere",
-        "The sphere starts in static equilibrium. The converged deviation is −.2 % if it rolls and +1.4 % if it \
+        "The sphere starts in static equilibrium. The converged deviation is −0.2 % if it rolls and +1.4 % if it \
          slips. `mpm` has springs at the surfaces. The contact of the 2000 paper (`mpm:2000`) acts at nodes before \
          the surfaces meet.",
         [Axis::log("cells per radius"), Axis::linear("x / x_rigid − 1 at 1 s")],

@@ -103,7 +103,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![Figure::graph(
         "convergence",
         "Error of the displacement over the cell length",
-        "Root mean square error over the material points at t = .5 s, with three shape functions.",
+        "Root mean square error over the material points at t = 0.5 s, with three shape functions.",
         [Axis::log("cell length h (m)"), Axis::log("rms error (m)")],
         curves,
     )])

@@ -21,7 +21,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             "forces-distortion",
             DISTORTION[3],
             "Contact forces in distortion",
-            "State at κ = 1 and φ = 30° after the walls have rotated by .35°. One diagonal carries the load, and its \
+            "State at κ = 1 and φ = 30° after the walls have rotated by 0.35°. One diagonal carries the load, and its \
              contacts slip at the corners and at the centre. The corner discs of the other diagonal have lost \
              contact with the walls, as in Fig. 8(b).",
         ),
@@ -124,7 +124,7 @@ fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
         "residual",
         "Residual oscillation over the time step",
         "Amplitude of the oscillation after 40 cycles of loading at κ = 1, from the exact solution of the recurrence \
-         (sum of both modes). The paper prints .15 F_eq without its time step. The curve crosses this value at \
+         (sum of both modes). The paper prints 0.15 F_eq without its time step. The curve crosses this value at \
          several steps.",
         [Axis::linear("Δt / critical step"), Axis::linear("amplitude / F_eq between centre and edge (1)")],
         vec![
@@ -167,7 +167,7 @@ fn convergence(runner: &Runner) -> Result<Figure, RunError> {
                 points.push((run.time_step / critical, worst.error().abs()));
             }
         }
-        curves.push(Curve::new(variant, Stroke::MarkedLine, points));
+        curves.push(Curve::new(crate::rows::label(variant), Stroke::MarkedLine, points));
     }
     let square: Vec<(f64, f64)> = [0.0125, 0.1].iter().map(|f| (*f, 0.8 * f * f)).collect();
     curves.push(Curve::new("slope 2", Stroke::Dashed, square));

@@ -116,7 +116,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let right = runner.run(&long(PAIRS[0][0]))?;
     let perturbed = runner.run(&long(PAIRS[0][0]).adjusted(PERTURBED, move_one))?;
     let horizon = perturbed::time_of_horizon(PARTING, &right, &perturbed).unwrap_or(f64::NAN);
-    let mut partings = vec![("ours, one position moved by 1 ulp".to_owned(), right, perturbed)];
+    let mut partings = vec![("ours, one position moved by a rounding error".to_owned(), right, perturbed)];
     let mut courses = Vec::new();
     for [ours, program] in PAIRS {
         let ours = runner.run(&long(ours))?;

@@ -32,10 +32,10 @@ pub(super) type Slab = (&'static str, FinishedRun);
 pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
     if runner.is_thorough() {
-        slabs.push(("yielding, μ = .3", runner.run(&yielding::whole("seed-1", "mpm"))?));
+        slabs.push(("yielding, μ = 0.3", runner.run(&yielding::whole("seed-1", "mpm"))?));
         slabs.push(("yielding, no slip", runner.run(&yielding::whole("seed-1", "mpm:no-slip"))?));
     }
-    slabs.push(("on springs, μ = .3", runner.run(&springs::slab())?));
+    slabs.push(("on springs, μ = 0.3", runner.run(&springs::slab())?));
     Ok(slabs)
 }
 
@@ -86,7 +86,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
         "Rotation of each grain at three shears",
         "Rotation since the start. Grains of the two sides do not rotate. In the band at the moving side, neighbours \
          rotate in opposite directions like gears, because of friction. Grains pushed out through a side are not \
-         shown.",
+         shown. Rotations beyond 2 rad have the colours of 2 rad.",
         pictures(Quantity::Rotation, &shots(&with_friction, &PROFILES), PIXELS, Some(TURNED)),
     )];
     if !deformable.is_empty() {
@@ -136,7 +136,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     let figure = |name: &str, title: &str, caption: &str, quantity: &str, range: (f64, f64)| {
         let caption = format!(
             "{caption} Averages over squares of 200 µm at 50 % shear, over material points or over grains and their \
-             contacts. Squares with too few of them are white."
+             contacts. Squares with too few of them are white. Values beyond the colour bar have the colour of its end."
         );
         Figure::field(name, title, &caption, element_picture::pictures(quantity, &shots, CELL, range))
     };

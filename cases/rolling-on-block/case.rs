@@ -87,7 +87,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
                     points.push((cells, (excess - slope.reference.value).abs()));
                 }
             }
-            curves.push(Curve::new(format!("{} {solver}", slope.variant), Stroke::MarkedLine, points));
+            let label = format!("{}, {solver}", crate::rows::label(slope.variant));
+            curves.push(Curve::new(label, Stroke::MarkedLine, points));
         }
     }
     Ok(vec![Figure::graph(

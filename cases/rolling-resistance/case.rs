@@ -178,7 +178,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         "velocity",
         "Rolling to rest",
         "A sphere decelerates at (5/7) μ_r g and a disc at (2/3) μ_r g on a flat plane, with the rolling friction \
-         μ_r = .05.",
+         μ_r = 0.05.",
         [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
         curves,
     )])

@@ -199,7 +199,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         "Number of grains in the silo",
         "Number of grains in the silo since the plug was removed. For the large orifice, markers are the mean of \
          LIGGGHTS and MUSEN (derived from repeated runs of Dosta et al. 2024). For the small orifice, the dashed \
-         line has the rate of MUSEN from .5 to 2 s. The curve of 40,000 spheres is shifted up by 60,000.",
+         line has the rate of MUSEN from 0.5 to 2 s. The curve of 40,000 spheres is shifted up by 60,000.",
         [Axis::linear("time of flow (s)"), Axis::linear("grains left (thousands)")],
         curves,
     )])

@@ -51,7 +51,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     Ok(Figure::graph(
         "elastic",
         "Force at the wall: elastic discs and rigid discs on springs",
-        "The walls move inwards by d = .01 R and stop. The spring k_n = 3F/2d gives the static force F of elastic \
+        "The walls move inwards by d = 0.01 R and stop. The spring k_n = 3F/2d gives the static force F of elastic \
          discs, which is known in closed form. Elastic discs vibrate faster than rigid discs on springs.",
         [Axis::linear("time t (s)"), Axis::linear("force / F")],
         curves,

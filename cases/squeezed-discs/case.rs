@@ -163,7 +163,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         "force",
         "Contact force over the exact force",
         "Nodal contact (`mpm:gap`) stops whole cells, so it is too stiff. Springs at the surface (`mpm`) are as soft \
-         as .4 cells of material.",
+         as 0.4 cells of material.",
         [Axis::linear("cells per radius"), Axis::linear("force / exact force")],
         curves,
     )])

@@ -270,7 +270,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(vec![
         Figure::graph(
             "energy",
-            "Total energy during a head-on impact at .01 c",
+            "Total energy during a head-on impact at 0.01 c",
             "Sum of kinetic, elastic and spring energy with three contact models, at 8 cells per radius.",
             [Axis::linear("time t (s)"), Axis::linear("energy / energy at the start")],
             energies,

@@ -1,9 +1,9 @@
 //! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
 //! Each case has its own scene, slopes and elastic body.
 
-use super::programs;
 use super::rigid::{self, Row};
 use super::set_down::{self, Dashpots};
+use super::{label, programs};
 use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
 use std::f64::consts::PI;
@@ -289,7 +289,7 @@ fn exponent(slope: Slope) -> Claim {
              overlap/R = 1e-4",
         ))
         .refuses(telling(slope))
-        .drawn(&COMPLIANCE, format!("{} ({})", slope.variant, if slope.sticks { "rolls" } else { "slips" }))
+        .drawn(&COMPLIANCE, format!("{} ({})", label(slope.variant), if slope.sticks { "rolls" } else { "slips" }))
 }
 
 /// Returns a negative control that changes the result: wrong inertia for a rolling grain, larger friction for a
@@ -390,27 +390,27 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
         let states = course(&done).unwrap_or_default();
         let thin: Vec<_> = states.iter().step_by(states.len().div_ceil(12).max(1)).collect();
         let curve = |label: String, stroke, points| Curve { label, stroke, points };
-        displacement.push(curve(
-            slope.variant.to_owned(),
-            Stroke::Markers,
-            thin.iter().map(|(t, s)| (*t, s.x)).collect(),
-        ));
-        spin.push(curve(slope.variant.to_owned(), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
+        displacement.push(curve(label(slope.variant), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.x)).collect()));
+        spin.push(curve(label(slope.variant), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
         let exact = |exact_value: &dyn Fn(f64) -> f64| {
             (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, exact_value(t))).collect()
         };
         displacement.push(curve(
-            format!("{}, rigid", slope.variant),
+            format!("{}, rigid", label(slope.variant)),
             Stroke::Dashed,
             exact(&|t| grain.rigid_incline(t).x),
         ));
-        spin.push(curve(format!("{}, rigid", slope.variant), Stroke::Dashed, exact(&|t| grain.rigid_incline(t).omega)));
+        spin.push(curve(
+            format!("{}, rigid", label(slope.variant)),
+            Stroke::Dashed,
+            exact(&|t| grain.rigid_incline(t).omega),
+        ));
     }
     Ok(vec![
         Figure::graph(
             "displacement",
             "Displacement down the slope",
-            "`dem:lammps` at overlap/R = 1e-3 (markers) is compared with the exact solution of a rigid grain (dashes).",
+            "`dem:lammps` at overlap/R = 10⁻³ (markers) is compared with the exact solution of a rigid grain (dashes).",
             [Axis::linear("time t (s)"), Axis::linear("displacement x (m)")],
             displacement,
         ),

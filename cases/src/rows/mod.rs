@@ -11,3 +11,9 @@ pub mod programs;
 pub mod rigid;
 pub(crate) mod ringing;
 pub mod set_down;
+
+/// Returns the name of a variant as a label of a curve: `60°, μ = 0.3` for `60deg-mu.3`.
+pub fn label(variant: &str) -> String {
+    let words = [("deg-mu", "°, μ = "), ("gamma-zeta", "ζ = "), ("kappa-", "κ = "), ("_", "/"), ("= .", "= 0.")];
+    words.into_iter().fold(variant.to_owned(), |name, (word, symbol)| name.replace(word, symbol))
+}

@@ -258,7 +258,7 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
                 points.push((f64::from(substeps), ((state.x - x) / x).abs()));
             }
         }
-        curves.push(Curve { label: row.variant.to_owned(), stroke: Stroke::MarkedLine, points });
+        curves.push(Curve { label: super::label(row.variant), stroke: Stroke::MarkedLine, points });
     }
     let ends = [LEVELS[0], LEVELS[LEVELS.len() - 1]].map(f64::from);
     let small = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS);

@@ -181,7 +181,10 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
             .within(estimated(0.01, BECAUSE).up_to(0.02))
     };
     vec![
-        overlap().refuses(Control::scene("springs ×1.05", stiffer)).fair_to_any_springs().drawn(&SPRINGS, variant),
+        overlap()
+            .refuses(Control::scene("springs ×1.05", stiffer))
+            .fair_to_any_springs()
+            .drawn(&SPRINGS, super::label(variant)),
         slip().refuses(weaker).fair_to_any_springs(),
     ]
 }
