@@ -60,7 +60,7 @@ int main(int, char** words) {
     }
 
     Vector force, torque;
-    auto find_forces = [&] {
+    auto find_forces = [&](double step) {
         force = mass * gravity, torque = {};
         for (Wall& wall : walls) {
             double overlap = radius - dot(x + -1.0 * wall.point, wall.normal);
@@ -69,7 +69,7 @@ int main(int, char** words) {
             slip = slip + -dot(slip, wall.normal) * wall.normal;
             double push = stiffness[0] * overlap - dashpot[0] * dot(v, wall.normal);
             Vector drag = dashpot[1] * slip;
-            wall.spring = wall.spring + stiffness[1] * dt * slip;
+            wall.spring = wall.spring + stiffness[1] * step * slip;
             Vector friction = -1.0 * (wall.spring + drag);
             double size = std::sqrt(dot(friction, friction)), most = mu * std::fmax(push, 0.0);
             if (size > most) {
@@ -82,7 +82,7 @@ int main(int, char** words) {
     };
     std::FILE* table = std::fopen((std::string(words[2]) + "/grains.csv").c_str(), "w");
     std::fprintf(table, "step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz\n");
-    find_forces();
+    find_forces(0.0);
     for (long step = 0; step <= count; ++step) {
         if (step % every == 0 || step == count) {
             std::fprintf(table, "%ld,1", step);
@@ -91,7 +91,7 @@ int main(int, char** words) {
         }
         v = v + dt / mass / 2 * force, spin = spin + dt / inertia / 2 * torque;
         x = x + dt * v;
-        find_forces();
+        find_forces(dt);
         v = v + dt / mass / 2 * force, spin = spin + dt / inertia / 2 * torque;
     }
     std::fclose(table);

@@ -31,7 +31,7 @@ def grains(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
     def dot(one, other):
         return (one * other).sum(axis=1, keepdims=True)
 
-    def loads():
+    def loads(step):
         nonlocal springs
         place, speed, turn = np.vstack([x, points]), np.vstack([v, still]), np.vstack([spin, still])
         apart = place[a] - place[b]
@@ -45,7 +45,7 @@ def grains(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
         # The spring turns with its contact and keeps its length.
         along = springs - dot(springs, n) * n
         along = along * np.sqrt(dot(springs, springs) / np.maximum(dot(along, along), 1e-300))
-        spring, drag = along + kt[:, None] * dt * slip, (ct + beta * kt)[:, None] * slip
+        spring, drag = along + kt[:, None] * step * slip, (ct + beta * kt)[:, None] * slip
         friction = -spring - drag
         size = np.sqrt(dot(friction, friction))
         factor = np.minimum(1, mu[:, None] * np.maximum(push, 0) / np.where(size == 0, 1, size))
@@ -58,11 +58,11 @@ def grains(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
         half = 0.5 * dt * is_free
         return half * (forces[:count] / mass + scene.gravity), half * torques[:count] / inertia
 
-    recorder, (kick, turn) = gb.Recorder(scene), loads()
+    recorder, (kick, turn) = gb.Recorder(scene), loads(0.0)
     recorder.take(0, x, v, spin)
     for step in range(1, steps.count + 1):
         v, spin, x = v + kick, spin + turn, x + dt * (v + kick)
-        kick, turn = loads()
+        kick, turn = loads(dt)
         v, spin = v + kick, spin + turn
         recorder.take(step, x, v, spin)
     return recorder.record()

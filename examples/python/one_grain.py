@@ -16,7 +16,7 @@ stiffness = law["normal_stiffness"], law["tangential_stiffness"]
 dashpot = [law[name] * mass + law["stiffness_damping"] * k for name, k in zip(("normal_damping", "tangential_damping"), stiffness)]
 springs = {wall["name"]: [0.0] * 3 for wall in scene["walls"]}
 
-def forces():
+def forces(step):
     force, torque = [mass * g for g in scene["gravity"]], [0.0] * 3
     for wall in scene["walls"]:
         n, point = wall["plane"]["normal"], wall["plane"]["point"]
@@ -27,7 +27,7 @@ def forces():
         push = stiffness[0] * overlap - dashpot[0] * dot(v, n)
         slip = plus(v, cross(spin, arm))
         slip = plus(slip, n, -dot(slip, n))
-        spring, drag = plus(springs[wall["name"]], slip, stiffness[1] * dt), [dashpot[1] * part for part in slip]
+        spring, drag = plus(springs[wall["name"]], slip, stiffness[1] * step), [dashpot[1] * part for part in slip]
         friction, most = plus([-part for part in spring], drag, -1), law["friction"] * max(push, 0.0)
         factor = min(1.0, most / (dot(friction, friction) ** 0.5 or 1.0))
         friction = [factor * part for part in friction]
@@ -37,11 +37,11 @@ def forces():
 
 table, kick = csv.writer(open(sys.argv[2] + "/grains.csv", "w", newline="")), (dt / mass / 2, dt / inertia / 2)
 table.writerow("step id x y z vx vy vz omegax omegay omegaz".split())
-force, torque = forces()
+force, torque = forces(0.0)
 for step in range(steps["count"] + 1):
     if step % steps["sample_every"] == 0 or step == steps["count"]:
         table.writerow([step, 1, *x, *v, *spin])
     v, spin = plus(v, force, kick[0]), plus(spin, torque, kick[1])
     x = plus(x, v, dt)
-    force, torque = forces()
+    force, torque = forces(dt)
     v, spin = plus(v, force, kick[0]), plus(spin, torque, kick[1])

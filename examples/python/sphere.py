@@ -17,7 +17,7 @@ def sphere(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
     x, v, spin = scene.position[0], scene.velocity[0], scene.spin[0]
     springs = {wall.name: np.zeros(3) for wall in scene.walls}
 
-    def loads():
+    def loads(step):
         force, torque = mass * scene.gravity, np.zeros(3)
         for wall in scene.walls:
             law, n = scene.law(scene.material[0], wall.material), wall.geometry["normal"]
@@ -30,18 +30,18 @@ def sphere(scene: gb.Scene, steps: gb.Steps) -> gb.Record:
             push = k * overlap - (c + law.stiffness_damping * k) * (v @ n)
             slip = v + cross(spin, arm)
             slip = slip - (slip @ n) * n
-            spring, drag = springs[wall.name] + slip * dt * kt, (ct + law.stiffness_damping * kt) * slip
+            spring, drag = springs[wall.name] + slip * step * kt, (ct + law.stiffness_damping * kt) * slip
             friction = -spring - drag
             factor = min(1.0, law.friction * max(push, 0.0) / ((friction @ friction) ** 0.5 or 1.0))
             friction, springs[wall.name] = factor * friction, spring if factor == 1.0 else -factor * friction - drag
             force, torque = force + push * n + friction, torque + cross(arm, friction)
         return 0.5 * dt / mass * force, 0.5 * dt / inertia * torque
 
-    recorder, (kick, turn) = gb.Recorder(scene), loads()
+    recorder, (kick, turn) = gb.Recorder(scene), loads(0.0)
     recorder.take(0, x, v, spin)
     for step in range(1, steps.count + 1):
         v, spin, x = v + kick, spin + turn, x + dt * (v + kick)
-        kick, turn = loads()
+        kick, turn = loads(dt)
         v, spin = v + kick, spin + turn
         recorder.take(step, x, v, spin)
     return recorder.record()

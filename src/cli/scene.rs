@@ -71,6 +71,9 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     let resolution = arguments
         .cells
         .map_or_else(|| arguments.step.resolution(), |cells| Resolution::grid(cells, Resolution::POINTS));
+    if let Some(reason) = outside::inexpressible(&scene) {
+        return Err(Fault::input(reason));
+    }
     let given = DiscretizedScene::new(&scene, &resolution).map_err(Fault::input)?;
     let format = match arguments.format {
         Format::Json => SceneFormat::Json,

@@ -30,8 +30,8 @@ impl Numbers {
         let resolved = Resolved::new(&DiscretizedScene { scene, stepping, grid: None });
         let columns = resolved.columns.clone();
         let mut definite = Value::try_from(resolved).map_err(|error| error.to_string())?;
-        if let Some(table) = definite.as_table_mut() {
-            table.remove("steps");
+        if let Some(steps) = definite.get_mut("steps").and_then(Value::as_table_mut) {
+            steps.retain(|key, _| key == "critical_time_step");
         }
         Ok(Self { file: Value::Table(file), definite, columns })
     }

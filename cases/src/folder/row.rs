@@ -208,7 +208,14 @@ fn check_names(
     let known = |name: &&str| numbers.get(name).is_some() || (with_time && *name == TIME);
     match expression.names().into_iter().find(|name| !known(name)) {
         None => Ok(()),
-        Some(unknown) => Err(wrong(key, "numbers of the scene, by their keys", quoted(unknown))),
+        Some(unknown) if unknown.starts_with("scene.steps.") => {
+            let expected = "`scene.steps.critical_time_step` (other steps depend on the resolution)";
+            Err(wrong(key, expected, quoted(unknown)))
+        }
+        Some(unknown) => {
+            let expected = "a key of the scene file, or `scene.` and a key that `grainbench scene` prints";
+            Err(wrong(key, expected, quoted(unknown)))
+        }
     }
 }
 

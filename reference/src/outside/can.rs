@@ -13,8 +13,8 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
     if !can.dimension.contains(&dimension) {
         return Some(format!("it does not declare scenes in {dimension} dimensions"));
     }
-    if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
-        return Some(format!("a manifest cannot declare {what}"));
+    if let Some(reason) = inexpressible(scene) {
+        return Some(reason);
     }
     if !scene.grains.is_empty() && manifest.output.grains.is_none() {
         return Some("its manifest declares no output of grains (`output.grains`)".to_owned());
@@ -22,6 +22,18 @@ pub(super) fn lacks(manifest: &Manifest, scene: &Scene, resolution: &Resolution)
     let deforms = matches!(resolution, Resolution::Grid { .. });
     let law = if deforms { lacks_material(can, scene) } else { lacks_law(can, scene) };
     law.or_else(|| lacks_wall(can, scene)).or_else(|| lacks_effect(can, scene, deforms))
+}
+
+/// Returns a message about the first feature of a scene that resolved scenes cannot express, or `None`.
+pub fn inexpressible(scene: &Scene) -> Option<String> {
+    if let Some(what) = scene.passing().or_else(|| scene.gathered()) {
+        return Some(format!("resolved scenes cannot express {what}"));
+    }
+    if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
+        return Some(format!("resolved scenes cannot express the sine or ramp of wall `{}`", wall.name));
+    }
+    let driven = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0)?;
+    Some(format!("resolved scenes cannot express the spin or motion of the driven grains `{}`", driven.name))
 }
 
 /// Returns a message about the first feature that the program lacks for rigid grains, or `None`.
@@ -80,13 +92,6 @@ fn lacks_wall(can: &Capabilities, scene: &Scene) -> Option<String> {
 fn lacks_effect(can: &Capabilities, scene: &Scene, deforms: bool) -> Option<String> {
     if !scene.driven.is_empty() && !can.driven {
         return Some("it does not declare driven grains (`can.driven`)".to_owned());
-    }
-    if let Some(wall) = scene.walls.iter().find(|wall| !wall.motion.functions.is_empty()) {
-        return Some(format!("wall `{}` moves by a sine or a ramp, which resolved scenes cannot express", wall.name));
-    }
-    if let Some(driven) = scene.driven.iter().find(|driven| !driven.motion.is_empty() || driven.spin.norm() > 0.0) {
-        let name = &driven.name;
-        return Some(format!("driven grains `{name}` have a spin or a motion, which resolved scenes cannot express"));
     }
     let is_asked = |effect: &Effect| match effect {
         // Every program must support gravity. Hertz contacts are declared as a law.
