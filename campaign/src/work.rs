@@ -150,7 +150,7 @@ pub type TaskFunction<'a> = &'a dyn Fn(&[&Task], &Arc<ResultSink>) -> Result<(),
 /// Runs a shard of a plan; `does` runs the tasks.
 ///
 /// # Errors
-/// When the disk rejects a write. Results that were written before are kept.
+/// When reading, writing or `does` fails. Results written before are kept.
 pub fn work(
     plan: &Plan,
     asked: &WorkRequest,

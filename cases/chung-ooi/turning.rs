@@ -78,8 +78,8 @@ fn sharp(run: &Run) -> Vec<Claim> {
     if run.variant.starts_with('5') { spring.to_vec() } else { spring.into_iter().chain(pushing).collect() }
 }
 
-/// Returns the figures of the paper: the tangential surface velocity after the impact against its value before the
-/// impact, both divided by the normal velocity.
+/// Returns the paper's figures of slip velocity after the impact over slip velocity before it, each divided by the normal
+/// velocity and, in test 5, by μ.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slides = |done: &FinishedRun, friction: f64| -> Option<(f64, f64)> {
         let (grain, before) = (&done.scene.grains[0], ImpactParameters::from_scene(&done.scene));

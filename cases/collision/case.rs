@@ -177,7 +177,7 @@ const FIRST_ORDER: &str = "contact begins and ends within a step, which changes 
                            half a step each, 2ζ ωΔt e; the dashpot is half a step late, so ζ is larger by the factor 1 \
                            + ζωΔt/2, π ζ²/(2 (1 − ζ²)^{3/2}) ωΔt e; (ωΔt)² for second-order terms (derivation)";
 
-/// Returns the largest error of the restitution at a resolution.
+/// Returns the error bound of the restitution at a resolution.
 fn first_order(variant: &str, resolution: Resolution) -> f64 {
     let Ok(scene) = CASE.variant(variant) else { return f64::NAN };
     let (_, omega, zeta) = pair(&scene);

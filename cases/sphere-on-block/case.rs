@@ -13,7 +13,7 @@ const LEVELS: &[Level] = &[cells("R/2", 2.0, 2), cells("R/4", 4.0, 2), cells("R/
 /// Largest relative error of nodal contact: the displacement has the error −1 if the sphere does not move.
 const AT_REST: f64 = 1.0;
 
-const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a region of about √(2Rh), along each \
+const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a width of about √(2Rh), along each \
                     body's own normal";
 
 pub(crate) static CASE: Case = Case {

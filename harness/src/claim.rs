@@ -76,7 +76,7 @@ pub struct Claim {
     pub trace: Option<Trace>,
     /// Figure in which the claim is plotted, and the label of its curve.
     pub drawn: Option<(&'static ClaimFigure, String)>,
-    /// Form of the claim for the case's scene with other parameter values; none if the tolerance is then unknown.
+    /// Claim for other parameter values of the case's scene; none if its tolerance is unknown there.
     pub elsewhere: Option<ParameterVariation>,
 }
 

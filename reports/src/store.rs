@@ -59,7 +59,7 @@ pub enum LoadError {
         /// Path of the file with the reason.
         path: PathBuf,
     },
-    /// The file is not JSON, or its content is not that of a report or record.
+    /// The file is not JSON, or not a valid report or record.
     #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
     Damaged {
         /// Path of the file.

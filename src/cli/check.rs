@@ -49,8 +49,8 @@ pub(crate) struct Arguments {
     /// Time between frames in seconds, for files that contain frame numbers but no times.
     #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
     frame_interval: Option<f64>,
-    /// Names of columns in the files, such as `x=xu,omegaz=wz`. Contacts have the columns `id1`, `id2`, `force_x` (on
-    /// the first grain) and, optionally, `tangential_x`. `WALL.force_x` is the force of a wall on a grain, and `angle`
+    /// Column names in the files, such as `x=xu,omegaz=wz`. Our contact columns are `id1`, `id2`, `force_x` (on the first
+    /// grain) and, optionally, `tangential_x`. `WALL.force_x` is the force of a wall on a grain, and `angle`
     /// is the angle of a disc.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,

@@ -31,8 +31,8 @@ pub(crate) struct Arguments {
     /// Dump of the contacts (`dump local`) at the steps of the grain dump.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
-    /// Names of columns in the files, such as `x=xu`. Contacts have the columns `id1`, `id2`, `force_x` (on the first
-    /// grain) and, optionally, `tangential_x`.
+    /// Column names in the files, such as `x=xu`. Our contact columns are `id1`, `id2`, `force_x` (on the first grain) and,
+    /// optionally, `tangential_x`.
     #[arg(long, value_name = "OURS=THEIRS,…", value_delimiter = ',', value_parser = path_and_value)]
     map: Vec<(String, String)>,
     /// Radius of all grains in metres, for a dump without radii.

@@ -102,7 +102,7 @@ pub(crate) struct Arguments {
     /// Write a plan of the sweep to this directory and run nothing. `run --resume DIR` runs the plan.
     #[arg(long, value_name = "DIR", conflicts_with = "out")]
     plan: Option<PathBuf>,
-    /// Number of shards of the plan. Default: shards take about a minute or more on average.
+    /// Number of shards of the plan. Default: as many as last at least 60 s on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,
 }

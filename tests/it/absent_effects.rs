@@ -82,7 +82,7 @@ fn instructions(name: &str, steps: u64) -> Option<f64> {
     line.split(':').nth(1)?.trim().parse().ok()
 }
 
-/// Returns the instructions per step, from the difference between many and few steps. `None` without valgrind, an error in CI.
+/// Returns the instructions per step from runs with few and many steps. Without valgrind, returns `None`, or panics in CI.
 fn a_step(name: &str, [few, many]: [u64; 2]) -> Option<f64> {
     let counted = instructions(name, many).zip(instructions(name, few));
     assert!(counted.is_some() || std::env::var_os("CI").is_none(), "valgrind is not installed: nothing was counted");

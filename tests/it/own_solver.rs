@@ -117,7 +117,7 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
     assert!(!failures.is_empty() && failures.iter().all(|line| line.contains("stayed green")), "{failures:#?}");
 }
 
-/// If our own solver fails, it fails with the same error under the wrong scene of a control, which explains nothing.
+/// With a defect, our own solver gives the same error with and without a control. The control then explains nothing.
 #[test]
 fn a_control_does_not_explain_a_defect_of_our_own_solver() {
     struct Spoiled;

@@ -152,7 +152,7 @@ impl PressedDisc {
         sum / count
     }
 
-    /// Returns the contact half-width a divided by the radius R, with a² = 4pR²/π.
+    /// Returns the contact half-width a over the radius R, with a² = 4FR/(πE′).
     #[must_use]
     pub fn patch(&self, force: f64) -> f64 {
         (4.0 * force / (PI * self.modulus * self.radius)).sqrt()

@@ -88,5 +88,5 @@ pub(crate) fn boundary(scene: &Scene, otherwise: &str) -> String {
     format!("boundary {}", words.join(" "))
 }
 
-/// Boundary style of a box that grows with the grains.
+/// Boundary style: the box grows to hold all grains.
 pub(crate) const GROWING: &str = "m";

@@ -23,7 +23,7 @@ pub const EARLY: [f64; 2] = [0.2, 0.8];
 /// between codes, and standard deviation between beds (heights in mm).
 pub const IMPACT: &str = include_str!("../../literature/dosta-2024/impact-25k.csv");
 
-/// Checks of the consistency of the published data, as a heading and a table in Markdown.
+/// Inconsistencies in the published data, as a heading and a table in Markdown.
 pub const CONSISTENCY: &str = include_str!("../../literature/dosta-2024/consistency.md");
 
 /// Number of grains in the silo over time, for the large orifice. The columns are t (s), mean of LIGGGHTS and MUSEN,

@@ -115,7 +115,7 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
     html! {
         (drawn(&figure))
         p {
-            "Fastest setting with an error of at most " (number::fraction(TARGETS[AT])) " of the " (diagram.quantity) ": "
+            "Shortest computing time with an error of at most " (number::fraction(TARGETS[AT])) " of the " (diagram.quantity) ": "
             b { (times.join(", ")) } "."
         }
     }
@@ -216,7 +216,7 @@ fn changes(effects: &Effects) -> Markup {
         format!("without {name} in {count} of {all}")
     });
     let most = most.collect::<Vec<_>>().join(", ");
-    let title = "Change of the answer without each effect, by scene";
+    let title = "Change of results when an effect is off, by scene";
     html! {
         div.plot {
             svg xmlns="http://www.w3.org/2000/svg" viewBox=(format!("0 0 480 {}", bottom + 50.0)) width="100%" role="img"
@@ -283,7 +283,7 @@ mod tests {
     fn each_question_has_a_picture_and_a_sentence() {
         let page = render(&sample::report(), &html! {}).into_string();
         for sentence in [
-            "Fastest setting with an error of at most 1\u{202f}% of the velocity: <b>dem 1\u{202f}ms",
+            "Shortest computing time with an error of at most 1\u{202f}% of the velocity: <b>dem 1\u{202f}ms",
             "Largest stable step: dem, lammps 0.995–0.996 of the exact limit; mpm 2.1–2.1 h/c, without an exact limit.",
             "A claim fails <b>without friction in 1 of 1, without gravity in 0 of 1</b> scenes.",
             "dem (and lammps: equal)",

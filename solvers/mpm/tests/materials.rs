@@ -107,7 +107,7 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     S::embed_symmetric(stress)
 }
 
-/// Rounding error of stress (Pa) in 250 steps: about the modulus times the rounding error of unit strain in each step.
+/// Rounding error of stress (Pa) in 250 steps, about the bulk modulus times the machine epsilon per step.
 const ROUNDING: f64 = 250.0 * BULK * f64::EPSILON;
 
 /// An eighth of a turn rotates the stress, σ' = R σ Rᵀ: σ_xx' = (σ_xx + σ_yy)/2 − σ_xy, σ_yy' = (σ_xx + σ_yy)/2 + σ_xy,

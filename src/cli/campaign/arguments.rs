@@ -36,7 +36,7 @@ pub(crate) struct Arguments {
     /// Measure only errors and counts, for `cost`. Without timing, several tasks can run on one machine.
     #[arg(long, conflicts_with = "prices")]
     pub(crate) counts: bool,
-    /// Number of shards. Default: shards take about a minute or more on average.
+    /// Number of shards. Default: as many as last at least 60 s on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST))]
     pub(crate) shards: Option<u32>,
     /// Directory of the plan. Finished tasks of an existing plan stay finished.
@@ -54,7 +54,7 @@ pub(crate) struct PlanOptions {
     /// plan stay finished.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
     pub(crate) plan: Option<PathBuf>,
-    /// Number of shards of the plan. Default: shards take about a minute or more on average.
+    /// Number of shards of the plan. Default: as many as last at least 60 s on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,
 }

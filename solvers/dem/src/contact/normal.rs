@@ -30,7 +30,7 @@ pub(crate) trait Normal: Copy + Send + Sync + 'static {
     fn energy<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>) -> X;
 }
 
-/// Returns the normal force for a spring force (N) and a dashpot viscosity (N s/m).
+/// Returns the normal force for a spring force (N) and a dashpot constant (N s/m).
 #[inline(always)]
 fn damped<S: Geometry, X: Number>(
     touch: &ContactInput<'_, S, X>,
