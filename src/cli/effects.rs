@@ -148,7 +148,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     follower.now("the unchanged scene");
     let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
     follower.done(false);
-    if whole.series.columns.is_empty() {
+    if whole.record.series.columns.is_empty() {
         return Err(Fault::input(format!(
             "{name}: expected probes, because they show the influence of an effect, found none"
         )));
@@ -161,7 +161,9 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     }
     follower.end();
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
-    tell(&study, arguments, "")
+    let chaotic = "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
+                   time are compared, with the scatter of perturbed runs.\n";
+    tell(&study, arguments, if whole.perturbed.is_empty() { "" } else { chaotic })
 }
 
 /// Returns true if an effect that is off changes a result when it is compiled in with a neutral value.

@@ -14,6 +14,7 @@ use super::value::{path_and_value, positive, whole};
 use grainbench::campaign::shard;
 use grainbench::campaign::sweep::Sweep;
 use grainbench::cases::registry::read_grains;
+use grainbench::dem::stability::stable_fraction;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{SnapshotStore, number};
 use grainbench::scene::brief::Brief;
@@ -360,6 +361,13 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
              it (--allow-unstable permits it)",
             number::significant(step / critical, 4)
         )));
+    }
+    let stable = stable_fraction(scene);
+    if scene.grains.len() > 2 && step > stable * critical {
+        eprintln!(
+            "warning: the time step is {} of the critical step. Above {stable:.3} of it, a packing can be unstable",
+            number::significant(step / critical, 4)
+        );
     }
     Ok(resolution)
 }

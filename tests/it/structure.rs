@@ -15,13 +15,13 @@ const BUDGETS: [(&str, usize, usize); 15] = [
     ("harness", 7_730, 5),
     ("store", 1_190, 0),
     ("reference", 14_650, 13),
-    ("cases", 21_170, 14),
+    ("cases", 21_200, 14),
     ("fields", 3_220, 4),
     ("reports", 14_270, 16),
-    ("studies", 4_215, 0),
+    ("studies", 4_290, 0),
     ("campaign", 3_215, 0),
-    ("src", 9_530, 0),
-    ("tests", 10_600, 0),
+    ("src", 9_540, 0),
+    ("tests", 10_610, 0),
 ];
 
 fn root() -> &'static Path {
