@@ -51,7 +51,7 @@ MISTAKES = [
     ("overlap - (c + beta * k)", "overlap - 0.5 * (c + beta * k)", SLOPE, "half the normal damping"),
     ("overlap - (c + beta * k)", "overlap - 2 * (c + beta * k)", SLOPE, "twice the normal damping"),
     ("(ct + beta * kt)", "0 * (ct + beta * kt)", SLOPE, "no tangential damping"),
-    ("kt[:, None] * dt * slip", "0.5 * kt[:, None] * dt * slip", SLOPE, "half the tangential stiffness"),
+    ("kt[:, None] * step * slip", "0.5 * kt[:, None] * step * slip", SLOPE, "half the tangential stiffness"),
 ]
 
 REFUSES = """

@@ -236,10 +236,10 @@ fn a_grain_in_python_is_judged_line_by_line() {
         ("law[name] * mass", "0.9 * law[name] * mass"),
         ("law[\"stiffness_damping\"] * k", "0.9 * law[\"stiffness_damping\"] * k"),
         (
-            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [dashpot[1]",
-            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * dt), [0.9 * dashpot[1]",
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * step), [dashpot[1]",
+            "drag = plus(springs[wall[\"name\"]], slip, stiffness[1] * step), [0.9 * dashpot[1]",
         ),
-        ("stiffness[1] * dt", "0.95 * stiffness[1] * dt"),
+        ("stiffness[1] * step", "0.95 * stiffness[1] * step"),
         ("plus([-part for part in spring], drag, -1), law", "plus([-part for part in spring], drag, 1), law"),
         ("law[\"friction\"] * max", "0.99 * law[\"friction\"] * max"),
         ("factor = min(1.0, ", "factor = min(2.0, "),

@@ -247,8 +247,13 @@ impl SweepQuantity {
         let scene = &seen.done.scene;
         let table = seen.source.table().map_err(|error| MissingData(error.to_string()))?;
         let numbers = Arc::new(Numbers::new(table, scene).map_err(MissingData)?);
-        let read =
-            RecordExpression { value: self.value.clone(), numbers: Arc::clone(&numbers), at: self.at, over: self.over };
+        let read = RecordExpression {
+            value: self.value.clone(),
+            numbers: Arc::clone(&numbers),
+            at: self.at,
+            over: self.over,
+            follows_time: true,
+        };
         let (time, value) = read.one(seen.done)?;
         let evaluated = |formula: &Expression| {
             formula.value(&|name| match name {

@@ -23,6 +23,8 @@ pub struct RecordExpression {
     pub at: Option<f64>,
     /// Reduction over the samples.
     pub over: Option<SampleReduction>,
+    /// True if the expected value belongs to the time of the sample. Otherwise it belongs to `at`.
+    pub follows_time: bool,
 }
 
 impl RecordExpression {
@@ -68,12 +70,14 @@ impl RecordExpression {
             (Some(value), _) => Ok((end.0, value)),
             (None, None) => Ok(end),
             (None, Some(moment)) => {
-                // The nearest sample is used if it differs from `moment` by at most half the largest sampling interval.
+                // Half the largest sampling interval, or a time step if the expected value belongs to `moment`.
                 let apart = points.windows(2).map(|pair| pair[1].0 - pair[0].0).fold(0.0, f64::max);
                 let nearest =
                     points.iter().copied().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
-                let nearest = nearest.filter(|point| (point.0 - moment).abs() <= 0.5 * apart * (1.0 + 1e-9));
-                nearest.ok_or_else(|| MissingData(format!("sample at {moment} s")))
+                let most =
+                    if self.follows_time { 0.5 * apart } else { done.record.provenance.time_step.min(0.5 * apart) };
+                let nearest = nearest.filter(|point| (point.0 - moment).abs() <= most * (1.0 + 1e-9));
+                nearest.ok_or_else(|| MissingData(format!("sample within {most} s of {moment} s")))
             }
         }
     }

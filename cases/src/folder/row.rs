@@ -135,7 +135,9 @@ fn expecting(
     if over.is_some() && claimed.at.is_some() {
         return Err(wrong("at", "only one of `at` and `over`", "both"));
     }
-    let read = RecordExpression { value, numbers: Arc::clone(numbers), at: claimed.at, over };
+    let expected = claimed.equals.as_ref().map(|formula| formula_of("equals", formula)).transpose()?;
+    let follows_time = expected.is_some_and(|exact| exact.names().contains(&TIME));
+    let read = RecordExpression { value, numbers: Arc::clone(numbers), at: claimed.at, over, follows_time };
     let ClaimEntry { equals, at_least, at_most, between, .. } = claimed;
     match (equals, course, at_least, at_most, between) {
         (Some(formula), None, None, None, None) => {

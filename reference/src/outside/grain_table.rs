@@ -20,6 +20,7 @@ pub(super) fn observe(
     stepping: &Stepping,
 ) -> Result<DumpRecord, ReadError> {
     let table = read_table(path)?;
+    refuse_other_spins(&table, name, names)?;
     let time_step = stepping.time_step;
     let steps = steps(&table, name, names, time_step)?;
     let recorder = Recorder::new(scene, time_step, stepping.steps);
@@ -43,6 +44,21 @@ pub(super) fn observe(
         (row, last) = (row + rows, Some(step));
     }
     Ok(observer.finish())
+}
+
+/// Refuses columns that have usual names of spins, if the columns of spins are absent. Otherwise the spins would count as
+/// not written.
+fn refuse_other_spins(table: &Table, name: &str, names: &Names) -> Result<(), ReadError> {
+    for axis in ["x", "y", "z"] {
+        let right = format!("omega{axis}");
+        let usual = ["w", "omega_", "w_", "spin", "spin_"].map(|start| format!("{start}{axis}"));
+        let found = usual.iter().find(|usual| table.column(usual).is_some());
+        if let (None, Some(found)) = (table.column(names.in_file(&right)), found) {
+            let expected = format!("the column `{right}`, or its name in `output.grains.map`");
+            return Err(ReadError::at(name, 1, expected, format!("`{found}`")));
+        }
+    }
+    Ok(())
 }
 
 /// Returns the step of every row, from a column `step` or from the times.
