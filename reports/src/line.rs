@@ -36,20 +36,22 @@ pub fn control_in_section(control: &Control) -> String {
 }
 
 fn tried(control: &Control) -> String {
-    let error = control.error.map_or_else(|| "by no finite number".to_owned(), |error| number::fraction(error.abs()));
+    let error = control
+        .error
+        .map_or_else(|| "no error value".to_owned(), |error| format!("off {}", number::fraction(error.abs())));
+    let how = control.how.word();
     let end = match control.error {
-        _ if control.turned_red => "turned red, as it must",
-        Some(error) if error.abs() <= control.allowed => "stayed green, but must turn red",
-        _ => "not red as it must be",
+        _ if control.turned_red => format!("failed by {how}, as required"),
+        Some(error) if error.abs() <= control.allowed => format!("passed, but must fail by {how}"),
+        _ => format!("failed, but not by {how} as required"),
     };
     let detail = control.detail.as_ref().map_or_else(String::new, |detail| format!("; {detail}"));
     format!(
-        "{} · {}: fed with {}, off {error}, allowed {}, to be red by {}: {end}{detail}",
+        "{} · {}: with {}, {error}, allowed {}: {end}{detail}",
         control.solver,
         control.quantity,
         control.wrong_physics,
         number::fraction(control.allowed),
-        control.how.word(),
     )
 }
 
@@ -105,7 +107,7 @@ fn within_case(verdict: &Verdict) -> String {
                 line.push_str(&format!(" {scale}"));
             }
         } else {
-            line.push_str(", off by no finite number");
+            line.push_str(", no finite error");
         }
         line.push_str(&format!(", allowed {}", number::fraction(verdict.allowed)));
     }

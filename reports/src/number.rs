@@ -21,14 +21,14 @@ pub fn with_unit(number: f64, unit: &str) -> String {
     append_unit(value(number), unit)
 }
 
-/// Returns an error or a tolerance with two significant digits. A magnitude from 9.95e-4 to 10 is written in percent; from
-/// 100 % on, all digits before the decimal point are kept.
+/// Returns an error or a tolerance with two significant digits. A magnitude from 9.95e-4 to 100 is written in percent;
+/// from 100 % on, all digits before the decimal point are kept.
 #[must_use]
 pub fn fraction(size: f64) -> String {
     let magnitude = size.abs();
     if magnitude == 0.0 {
         "0".to_owned()
-    } else if (9.95e-4..10.0).contains(&magnitude) {
+    } else if (9.95e-4..100.0).contains(&magnitude) {
         format!("{}{THIN}%", significant(100.0 * size, 2))
     } else {
         fixed(size, 2)

@@ -69,7 +69,10 @@ fn row(section: &Section) -> [String; 6] {
         || "—".to_owned(),
         |verdict| {
             let used = headline::used_tolerance(verdict);
-            format!("{} {}", number::significant(used, 2), verdict.quantity)
+            // A result outside its tolerance does not read as 1.
+            let shown =
+                if (1.0..1.05).contains(&used) && used > 1.0 { "> 1".to_owned() } else { number::significant(used, 2) };
+            format!("{shown} {}", verdict.quantity)
         },
     );
     [
