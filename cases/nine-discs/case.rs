@@ -69,7 +69,7 @@ fn claims() -> Vec<Claim> {
     .concat()
 }
 
-/// Returns a statement of the paper as source.
+/// Returns the source for a printed statement.
 fn printed(what: &'static str) -> Source {
     Source::Printed(&cundall_strack_1979::WORK, what)
 }

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOrigin {
-    /// The formula in the reason of the tolerance.
+    /// A formula, given in the tolerance's reason.
     Computed,
     /// Results at three resolution levels: observed order and factor of safety, stored with provenance.
     Estimated,

@@ -167,8 +167,8 @@ impl<'s> DumpObserver<'s> {
         }
         let order = self.order(file, snapshot, &columns)?;
         if self.known.pairs && !self.pairs.has(snapshot.step) {
-            let expected = format!("the contacts of step {} in a dump of contacts", snapshot.step);
-            return Err(ReadError::at(file, snapshot.first_line, expected, "grains alone"));
+            let expected = format!("a dump with the contacts of step {}", snapshot.step);
+            return Err(ReadError::at(file, snapshot.first_line, expected, "only grains"));
         }
         if flat {
             self.check_plane(file, snapshot, &columns, &order, digits)?;

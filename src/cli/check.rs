@@ -222,7 +222,7 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
 /// Returns the error message for a folder without output. It also states if the scene is unknown.
 fn without_output(scene: &str) -> String {
     let unknown = match Variant::read(scene) {
-        Err(Fault::Unknown(message, _)) => format!("; {}", message.trim_end_matches("; there are:")),
+        Err(Fault::Unknown(message, _)) => format!("; {}", message.trim_end_matches("; choices:")),
         Err(fault) => format!("; {fault}"),
         Ok(_) => String::new(),
     };

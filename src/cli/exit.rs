@@ -56,7 +56,7 @@ impl Fault {
         names.retain(|name| seen.insert(*name));
         let help = did_you_mean(word, known).map(|help| format!(" ({help})")).unwrap_or_default();
         if names.len() > MOST_ON_A_LINE {
-            let message = format!("expected {what}, found `{word}`{help}; there are:");
+            let message = format!("expected {what}, found `{word}`{help}; choices:");
             return Self::Unknown(message, names.into_iter().map(str::to_owned).collect());
         }
         Self::Input(format!("expected {what}, one of {}; found `{word}`{help}", names.join(", ")))

@@ -31,8 +31,7 @@ const EVERY: Duration = Duration::from_secs(5);
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Assemblies of grains with a known stability limit, and hard cases, by name or by the beginning of the name. Default:
-    /// all.
+    /// Names, or beginnings of names, of hard cases and of assemblies with a known stability limit. Default: all.
     #[arg(value_name = "CASE")]
     pub(crate) cases: Vec<String>,
     /// Test only this solver, by name or manifest. Repeatable.

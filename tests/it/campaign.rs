@@ -82,7 +82,7 @@ fn without_times(mut value: Value) -> Value {
     value
 }
 
-/// The report of a plan equals the report of its command in results, controls, figures, counts of runs, points and limits.
+/// The report of a plan equals the report of its command without `--plan`, except for times and provenance.
 #[test]
 fn a_collected_plan_is_the_report_of_its_command() {
     let directory = tempfile::tempdir().unwrap();

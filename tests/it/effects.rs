@@ -1,4 +1,4 @@
-//! An effect that a scene does not need is not simulated. If it is compiled in with neutral values, the result does not change.
+//! An effect that a scene does not need is not simulated. Simulating it with neutral values does not change the result.
 
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;

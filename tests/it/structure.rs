@@ -21,7 +21,7 @@ const BUDGETS: [(&str, usize, usize); 15] = [
     ("studies", 4_290, 0),
     ("campaign", 3_215, 0),
     ("src", 9_540, 0),
-    ("tests", 10_610, 0),
+    ("tests", 10_615, 0),
 ];
 
 fn root() -> &'static Path {

@@ -147,7 +147,7 @@ impl EvaluatedQuantity {
             return Err(Fault::expected(place("value"), expected, format!("`{name}`{}", help.unwrap_or_default())));
         }
         if !own.value.names().into_iter().any(|name| numbers.is_of_record(name)) {
-            let found = "no column, so the value would be the same in each run";
+            let found = "no column, so no result of a run affects the value";
             return Err(Fault::expected(place("value"), "a column of the record", found));
         }
         let constant = own.scale.as_ref().filter(|scale| scale.names().is_empty());

@@ -124,7 +124,7 @@ fn expecting(
         return Err(wrong("value", format!("one of the columns of the record, {columns}"), quoted(unknown)));
     }
     if !value.names().iter().any(|name| numbers.is_of_record(name)) {
-        return Err(wrong("value", "a column of the record", "no column, so the value would be the same in each run"));
+        return Err(wrong("value", "a column of the record", "no column, so no result of a run affects the value"));
     }
     let source = source(claimed)?;
     let scale = claimed.scale.as_ref().map(|scale| constant("scale", scale, numbers)).transpose()?;

@@ -96,7 +96,7 @@ static INTERRUPT: OnceLock<Arc<AtomicBool>> = OnceLock::new();
 /// True if a program was ended because of the flag.
 static HAS_ENDED: AtomicBool = AtomicBool::new(false);
 
-/// Sets the flag that ends running programs. Only the first call in a process has an effect.
+/// Registers the flag that ends running programs. Only the first call in a process counts.
 pub fn end_programs_at(interrupt: Arc<AtomicBool>) {
     let _ = INTERRUPT.set(interrupt);
 }

@@ -10,6 +10,7 @@ use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
 use grainbench_scene::solver::Resolution;
 use schemars::JsonSchema;
+use schemars::generate::SchemaSettings;
 use serde::Serialize;
 use std::f64::consts::PI;
 use std::io;
@@ -336,7 +337,8 @@ impl Resolved {
 /// Returns the JSON schema of resolved scenes.
 #[must_use]
 pub fn schema() -> schemars::Schema {
-    schemars::schema_for!(Resolved)
+    // A field that is left out if it is empty is required only in a schema of files to be read.
+    SchemaSettings::default().for_serialize().into_generator().into_root_schema_for::<Resolved>()
 }
 
 /// Returns the contact laws of all pairs of materials, each pair once.

@@ -47,7 +47,7 @@ pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     lines.next_line()?;
     let mut start = Start::default();
     for row in 0..count {
-        let expected = || format!("a type, 0 or 1, and three coordinates of {count} grains");
+        let expected = || format!("type (0 or 1), x, y and z, for grain {} of {count}", row + 1);
         let place = row as u64 + 3;
         let line = lines.next_line()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
         let mut fields = line.text.split_whitespace();

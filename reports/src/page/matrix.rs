@@ -196,9 +196,9 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
             (super::scrolling("Cases by solvers", &table))
             p.key {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 × tolerance" }
-                span { i.k0 {} i.k1 {} i.k2 {} "known error of a published method: ≤ 10, ≤ 1000, > 1000 × tolerance" }
+                span { i.k0 {} i.k1 {} i.k2 {} "known error: ≤ 10, ≤ 1000, > 1000 × tolerance" }
                 span { i.f0 {} "fails" } span { i.old {} "stored result from older solver code" }
-                span { i.cannot {} "unsupported, no reference, or data not available" }
+                span { i.cannot {} "unsupported, no reference, or not available" }
                 span { i.c2.part {} "stripe: further results are amber" }
             }
             @let named: Vec<_> = columns.iter().filter_map(|name| Some((name, meaning(name)?))).collect();

@@ -59,7 +59,7 @@ fn over_cases(costs: &Costs) -> Graph {
         .zip(&costs.lines)
         .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
         .collect();
-    Graph { x: Axis::log("time over the cheapest solver's at 1 %"), y: Axis::log("|error| / scale"), curves }
+    Graph { x: Axis::log("time / least time for 1 % error"), y: Axis::log("|error| / scale"), curves }
 }
 
 /// Returns the figure of error against time over all cases as SVG.
@@ -132,5 +132,5 @@ fn over_dem(costs: &Costs) -> Markup {
             Some(format!("at {} × {} ({count} quantities)", number::fraction(target), number::significant(times, 2)))
         })
         .collect();
-    html! { @if !parts.is_empty() { p { b { "mpm over dem" } ", for errors that both reach: " (parts.join(", ")) "." } } }
+    html! { @if !parts.is_empty() { p { b { "mpm / dem" } ", time at an equal error: " (parts.join(", ")) "." } } }
 }

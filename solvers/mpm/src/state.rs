@@ -100,8 +100,8 @@ impl<S: Space> State<S> {
         team.each(shares.iter_mut(), |_, share| share.find_runs::<B>(lattice, bodies, points));
     }
 
-    /// Iterates over the bodies whose windows contain any of these nodes, with their batches and the number of the
-    /// partition. The batches of a body are in order.
+    /// Iterates over the partitions, and in each over the bodies whose windows contain any of these nodes. Yields partition
+    /// number, body and batches in order.
     pub(crate) fn reaching(&self, nodes: &Range<usize>) -> impl Iterator<Item = (usize, &Body, &[ParticleBatch])> {
         let Self { bodies, shares, .. } = self;
         let all = shares.iter().enumerate();

@@ -14,7 +14,7 @@ fn collision(gap: f64, friction: f64, offset: f64) -> String {
     impact(gap, friction, offset, SPEED, 5.0)
 }
 
-/// Returns two equal spheres that approach at a speed (m/s) each, for a time `rest` (s) after first contact.
+/// Returns two equal spheres that approach at `speed` (m/s) each. The run lasts gap/(2 speed) + `rest` (s).
 fn impact(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
     let duration = 0.5 * gap / speed + rest;

@@ -102,8 +102,8 @@ impl World {
     }
 }
 
-/// Returns the integration parameters: rapier's defaults, except for values that depend on units, limit velocities, or
-/// are given by `stepping`.
+/// Returns rapier's defaults with the values of `stepping`, Coulomb friction, no speed limit and no continuous collision
+/// detection.
 fn parameters(stepping: &Stepping) -> IntegrationParameters {
     let settings = &stepping.settings;
     let softness =

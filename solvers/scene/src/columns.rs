@@ -27,7 +27,7 @@ pub enum Chosen {
 pub struct Columns {
     /// Columns in addition to id, material, radius, mass, position and velocity.
     pub chosen: Vec<Chosen>,
-    /// Significant digits of the numbers of grains and contacts; all digits if absent. Radius and mass keep all digits.
+    /// Significant digits of grain and contact data; all digits if absent. Radius and mass keep all digits.
     pub digits: Option<u8>,
     /// Steps between the samples of a time average.
     pub mean_every: u64,

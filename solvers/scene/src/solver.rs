@@ -280,7 +280,7 @@ pub enum Cause {
     Stiffened {
         /// Present time in which the fastest wave crosses a cell (s).
         crossing: f64,
-        /// Initial time in which the fastest wave crosses a cell (s).
+        /// Fastest wave's time across a cell at the start (s).
         at_start: f64,
     },
     /// A closed system gained energy without a source.

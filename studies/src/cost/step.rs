@@ -228,7 +228,7 @@ fn lattice(dimension: usize, spacing: f64) -> Result<Scene, SceneError> {
     )
 }
 
-/// Returns a vibrating square block. Its duration is one step.
+/// Returns a scene of one step with a vibrating square block.
 fn block() -> Result<Scene, SceneError> {
     // The wave speed is 11.6 m/s. In one step a wave crosses 0.35 of a cell of 1/60 m.
     scene(

@@ -27,7 +27,7 @@ pub(crate) struct Pair<'a, S: Geometry, X: Number> {
     pub(crate) velocity: S::Vectors<X>,
     /// Sum of the inverse masses, 1/m₁ + 1/m₂ (1/kg).
     pub(crate) inverse_mass: X,
-    /// Inverse masses 1/m of both grains (1/kg); only set for rolling resistance.
+    /// Inverse masses 1/m of both grains (1/kg), for rolling resistance only.
     pub(crate) inverse_masses: [X; 2],
     /// Angular velocities ω of both grains (rad/s); `None` if grains do not rotate.
     pub(crate) spins: Option<[S::Spins<X>; 2]>,
