@@ -177,7 +177,8 @@ fn a_scene_is_printed_as_programs_are_given_it() {
     let other: Value = serde_json::from_str(&print(&["--set", "contacts.plane.friction=0.25"])).unwrap();
     assert_eq!(other["laws"][0]["friction"], 0.25);
     // The printed scene has every key that the schema of resolved scenes requires.
-    let schema: Value = serde_json::from_str(&grainbench(directory.path(), &["scene", "--schema=resolved"]).out).unwrap();
+    let schema: Value =
+        serde_json::from_str(&grainbench(directory.path(), &["scene", "--schema=resolved"]).out).unwrap();
     let required = schema["required"].as_array().unwrap();
     assert!(required.len() > 5 && required.iter().all(|key| json.get(key.as_str().unwrap()).is_some()), "{schema}");
 }
