@@ -213,11 +213,12 @@ fn a_study_is_drawn_again_from_its_directory() {
 #[test]
 fn an_absent_effect_is_inert() {
     let folder = tempfile::tempdir().unwrap();
-    let answer =
-        grainbench(folder.path(), &["effects", "collision/gamma-zeta.1", "backspin/disc", "--out", "out", "--json"]);
+    // The chain has Hertz contacts without friction, and the segments are joined walls.
+    let scenes = ["collision/gamma-zeta.1", "backspin/disc", "hertz-chain/plain", "wall-ends/segments"];
+    let answer = grainbench(folder.path(), &[&["effects"], &scenes[..], &["--out", "out", "--json"]].concat());
     assert_eq!(answer.code, Some(0), "{}", answer.out);
     let results: Value = serde_json::from_str(&answer.out).unwrap();
     let worth =
         |name: &str| results["effects"].as_array().unwrap().iter().filter(|entry| entry["worth"] == name).count();
-    assert!(worth("inert") >= 5 && worth("not-inert") == 0 && worth("needed") >= 3, "{}", answer.out);
+    assert!(worth("inert") >= 18 && worth("not-inert") == 0 && worth("needed") >= 3, "{}", answer.out);
 }

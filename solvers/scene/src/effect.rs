@@ -260,16 +260,16 @@ impl Effect {
                 scene.gravity[0] = SMALLEST;
                 true
             }
-            Self::MovingWalls => match scene.walls.first_mut() {
-                Some(wall) => {
-                    // The motion begins long after the end of the run.
-                    let velocity = Vector3::new(1.0, 0.0, 0.0);
-                    let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
+            Self::MovingWalls => {
+                // The motion begins long after the end of the run. All walls have it, because walls that move differently
+                // have no joint.
+                let velocity = Vector3::new(1.0, 0.0, 0.0);
+                let (start, stop) = (Moment::Seconds(f64::MAX), Moment::Never);
+                for wall in &mut scene.walls {
                     wall.motion.phases.push(Phase { velocity, spin: Vector3::zeros(), start, stop });
-                    true
                 }
-                None => false,
-            },
+                !scene.walls.is_empty()
+            }
             // The yield stress is so high that it is never reached.
             Self::Plasticity => {
                 let idle = |material: &mut Deformable| {

@@ -56,8 +56,9 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         } else {
             MidStepNormal::end(normal, distance)
         };
-        // One division serves both the effective radius and the ratio of stiffnesses.
-        let inverse = if changes { distance.like(1.0) / (self.reach * overlap) } else { zero };
+        // One division serves both the effective radius and the ratio of stiffnesses. Contacts without friction use the
+        // same operations, so that friction in another contact changes no bit of them.
+        let inverse = if N::CURVED { distance.like(1.0) / (self.reach * overlap) } else { zero };
         let touch = ContactInput {
             law: self.law,
             between,
@@ -73,8 +74,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             },
             velocity,
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
-            // The operations are the same for recorded and other contacts, so that recording does not change results.
-            effective_radius: match (changes && T::TURNED, N::CURVED || R::ACTIVE) {
+            effective_radius: match (N::CURVED, R::ACTIVE) {
                 (true, _) => first * second * (inverse * overlap),
                 (false, true) => first * second / self.reach,
                 (false, false) => zero,
