@@ -214,7 +214,8 @@ fn noise_gives_the_rate_of_shear_that_it_must() {
             square += element.shear_rate().unwrap().powi(2);
             residual += motion.residual.unwrap().powi(2);
         }
-        // The rms of 4000 samples with five degrees of freedom has an error of 1.1 %.
+        // The mean square of 4000 samples with five degrees of freedom has a standard error of √(2/(5 · 4000)) = 1 %, and
+        // the rms half of it. The degrees of freedom have different variances, so the error is somewhat larger.
         close((square / f64::from(TIMES)).sqrt(), exact, 0.03);
         close((residual / f64::from(TIMES)).sqrt(), (3.0 * (count - 4.0) / count).sqrt(), 0.005);
     }

@@ -117,7 +117,8 @@ impl Assembly {
 /// When a scene cannot be read, which occurs only if the scene format has changed.
 pub fn all() -> Result<Vec<Assembly>, SceneError> {
     let mut all = Vec::new();
-    for kappa in [0.0, 0.1, 0.2, 2.0 / 7.0, 0.5, 2.0 / 3.0, 1.0, 1.5, 2.0] {
+    // The limits of discs on a wall and in the lattice have a kink at κ = 1/3.
+    for kappa in [0.0, 0.1, 0.2, 2.0 / 7.0, 1.0 / 3.0, 0.5, 2.0 / 3.0, 1.0, 1.5, 2.0] {
         all.push(on_a_wall(kappa)?);
         all.push(lattice(kappa)?);
     }
