@@ -12,11 +12,11 @@ pub mod verify;
 
 pub use own::{Judgement, conform, judge};
 
-pub use grainbench_campaign as campaign;
 pub use grainbench_cases as cases;
 pub use grainbench_dem as dem;
 pub use grainbench_fields as fields;
 pub use grainbench_harness as harness;
+pub use grainbench_jobs as jobs;
 pub use grainbench_lanes as lanes;
 pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;

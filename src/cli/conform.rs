@@ -1,7 +1,7 @@
 //! `grainbench conform`: tests the conformance properties that every solver must satisfy.
 
-use super::cache;
-use super::cores::{at_once, share};
+use super::claims::tasks::ClaimTasks;
+use super::cores::at_once;
 use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish, says_nothing};
@@ -10,11 +10,12 @@ use grainbench::cases::solvers;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{Control, Verdict};
 use grainbench::harness::{case::Physics, conformance};
+use grainbench::jobs::execute::in_memory;
 use grainbench::reports::{Report, Section};
 use grainbench::scene::solver::Solver;
 use grainbench::scene::terms::Terms;
 use std::path::PathBuf;
-use std::sync::{Arc, OnceLock};
+use std::sync::Arc;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -43,17 +44,11 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
         let expected = "the path of a manifest (`SOLVER.toml`) or a built-in solver";
         return Err(Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str)));
     }
-    let judged: Vec<_> = owing.iter().map(|_| OnceLock::new()).collect();
-    let kept = cache::solvers(None);
-    let do_task = |place: usize| {
-        judged[place].get_or_init(|| judge(&owing[place], &kept));
-    };
-    share(owing.len(), at_once(1), || true, do_task);
-    let (verdicts, controls): (Vec<_>, Vec<_>) = judged.into_iter().filter_map(OnceLock::into_inner).unzip();
-    let section = section_of(verdicts.concat(), controls.concat());
+    let tasks = ClaimTasks::with(Vec::new(), owing);
+    let results = in_memory(&tasks, &tasks.order(), at_once(1), &(), &|_| {});
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());
-    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
+    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), tasks.sections(results));
     let is_mute = says_nothing(&report);
     add_reasons(&mut report, is_mute, arguments.strict);
     publish(&report, &Output::new(&arguments.out, arguments.json, arguments.strict))

@@ -1,6 +1,5 @@
-//! Number of cores, and parallel work.
+//! Number of cores.
 
-pub(crate) use grainbench::campaign::share::share;
 use std::num::NonZeroUsize;
 
 /// Largest accepted number of threads of a run.

@@ -1,26 +1,16 @@
 //! `grainbench cost`: measures error against computing time.
 
-use super::campaign::arguments::{self, PlanOptions};
-use super::exit::{Fault, Outcome, check_writable};
-use super::keep::keep_study;
-use super::progress::Progress;
-use super::provenance::provenance;
-use super::publish::{Output, publish_study};
-use super::strangers::NamedSolvers;
+use super::exit::{Fault, Outcome};
+use super::jobs::arguments::{Arguments as Planned, PlanOptions};
+use super::jobs::here::{Options, plan_or_perform};
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
-use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::TargetQuantity;
 use grainbench::reports::study::point::Point;
-use grainbench::reports::study::{Study, cost as drawn, points_of, write_study};
-use grainbench::studies::ProgressObserver;
+use grainbench::reports::study::{Study, cost as drawn};
 use grainbench::studies::cost::against::{compare, shared};
-use grainbench::studies::cost::run::{Meter, PointSelection};
-use grainbench::studies::cost::{load, step};
-use grainbench::studies::result_cache::ResultCache;
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
-use std::time::Instant;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -59,68 +49,22 @@ pub(crate) struct Arguments {
     plan: PlanOptions,
 }
 
-impl Arguments {
-    /// Returns the arguments of the plan; none without `--plan`.
-    pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
-        let planned = self.plan.arguments("cost", &self.cases, &self.solver)?;
-        let levels = if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() };
-        let &Self { prices, counts, json, .. } = self;
-        Some(arguments::Arguments { levels, prices, counts, json, ..planned })
-    }
-}
-
-/// Number of rounds in which the cost of a step is measured.
-pub(crate) const ROUNDS: u32 = 5;
-
-/// Measures the points and writes the report, which is updated after each target quantity.
+/// Measures the points and writes the report, or writes a plan.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
-    let subjects = subjects(&arguments.cases)?;
-    let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
-    let old = arguments.against.as_deref().map(points_of).transpose().map_err(Fault::input)?;
-    check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("points"), arguments.no_cache).map_err(Fault::writing)?;
-    let wanted = PointSelection { solvers: named, all: arguments.levels == "all", counts: false };
-    let meter = Meter::new(&cache, wanted, &solvers);
-    let pieces: usize = subjects.iter().map(|subject| meter.count(subject)).sum();
-    if pieces == 0 {
-        return Err(Fault::input("expected at least one point, found none for the selected cases and solvers"));
-    }
-    let start = Instant::now();
-    let prices = arguments.prices || arguments.cases.is_empty();
-    let beside = if prices { step::pieces(ROUNDS) + load::laps(ROUNDS) } else { 0 };
-    let mut follower = Follower::new(pieces as u64 + beside, "points");
-    let mut study = Study::new(provenance(words(arguments), 0.0));
-    if prices {
-        study.model = Some(step::measure(&Registry, ROUNDS, &mut follower).map_err(Fault::input)?);
-        study.loads = load::measure(&Registry, ROUNDS, &mut follower)?;
-    }
-    let mut asked = Vec::new();
-    for (at, subject) in subjects.iter().enumerate() {
-        let diagram = meter.diagram(subject, &mut follower).map_err(Fault::writing)?;
-        if diagram.points.is_empty() {
-            continue;
-        }
-        asked.extend(diagram.points.iter().map(|point| point.solver.clone()));
-        study.sources = sources(&asked);
-        study.diagrams.push(diagram);
-        let mut options = words(arguments);
-        if at + 1 < subjects.len() {
-            options.push(format!("unfinished: {} of {} quantities", at + 1, subjects.len()));
-            study.provenance = provenance(options, start.elapsed().as_secs_f64());
-            write_study(&arguments.out, &study).map_err(Fault::writing)?;
-        }
-    }
-    study.provenance = provenance(words(arguments), start.elapsed().as_secs_f64());
-    if let (Some(old), Some(path)) = (&old, &arguments.against) {
-        set_against(&mut study, old, path);
-    }
-    if arguments.update_stored {
-        keep_study("cost", &study)?;
-    }
-    let reused = follower.end();
-    let text = text(&study) + &format!("{reused} of {pieces} points are from an earlier measurement\n");
-    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
-    publish_study(&study, output, is_red(&study))
+    let &Arguments { prices, counts, json, no_cache, update_stored, .. } = arguments;
+    let planned = Planned {
+        what: "cost".to_owned(),
+        cases: arguments.cases.clone(),
+        solver: arguments.solver.clone(),
+        levels: if arguments.levels == "all" { vec![arguments.levels.clone()] } else { Vec::new() },
+        prices,
+        counts,
+        json,
+        out: arguments.out.clone(),
+        ..Planned::default()
+    };
+    let options = Options { no_cache, update_stored, against: arguments.against.as_deref() };
+    plan_or_perform(&arguments.plan, &planned, &options)
 }
 
 /// Returns true if a study measures no error, or if a value has become worse since an earlier study.
@@ -159,17 +103,6 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     Ok(found)
 }
 
-/// Returns the command, the cases and the options that differ from the default, in words.
-pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
-    let mut words = vec!["cost".to_owned()];
-    words.extend(arguments.cases.iter().cloned());
-    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
-    if arguments.levels != "default" {
-        words.push(format!("--levels {}", arguments.levels));
-    }
-    words
-}
-
 /// Returns hashes of the solvers' sources, by solver name.
 pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
@@ -197,42 +130,4 @@ pub(crate) fn text(study: &Study) -> String {
         }
     }
     text
-}
-
-/// Progress display of a study, which counts reused results.
-pub(crate) struct Follower {
-    progress: Option<Progress>,
-    reused: u64,
-}
-
-impl Follower {
-    pub(crate) fn new(pieces: u64, what: &str) -> Self {
-        Self { progress: Some(Progress::new(pieces, what)), reused: 0 }
-    }
-
-    /// Creates a progress display that prints nothing.
-    pub(crate) const fn none() -> Self {
-        Self { progress: None, reused: 0 }
-    }
-
-    /// Removes the progress bar, and returns the number of reused results.
-    pub(crate) fn end(&mut self) -> u64 {
-        self.progress = None;
-        self.reused
-    }
-}
-
-impl ProgressObserver for Follower {
-    fn now(&mut self, piece: &str) {
-        if let Some(progress) = &self.progress {
-            progress.now(piece);
-        }
-    }
-
-    fn done(&mut self, reused: bool) {
-        self.reused += u64::from(reused);
-        if let Some(progress) = &self.progress {
-            progress.advance();
-        }
-    }
 }

@@ -1,8 +1,9 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
-use super::cost::{Follower, sources};
 use super::exit::{Fault, Outcome, check_writable};
-use super::keep::keep_study;
+use super::jobs::arguments::{Arguments as Planned, PlanOptions};
+use super::jobs::here::{Options, plan_or_perform};
+use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
 use super::solver;
@@ -11,14 +12,12 @@ use super::subject::{self, Variant};
 use super::value::positive;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
+use grainbench::reports::study::Study;
 use grainbench::reports::study::effects::EffectResult;
-use grainbench::reports::study::{Study, write_study};
 use grainbench::scene::effect::Effect;
 use grainbench::scene::solver::{Method, Resolution};
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use grainbench::studies::effects::scene::StudyInput;
-use grainbench::studies::result_cache::ResultCache;
-use grainbench::studies::{ProgressObserver, identity};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 use std::time::Instant;
@@ -42,6 +41,8 @@ pub(crate) struct Arguments {
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
+    #[command(flatten)]
+    plan: PlanOptions,
 }
 
 /// Options for a scene file.
@@ -83,6 +84,9 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
         if arguments.cases.len() > 1 {
             return Err(Fault::input(format!("{scene}: expected no case in addition to a scene file")));
         }
+        if arguments.plan.is_given() {
+            return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
+        }
         return of_scene(scene, arguments);
     }
     if !arguments.yours.is_usual() {
@@ -91,38 +95,15 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             "--solver, --time-step, --time-step-fraction, --matters: expected a scene file with them, {found}"
         )));
     }
-    let mut ledgers = ledgers(&arguments.cases)?;
-    check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.no_cache).map_err(Fault::writing)?;
-    let program = identity::of_this_program();
-    let start = Instant::now();
-    let pieces: usize = ledgers.iter().map(|(_, pieces)| pieces.len()).sum();
-    let mut follower = Follower::new(pieces as u64, "effects");
-    let mut words = vec!["effects".to_owned()];
-    words.extend(arguments.cases.iter().cloned());
-    let mut study = Study::new(provenance(words.clone(), 0.0));
-    let count = ledgers.len();
-    for (at, (ledger, pieces)) in ledgers.iter_mut().enumerate() {
-        for piece in pieces.iter() {
-            follower.now(&format!("{} · {}", piece.variant, piece.effect.word()));
-            let (entry, reused) = ledger.entry(&program, piece, &cache).map_err(Fault::writing)?;
-            study.ledger.extend(entry);
-            follower.done(reused);
-        }
-        let mut options = words.clone();
-        if at + 1 < count {
-            options.push(format!("unfinished: {} of {count} cases", at + 1));
-        }
-        study.provenance = provenance(options, start.elapsed().as_secs_f64());
-        let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
-        study.sources = sources(&solvers.collect::<Vec<_>>());
-        write_study(&arguments.out, &study).map_err(Fault::writing)?;
-    }
-    if arguments.update_stored {
-        keep_study("effects", &study)?;
-    }
-    let reused = follower.end();
-    tell(&study, arguments, &format!("{reused} of {pieces} parts were finished before\n"))
+    let &Arguments { json, no_cache, update_stored, .. } = arguments;
+    let planned = Planned {
+        what: "effects".to_owned(),
+        cases: arguments.cases.clone(),
+        json,
+        out: arguments.out.clone(),
+        ..Planned::default()
+    };
+    plan_or_perform(&arguments.plan, &planned, &Options { no_cache, update_stored, against: None })
 }
 
 fn is_scene(name: &str) -> bool {
@@ -144,10 +125,10 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     };
     let effects: Vec<Effect> = Effect::switches().collect();
     let start = Instant::now();
-    let mut follower = Follower::new(effects.len() as u64 + 1, "effects");
-    follower.now("the unchanged scene");
+    let progress = Progress::new(effects.len() as u64 + 1, "effects");
+    progress.now("the unchanged scene");
     let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
-    follower.done(false);
+    progress.advance();
     if whole.record.series.columns.is_empty() {
         return Err(Fault::input(format!(
             "{name}: expected probes, because they show the influence of an effect, found none"
@@ -155,15 +136,17 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     }
     let mut study = Study::new(provenance(vec!["effects".to_owned(), name.to_owned()], 0.0));
     for effect in effects {
-        follower.now(effect.word());
+        progress.now(effect.word());
         study.ledger.extend(asked.entry(&whole, effect));
-        follower.done(false);
+        progress.advance();
     }
-    follower.end();
+    drop(progress);
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
     let chaotic = "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
                    time are compared, with the scatter of perturbed runs.\n";
-    tell(&study, arguments, if whole.perturbed.is_empty() { "" } else { chaotic })
+    let text = text(&study) + if whole.perturbed.is_empty() { "" } else { chaotic };
+    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
+    publish_study(&study, output, is_red(&study))
 }
 
 /// Returns true if an effect that is off changes a result when it is compiled in with a neutral value.
@@ -171,9 +154,8 @@ pub(crate) fn is_red(study: &Study) -> bool {
     study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
 }
 
-/// Writes and prints the results. The exit code is red if an absent effect changes a result when it is compiled in with
-/// a neutral value.
-fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
+/// Returns a study in words, with a line for each effect of each scene.
+pub(crate) fn text(study: &Study) -> String {
     let mut text = String::new();
     for entry in &study.ledger {
         let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
@@ -181,12 +163,11 @@ fn tell(study: &Study, arguments: &Arguments, end: &str) -> Outcome {
         let scene = scene.trim_end_matches('/');
         text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
     }
-    let output = Output { text: Some(text + end), ..Output::new(&arguments.out, arguments.json, false) };
-    publish_study(study, output, is_red(study))
+    text
 }
 
 /// Returns the study of each named case, with the effects to test.
-fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
+pub(crate) fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {

@@ -1,7 +1,6 @@
 //! Commands of the command line.
 
 mod cache;
-mod campaign;
 mod check;
 mod checkpoint;
 mod claims;
@@ -18,6 +17,7 @@ mod fields;
 mod filter;
 mod github;
 mod interrupt;
+mod jobs;
 mod keep;
 mod kept_runs;
 mod list;
@@ -83,16 +83,16 @@ enum Command {
     Effects(effects::Arguments),
     /// Old spelling of `--plan DIR`.
     #[command(hide = true)]
-    Plan(campaign::arguments::Arguments),
+    Plan(jobs::arguments::Arguments),
     /// Old spelling of `run --resume DIR`.
     #[command(hide = true)]
-    Work(campaign::work::Arguments),
+    Work(jobs::work::Arguments),
     /// Old spelling of `report DIR --progress`.
     #[command(hide = true)]
-    Status(campaign::status::Arguments),
+    Status(jobs::status::Arguments),
     /// Old spelling of `report DIR`.
     #[command(hide = true)]
-    Collect(campaign::collect::Arguments),
+    Collect(jobs::collect::Arguments),
     /// Compare throughput with LAMMPS and LIGGGHTS, in particle-steps per second of processor time.
     Race(race::Arguments),
     /// Make, verify and update stored runs of other programs and stored results.
@@ -146,14 +146,6 @@ fn grouped() -> clap::Command {
     command.help_template(template)
 }
 
-/// Writes a plan if `planned` is given; otherwise calls `work`.
-fn planned_or(planned: Option<campaign::arguments::Arguments>, work: impl FnOnce() -> exit::Outcome) -> exit::Outcome {
-    match planned {
-        Some(arguments) => campaign::plan::plan(&arguments),
-        None => work(),
-    }
-}
-
 /// Parses the command line, runs the command and returns its exit code.
 pub(crate) fn main() -> ExitCode {
     let matches = grouped().get_matches_from(spelling::present(std::env::args_os()));
@@ -169,24 +161,27 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fields(arguments) => fields::fields(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Cost(arguments) => planned_or(arguments.planned(), || cost::cost(&arguments)),
-        Command::Stability(arguments) => planned_or(arguments.planned(), || stability::stability(&arguments)),
+        Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Stability(arguments) => stability::stability(&arguments),
         Command::Effects(arguments) => effects::effects(&arguments),
         Command::Plan(arguments) => {
-            spelling::say_command("plan", "run|cost|stability … --plan DIR` or `simulate SWEEP.toml --plan DIR");
-            campaign::plan::plan(&arguments)
+            spelling::say_command(
+                "plan",
+                "run|cost|stability|effects … --plan DIR` or `simulate SWEEP.toml --plan DIR",
+            );
+            jobs::plan::plan(&arguments)
         }
         Command::Work(arguments) => {
             spelling::say_command("work", "run --resume DIR");
-            campaign::work::old(&arguments)
+            jobs::work::old(&arguments)
         }
         Command::Status(arguments) => {
             spelling::say_command("status", "report DIR --progress");
-            campaign::status::status(&arguments.plan, arguments.json)
+            jobs::status::status(&arguments.plan, arguments.json)
         }
         Command::Collect(arguments) => {
             spelling::say_command("collect", "report DIR");
-            campaign::collect::collect(&arguments.plan, &arguments.options)
+            jobs::collect::collect(&arguments.plan, &arguments.options)
         }
         Command::Race(arguments) => race::race(&arguments),
         Command::Reference(command) => reference::reference(&command),

@@ -151,7 +151,7 @@ impl ProgressObserver for Laps {
     fn now(&mut self, piece: &str) {
         self.0.now(piece);
     }
-    fn done(&mut self, _reused: bool) {
+    fn done(&mut self) {
         self.0.advance();
     }
 }

@@ -1,14 +1,14 @@
 //! `grainbench report`: writes a page from stored results.
 
-use super::campaign::collect::{CollectOptions, collect};
-use super::campaign::status::status;
 use super::cost;
 use super::effects;
 use super::exit::{Fault, Outcome, RED, print};
+use super::jobs::collect::{CollectOptions, collect};
+use super::jobs::status::status;
 use super::publish::exit_code;
 use super::stability;
 use super::value::{positive, whole};
-use grainbench::campaign::plan::Plan;
+use grainbench::jobs::plan::Plan;
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};

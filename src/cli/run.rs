@@ -1,33 +1,28 @@
 //! `grainbench run`: judges the claims of cases and writes the report.
 
 use super::cache;
-use super::campaign;
-use super::campaign::arguments::PlanOptions;
-use super::campaign::work::WorkOptions;
-use super::claims::tasks::{ClaimTasks, Desk, Part};
+use super::claims::tasks::{ClaimTasks, Part};
 use super::claims::{ClaimOptions, narrow, report, words};
-use super::cores::{at_once, share};
+use super::cores::at_once;
 use super::earlier::EarlierReport;
 use super::exit::{self, Fault, Outcome, RED, check_writable};
 use super::filter::Filters;
-use super::interrupt::Interrupt;
+use super::jobs;
+use super::jobs::arguments::PlanOptions;
+use super::jobs::watch::Follower;
+use super::jobs::work::WorkOptions;
 use super::keep::{self, keep};
-use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish, says_nothing};
 use super::select::{self, CaseSelection};
-use grainbench::campaign::finished::TaskResult;
-use grainbench::campaign::work::panic_words;
 use grainbench::harness::data::{Data, SceneDataError};
-use grainbench::reference::has_ended_programs;
+use grainbench::jobs::execute::in_memory;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::judged::ExternalResults;
-use grainbench::reports::{Report, Section, line};
-use grainbench::studies::run_cache::RunCache;
-use std::panic::{AssertUnwindSafe, catch_unwind};
+use grainbench::reports::{Report, line};
+use grainbench::store::results::TaskResult;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Arc, OnceLock};
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -55,20 +50,21 @@ pub(crate) struct Arguments {
 pub(crate) fn command(arguments: &Arguments) -> Outcome {
     let Arguments { cases, options, plan, resume, work } = arguments;
     if let Some(plan) = resume {
-        return campaign::work::work(plan, work, options.jobs, options.retry_failed);
+        return jobs::work::work(plan, work, options.jobs, options.retry_failed);
     }
     work.refuse_without_plan()?;
-    match plan.arguments("run", cases, &options.solver) {
-        Some(planned) => campaign::plan::plan(&campaign::arguments::Arguments {
-            levels: options.levels.clone(),
-            filter: options.filter.clone(),
-            no_controls: options.no_controls,
-            live: options.live,
-            json: options.json,
-            ..planned
-        }),
-        None => run(cases, options),
-    }
+    let planned = plan.planned(&jobs::arguments::Arguments {
+        what: "run".to_owned(),
+        cases: cases.clone(),
+        solver: options.solver.clone(),
+        levels: options.levels.clone(),
+        filter: options.filter.clone(),
+        no_controls: options.no_controls,
+        live: options.live,
+        json: options.json,
+        ..jobs::arguments::Arguments::default()
+    });
+    planned.map_or_else(|| run(cases, options), |planned| jobs::plan::plan(&planned))
 }
 
 /// Runs the named cases, or all cases if none is named.
@@ -86,7 +82,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     }
     check_writable(&options.out)?;
     let is_whole = cases.is_empty() && options.filter.is_empty() && !options.retry_failed;
-    let tasks = ClaimTasks::new(selected, options, is_whole)?;
+    let tasks = ClaimTasks::new(selected, options, is_whole)?.cached(cache::open(options.no_cache));
     let selected = &tasks.selected;
     let kept = if options.expect_stored { Some(keep::read(keep::program(selected)?)?) } else { None };
     if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.update_stored) {
@@ -94,17 +90,17 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     }
     let keeping = if options.update_stored { Some(keep::program(selected)?) } else { None };
     let start = Instant::now();
-    let interrupt = Interrupt::listen();
-    let cache = cache::open(options.no_cache);
-    let (sections, left) = perform(&tasks, options, cache.as_ref(), &interrupt);
+    let results = perform(&tasks, options);
+    let left = results.iter().filter(|result| matches!(result, TaskResult::Nothing)).count();
+    let sections = tasks.sections(results);
     let mut words = words(cases, options);
     if left > 0 {
-        let kept = if cache.is_some() { ", and the next run continues with the finished runs" } else { "" };
+        let kept = if tasks.cache().is_some() { ", and the next run continues with the finished runs" } else { "" };
         let what = format!("interrupted: {left} checks were omitted; the report contains the finished checks{kept}");
         exit::say("warning", &what);
         words.push(interrupted(left));
     }
-    if let Some(cache) = &cache {
+    if let Some(cache) = tasks.cache() {
         cache.make_room();
         words.extend(cache::words(cache));
     }
@@ -177,46 +173,14 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     Ok(())
 }
 
-/// Does all tasks in this process. Returns the sections of the finished tasks, and the number of tasks that were
-/// omitted because of an interrupt.
-fn perform(
-    tasks: &ClaimTasks,
-    options: &ClaimOptions,
-    cache: Option<&Arc<RunCache>>,
-    interrupt: &Interrupt,
-) -> (Vec<Section>, usize) {
-    let all = tasks.all();
-    let turns = tasks.turns();
-    let mut order: Vec<usize> = (0..all.len()).collect();
-    order.sort_by(|a, b| turns[*a].total_cmp(&turns[*b]));
-    let results: Vec<OnceLock<TaskResult<Part>>> = all.iter().map(|_| OnceLock::new()).collect();
-    let desk = Desk::new(tasks, cache);
-    let progress = Progress::new(all.len() as u64, "checks");
-    let do_task = |place: usize| {
-        let place = order[place];
-        progress.now(&tasks.name(all[place]));
-        // As in a plan, a panic affects only the result of its own task.
-        let result = match catch_unwind(AssertUnwindSafe(|| desk.perform(all[place]))) {
-            Ok((_, part)) => TaskResult::Out(part),
-            Err(reason) => TaskResult::Crash(panic_words(&*reason).to_owned()),
-        };
-        // An error may be due to the interrupt. It would count as a control that failed as required, so the result is dropped.
-        if has_ended_programs() {
-            return;
+/// Performs all tasks in this process. A task that was omitted because of an interrupt has no result.
+fn perform(tasks: &ClaimTasks, options: &ClaimOptions) -> Vec<TaskResult<Part>> {
+    let follower = Follower::new("checks");
+    let tell = |part: &Part| {
+        for row in part.section.verdicts.iter().filter(|_| options.verbose) {
+            follower.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
         }
-        if let (true, TaskResult::Out(part)) = (options.verbose, &result) {
-            for row in &part.section.verdicts {
-                progress.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
-            }
-        }
-        let _ = results[place].set(result);
-        progress.advance();
     };
     let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
-    share(all.len(), jobs, || !interrupt.is_asked(), do_task);
-    drop(progress);
-    let results: Vec<Option<TaskResult<Part>>> = results.into_iter().map(OnceLock::into_inner).collect();
-    let left = results.iter().filter(|result| result.is_none()).count();
-    let results = results.into_iter().map(|result| result.unwrap_or(TaskResult::Nothing));
-    (tasks.sections(all.into_iter().zip(results), desk.solvers()), left)
+    in_memory(tasks, &tasks.order(), jobs, &follower, &tell)
 }

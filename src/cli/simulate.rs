@@ -1,20 +1,20 @@
 //! `grainbench simulate`: simulates a scene with one solver and writes the record.
 
-use super::campaign;
-use super::campaign::collect::{CollectOptions, collect};
-use super::campaign::work::WorkOptions;
 use super::checkpoint::{self, Store};
 use super::cores::{MOST_THREADS, cores};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::interrupt::Interrupt;
+use super::jobs;
+use super::jobs::collect::{CollectOptions, collect};
+use super::jobs::work::WorkOptions;
 use super::progress::Progress;
 use super::solver;
 use super::step::Step;
 use super::value::{path_and_value, positive, whole};
-use grainbench::campaign::shard;
-use grainbench::campaign::sweep::Sweep;
 use grainbench::cases::registry::read_grains;
 use grainbench::dem::stability::stable_fraction;
+use grainbench::jobs::shard;
+use grainbench::jobs::sweep::Sweep;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{SnapshotStore, number};
 use grainbench::scene::brief::Brief;
@@ -282,18 +282,13 @@ fn sweep(arguments: &Arguments) -> Outcome {
     let out = arguments.plan.as_ref().unwrap_or(&arguments.out).clone();
     let what = arguments.scene.display().to_string();
     let &Arguments { shards, json, .. } = arguments;
-    let planned = campaign::arguments::Arguments {
-        what,
-        shards,
-        out: out.clone(),
-        json,
-        ..campaign::arguments::Arguments::default()
-    };
+    let planned =
+        jobs::arguments::Arguments { what, shards, out: out.clone(), json, ..jobs::arguments::Arguments::default() };
     if arguments.plan.is_some() {
-        return campaign::plan::plan(&planned);
+        return jobs::plan::plan(&planned);
     }
-    campaign::plan::write(&planned)?;
-    campaign::work::work(&out, &WorkOptions { quiet: json, ..WorkOptions::default() }, None, false)?;
+    jobs::plan::write(&planned)?;
+    jobs::work::work(&out, &WorkOptions { quiet: json, ..WorkOptions::default() }, None, false)?;
     collect(&out, &CollectOptions { json: arguments.json, ..CollectOptions::default() })
 }
 

@@ -1,33 +1,22 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
-use super::campaign::arguments::{self, PlanOptions};
-use super::cost::{Follower, sources};
-use super::exit::{Fault, Outcome, check_writable};
-use super::keep::keep_study;
-use super::provenance::provenance;
-use super::publish::{Output, publish_study};
-use super::strangers::NamedSolvers;
-use grainbench::cases::registry;
-use grainbench::harness::case::PLAIN;
-use grainbench::harness::solvers::Solvers;
+use super::cost::sources;
+use super::exit::{Fault, Outcome};
+use super::jobs::arguments::{Arguments as Planned, PlanOptions};
+use super::jobs::here::{Options, plan_or_perform};
 use grainbench::reports::number;
+use grainbench::reports::study::Study;
 use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
-use grainbench::reports::study::{Study, write_study};
-use grainbench::studies::result_cache::ResultCache;
-use grainbench::studies::stability::assembly::{self, Assembly};
-use grainbench::studies::stability::hard::{self, HardCase};
+use grainbench::studies::stability::assembly::Assembly;
+use grainbench::studies::stability::hard::HardCase;
 use grainbench::studies::stability::limit;
-use grainbench::studies::{ProgressObserver, identity};
 use std::collections::BTreeMap;
 use std::path::PathBuf;
-use std::time::{Duration, Instant};
 
 /// Case in which the stability limit of grid methods is measured.
-const BAR: &str = "vibrating-bar";
+pub(super) const BAR: &str = "vibrating-bar";
 /// Numbers of cells along the bar, from coarse to fine.
 const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
-/// Shortest time between two updates of the report.
-const EVERY: Duration = Duration::from_secs(5);
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -53,72 +42,31 @@ pub(crate) struct Arguments {
     plan: PlanOptions,
 }
 
-impl Arguments {
-    /// Returns the arguments of the plan; none without `--plan`.
-    pub(crate) fn planned(&self) -> Option<arguments::Arguments> {
-        let planned = self.plan.arguments("stability", &self.cases, &self.solver)?;
-        Some(arguments::Arguments { json: self.json, ..planned })
-    }
-}
-
-/// Work item of the study: a stability limit or a hard case, with its solver.
-pub(crate) enum WorkItem<'a> {
-    Assembly(&'a Assembly, &'a str),
+/// Work item of the study: a stability limit or a hard case, by its index, with its solver.
+pub(crate) enum WorkItem {
+    Assembly(usize, String),
     Bar(&'static str, f64),
-    Hard(&'a HardCase, &'a str),
+    Hard(usize, String),
 }
 
-/// Finds the stability limits, runs the hard cases and writes the report, which is updated at intervals of [`EVERY`].
+/// Finds the stability limits, runs the hard cases and writes the report, or writes a plan.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
-    let assemblies = assembly::all()?;
-    let hard = hard::all();
-    let (solvers, named) = NamedSolvers::read(&arguments.solver)?;
-    let strangers = solvers.names();
-    let pieces = select(&arguments.cases, [&named, &strangers], &assemblies, &hard)?;
-    check_writable(&arguments.out)?;
-    let cache = ResultCache::open(&arguments.out.join("pieces"), arguments.no_cache).map_err(Fault::writing)?;
-    let program = identity::of_this_program();
-    let start = Instant::now();
-    let mut written = start;
-    let mut follower = Follower::new(pieces.len() as u64, "limits and cases");
-    let words = words(arguments);
-    let mut study = Study::new(provenance(words.clone(), 0.0));
-    for (at, piece) in pieces.iter().enumerate() {
-        let reused = do_piece(piece, (&program, &solvers), &cache, &mut study, &mut follower)?;
-        follower.done(reused);
-        let last = at + 1 == pieces.len();
-        if last || written.elapsed() > EVERY {
-            let mut options = words.clone();
-            if !last {
-                options.push(format!("unfinished: {} of {} limits and cases", at + 1, pieces.len()));
-            }
-            study.provenance = provenance(options, start.elapsed().as_secs_f64());
-            study.sources = sources_of(&study);
-            write_study(&arguments.out, &study).map_err(Fault::writing)?;
-            written = Instant::now();
-        }
-    }
-    if arguments.update_stored {
-        keep_study("stability", &study)?;
-    }
-    let reused = follower.end();
-    let text = text(&study) + &format!("{reused} of {} were done before\n", pieces.len());
-    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
-    publish_study(&study, output, is_red(&study))
+    let &Arguments { json, no_cache, update_stored, .. } = arguments;
+    let planned = Planned {
+        what: "stability".to_owned(),
+        cases: arguments.cases.clone(),
+        solver: arguments.solver.clone(),
+        json,
+        out: arguments.out.clone(),
+        ..Planned::default()
+    };
+    plan_or_perform(&arguments.plan, &planned, &Options { no_cache, update_stored, against: None })
 }
 
 /// Returns true if no stability limit was found and no hard case was solved.
 fn measures_nothing(study: &Study) -> bool {
     let holds = |row: &HardCaseResult| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
     study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(holds)
-}
-
-/// Returns the command, the cases and the options that differ from the default, in words.
-pub(crate) fn words(arguments: &Arguments) -> Vec<String> {
-    let mut words = vec!["stability".to_owned()];
-    words.extend(arguments.cases.iter().cloned());
-    words.extend(arguments.solver.iter().map(|solver| format!("--solver {solver}")));
-    words
 }
 
 /// Returns the hashes of the sources of all solvers in the study, by solver name.
@@ -135,53 +83,14 @@ pub(crate) fn is_red(study: &Study) -> bool {
     measures_nothing(study) || study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver))
 }
 
-pub(crate) fn do_piece(
-    piece: &WorkItem<'_>,
-    (program, solvers): (&str, &NamedSolvers),
-    cache: &ResultCache,
-    study: &mut Study,
-    follower: &mut Follower,
-) -> Result<bool, Fault> {
-    match *piece {
-        WorkItem::Assembly(assembly, solver) => {
-            follower.now(&format!("{} · {solver}", assembly.name));
-            let asked = limit::of_assembly(
-                &(program.to_owned() + &solvers.edition(solver)),
-                assembly,
-                (solvers, solver),
-                cache,
-            );
-            let (limit, reused) = asked.map_err(Fault::writing)?;
-            study.limits.push(limit);
-            Ok(reused)
-        }
-        WorkItem::Bar(setting, cells) => {
-            follower.now(&format!("{BAR} · {setting}"));
-            let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
-            let scene = bar.variant(PLAIN)?;
-            let asked = limit::of_bar(program, &scene, (solvers, setting), cells, cache);
-            let (limit, reused) = asked.map_err(Fault::writing)?;
-            study.limits.push(limit);
-            Ok(reused)
-        }
-        WorkItem::Hard(case, solver) => {
-            follower.now(&format!("{} · {solver}", case.name));
-            let asked = hard::verdict(&(program.to_owned() + &solvers.edition(solver)), case, (solvers, solver), cache);
-            let (row, reused) = asked.map_err(Fault::writing)?;
-            study.hard.push(row);
-            Ok(reused)
-        }
-    }
-}
-
 /// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of
 /// the bar and of hard cases. `solvers` contains the selected names, and `strangers` the names of the external solvers.
-pub(crate) fn select<'a>(
+pub(crate) fn select(
     cases: &[String],
-    [solvers, strangers]: [&'a [String]; 2],
-    assemblies: &'a [Assembly],
-    hard: &'a [HardCase],
-) -> Result<Vec<WorkItem<'a>>, Fault> {
+    [solvers, strangers]: [&[String]; 2],
+    assemblies: &[Assembly],
+    hard: &[HardCase],
+) -> Result<Vec<WorkItem>, Fault> {
     let named = |name: &str| name.replace(' ', "-");
     let mut known: Vec<String> = assemblies.iter().map(|assembly| named(assembly.name)).collect();
     known.push(BAR.to_owned());
@@ -194,16 +103,16 @@ pub(crate) fn select<'a>(
     let solver = |name: &str| solvers.is_empty() || solvers.iter().any(|wanted| wanted == name);
     let theirs = || strangers.iter().map(String::as_str);
     let mut pieces = Vec::new();
-    for assembly in assemblies.iter().filter(|assembly| case(&named(assembly.name))) {
+    for (at, _) in assemblies.iter().enumerate().filter(|(_, assembly)| case(&named(assembly.name))) {
         let asked = limit::SPRINGS.into_iter().filter(|name| solver(name)).chain(theirs());
-        pieces.extend(asked.map(|name| WorkItem::Assembly(assembly, name)));
+        pieces.extend(asked.map(|name| WorkItem::Assembly(at, name.to_owned())));
     }
     for setting in limit::GRIDS.into_iter().filter(|name| case(BAR) && solver(name)) {
         pieces.extend(BAR_CELLS.map(|cells| WorkItem::Bar(setting, cells)));
     }
-    for hard in hard.iter().filter(|hard| case(&hard.name)) {
+    for (at, hard) in hard.iter().enumerate().filter(|(_, hard)| case(&hard.name)) {
         let asked = hard.asked.iter().copied().filter(|name| solver(name)).chain(theirs());
-        pieces.extend(asked.map(|name| WorkItem::Hard(hard, name)));
+        pieces.extend(asked.map(|name| WorkItem::Hard(at, name.to_owned())));
     }
     if pieces.is_empty() {
         return Err(Fault::input("expected at least one case for the selected solvers, found none"));

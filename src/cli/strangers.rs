@@ -2,7 +2,6 @@
 
 use super::exit::Fault;
 use super::solver;
-use grainbench::campaign::plan::hash_of_file;
 use grainbench::cases::solvers::{self, Registry};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
@@ -12,6 +11,7 @@ use grainbench::reference::outside::ExternalProgram;
 use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::solver::{Defect, RunError, Solver};
+use grainbench::store::key;
 use std::collections::BTreeMap;
 use std::env;
 use std::path::Path;
@@ -20,6 +20,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Solvers that a command line names.
+#[derive(Clone)]
 pub(crate) struct NamedSolvers {
     strangers: Vec<Arc<ExternalProgram>>,
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
@@ -31,8 +32,8 @@ pub(crate) struct NamedSolvers {
 
 impl NamedSolvers {
     /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with the solver's name instead
-    /// of each path.
-    pub(crate) fn read(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
+    /// of each path. If several processes share the work, an external solver is identified by the contents of its files.
+    pub(crate) fn read_for(names: &[String], is_shared: bool) -> Result<(Self, Vec<String>), Fault> {
         let (mut strangers, mut known) = (Vec::new(), Vec::new());
         for name in names {
             if solver::is_manifest(name) {
@@ -46,18 +47,13 @@ impl NamedSolvers {
         }
         let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
         let read = format!("{}-{}", now.as_nanos(), process::id());
-        Ok((Self { strangers, read, by_content: false }, known))
-    }
-
-    /// Reads the manifests for work that several processes share. An external solver is then identified by the contents
-    /// of its files.
-    pub(crate) fn read_by_content(names: &[String]) -> Result<(Self, Vec<String>), Fault> {
-        let (solvers, known) = Self::read(names)?;
-        // The identification must not differ between processes, so a file that cannot be read is an error.
-        for stranger in &solvers.strangers {
-            stranger.edition().map_err(Fault::input)?;
+        if is_shared {
+            // The identification must not differ between processes, so a file that cannot be read is an error.
+            for stranger in &strangers {
+                stranger.edition().map_err(Fault::input)?;
+            }
         }
-        Ok((Self { by_content: true, ..solvers }, known))
+        Ok((Self { strangers, read, by_content: is_shared }, known))
     }
 
     /// Returns the hashes of the files of the external solvers, by path. Paths below the current directory are relative.
@@ -66,7 +62,7 @@ impl NamedSolvers {
         // A folder that cannot be read causes an error when the solvers are read.
         let files = self.strangers.iter().flat_map(|stranger| stranger.files().unwrap_or_default());
         let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).display().to_string();
-        files.map(|path| (shown(&path), hash_of_file(&path))).collect()
+        files.map(|path| (shown(&path), key::of_file(&path))).collect()
     }
 
     /// Returns the names of the external solvers.

@@ -1,9 +1,12 @@
-//! Writing of files and directories completely or not at all, locks of directories, and removal of temporary files of
-//! ended processes.
+//! Keys and files of stored results, writing of files and directories completely or not at all, locks of directories, and
+//! removal of temporary files of ended processes.
 
+pub mod key;
 pub mod lock;
+pub mod log;
 pub mod machine;
 mod manifest;
+pub mod results;
 mod scratch;
 mod staged;
 mod write;

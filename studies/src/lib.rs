@@ -1,17 +1,14 @@
 //! Three studies: cost against accuracy ([`cost`]), stability ([`stability`]) and the influence of each effect
 //! ([`effects`]).
 //!
-//! Each study stores finished items in a [`result_cache`], so that an interrupted study can be continued. The
-//! throughput benchmark ([`race`]) compares solvers. It does not use the cache, because its timings are comparable only
-//! within one run.
+//! The items of a study are independent tasks, which a list of tasks executes and stores. The throughput benchmark
+//! ([`race`]) compares solvers. Its timings are comparable only within one run.
 
 pub mod clock;
 pub mod cost;
 pub mod effects;
-pub mod identity;
 pub mod kept;
 pub mod race;
-pub mod result_cache;
 pub mod run_cache;
 pub mod stability;
 
@@ -19,8 +16,8 @@ pub mod stability;
 pub trait ProgressObserver {
     /// Called when an item is started.
     fn now(&mut self, _piece: &str) {}
-    /// Called when an item is finished. `reused` is true for items from the result cache.
-    fn done(&mut self, _reused: bool) {}
+    /// Called when an item is finished.
+    fn done(&mut self) {}
 }
 
 /// Observer that ignores all progress.

@@ -196,7 +196,7 @@ pub fn heat(
                     Err(reason) => raced.absent = Some(reason.to_string()),
                 }
             }
-            follow.done(false);
+            follow.done();
         }
     }
     let rates: Vec<(String, Vec<f64>)> =

@@ -6,18 +6,17 @@
 //! another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints are
 //! requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
-use crate::identity;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::solvers::{ExternalSolver, Solvers, StoredResult};
 use grainbench_lanes::Processor;
-use grainbench_scene::checkpoint::Checkpoint;
+use grainbench_scene::checkpoint::{Checkpoint, fingerprint};
 use grainbench_scene::kept_record;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, Solver};
-use grainbench_store::{FolderWriter, WriteError, remove_leftovers};
+use grainbench_store::{FolderWriter, WriteError, key, remove_leftovers};
 use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -33,6 +32,19 @@ const ENDING: &str = "run";
 
 /// Function that returns the hash of the sources of a solver, or `None` for another program.
 pub type Edition = fn(&str) -> Option<String>;
+
+/// Returns the hash of a run from program, solver, scene, resolution and `read`, which describes the evaluated quantity or
+/// other conditions of the run.
+#[must_use]
+pub fn key_of_run(program: &str, solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> String {
+    key::of_words(program, &run_words(solver, scene, resolution, read).each_ref().map(String::as_str))
+}
+
+/// Returns the words that describe a run.
+#[must_use]
+pub fn run_words(solver: &str, scene: &Scene, resolution: &Resolution, read: &str) -> [String; 4] {
+    [solver.to_owned(), fingerprint(scene).to_hex().to_string(), format!("{resolution:?}"), read.to_owned()]
+}
 
 /// Folder of finished runs.
 pub struct RunCache {
@@ -76,7 +88,7 @@ impl RunCache {
     /// Returns the key of a run, or `None` for other programs, whose runs are not cached.
     fn name(&self, solver: &str, defect: Option<Defect>, scene: &Scene, resolution: &Resolution) -> Option<String> {
         let program = (self.edition)(solver)?;
-        Some(identity::of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
+        Some(key_of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
     }
 
     fn path(&self, name: &str) -> PathBuf {

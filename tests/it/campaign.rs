@@ -65,7 +65,9 @@ fn without_times(mut value: Value) -> Value {
     fn strip(value: &mut Value) {
         match value {
             Value::Object(map) => {
-                for key in ["provenance", "seconds", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"] {
+                for key in
+                    ["provenance", "seconds", "time", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"]
+                {
                     map.remove(key);
                 }
                 if let Some(Value::Array(repetitions)) = map.get("repetitions") {
@@ -91,6 +93,7 @@ fn a_collected_plan_is_the_report_of_its_command() {
         (&["run", "squash", "collision"][..], 3, "report.json"),
         (&["stability", "two-discs", "mass-ratio-1e6", "--solver=dem", "--solver=mpm"], 2, "study.json"),
         (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
+        (&["effects", "collision", "squash"], 2, "study.json"),
     ] {
         let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
         ok(&grainbench(here, &[command, &["--plan", "p"]].concat()));

@@ -202,7 +202,7 @@ fn chapters_show_their_files() {
 fn keys_of_files_are_in_the_guide() {
     for (source, chapter, least) in [
         ("cases/src/folder/claims_file.rs", "guide/src/case.md", 30),
-        ("campaign/src/sweep/file.rs", "guide/src/campaign.md", 30),
+        ("jobs/src/sweep/file.rs", "guide/src/campaign.md", 30),
         ("reference/src/outside/manifest.rs", "guide/src/judge.md", 20),
     ] {
         let [source, chapter] = [source, chapter].map(|path| fs::read_to_string(root(path)).unwrap());

@@ -19,7 +19,7 @@ const BUDGETS: [(&str, usize, usize); 15] = [
     ("fields", 3_220, 4),
     ("reports", 14_270, 16),
     ("studies", 4_290, 0),
-    ("campaign", 3_215, 0),
+    ("jobs", 3_215, 0),
     ("src", 9_540, 0),
     ("tests", 10_615, 0),
 ];

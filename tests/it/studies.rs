@@ -6,8 +6,8 @@ use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
 use grainbench::reports::study::stability::Hardness;
 use grainbench::scene::effect::Effect;
+use grainbench::store::log::Line;
 use grainbench::studies::effects::ledger::Ledger;
-use grainbench::studies::result_cache::ResultCache;
 use grainbench::studies::stability::assembly;
 use grainbench::studies::stability::hard;
 use grainbench::studies::stability::limit::of_assembly;
@@ -22,7 +22,7 @@ use std::time::Duration;
 #[test]
 fn exact_limits_are_found_to_half_a_hundredth() {
     for assembly in assembly::all().unwrap() {
-        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
+        let limit = of_assembly(&assembly, (&Registry, "dem"));
         let error = limit.error.unwrap_or_else(|| panic!("{}: {}", limit.scene, limit.detail));
         assert!(error.abs() < 0.005, "{} {:?}: {:?}, exact {}", limit.scene, limit.at, limit.found, assembly.exact);
     }
@@ -36,7 +36,7 @@ fn a_limit_of_other_springs_is_not_taken_for_the_exact_one() {
             law.scale_normal(1.05);
             law.scale_tangential(1.05);
         });
-        let (limit, _) = of_assembly("", &assembly, (&Registry, "dem"), &ResultCache::none()).unwrap();
+        let limit = of_assembly(&assembly, (&Registry, "dem"));
         assert!(limit.error.is_none_or(|error| error < -0.012), "{} {:?}: {:?}", limit.scene, limit.at, limit.error);
     }
 }
@@ -151,21 +151,48 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
         crate::common::files(&out)
     );
     let again = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
-    assert!(again.out.contains("24 of 24 points are from an earlier measurement"), "{}", again.out);
+    assert!(again.out.contains("24 of 24 tasks were finished before"), "{}", again.out);
 }
 
 /// Sets the times of all finished points: fixed times multiplied by a factor.
 fn retime(out: &Path, factor: f64) {
-    for entry in fs::read_dir(out.join("points")).unwrap() {
-        let path = entry.unwrap().path();
-        let mut point: Value = serde_json::from_str(&fs::read_to_string(&path).unwrap()).unwrap();
+    let retimed = |text: &str| {
+        let line = Line::read(text).unwrap();
+        let mut result: Value = serde_json::from_str(line.json).unwrap();
+        let point = &mut result["Point"];
         point["wall_seconds"] = 1e-3.into();
         for (at, timing) in point["repetitions"].as_array_mut().unwrap().iter_mut().enumerate() {
             timing["cpu"] = (factor * 1e-3 * (1.0 + 0.02 * at as f64)).into();
             timing["reference"] = 1e-3.into();
         }
-        fs::write(path, point.to_string()).unwrap();
+        Line { json: &result.to_string(), ..line }.written()
+    };
+    for entry in fs::read_dir(out.join("results")).unwrap() {
+        let path = entry.unwrap().path();
+        let text = fs::read_to_string(&path).unwrap();
+        let (head, lines) = text.split_once('\n').unwrap();
+        fs::write(path, format!("{head}\n{}", lines.lines().map(retimed).collect::<String>())).unwrap();
     }
+}
+
+/// Finished points of an earlier version are only a cache. They are not read, and a note names their folder.
+#[test]
+fn points_of_an_earlier_version_are_measured_again() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir_all(folder.path().join("out/points")).unwrap();
+    fs::write(folder.path().join("out/points/0.json"), "{}").unwrap();
+    let cost = |more: &[&str]| grainbench(folder.path(), &[&COST[..], &["--out", "out"], more].concat());
+    let answer = cost(&[]);
+    assert!(answer.code == Some(0) && answer.err.contains("note: out/points: finished parts"), "{}", answer.err);
+    assert!(answer.out.contains("0 of 24 tasks were finished before"), "{}", answer.out);
+    // With `--no-cache`, finished points are measured again.
+    assert!(cost(&["--no-cache"]).out.contains("0 of 24 tasks were finished before"));
+    assert!(cost(&[]).out.contains("24 of 24 tasks were finished before"));
+    assert!(folder.path().join("out/points/0.json").is_file());
+    // The directory of a plan keeps the results of the plan.
+    assert_eq!(grainbench(folder.path(), &[&COST[..], &["--plan", "plan"]].concat()).code, Some(0));
+    let refused = grainbench(folder.path(), &[&COST[..], &["--out", "plan"]].concat());
+    assert!(refused.code == Some(2) && refused.err.contains("expected a directory without a plan"), "{}", refused.err);
 }
 
 #[test]

@@ -77,7 +77,7 @@ fn crates_depend_in_one_direction() {
         ("store", &[]),
         ("reports", &["scene", "harness", "fields", "store"]),
         ("studies", &["lanes", "scene", "harness", "reports", "store"]),
-        ("campaign", &["scene", "harness", "cases", "reports", "studies", "store"]),
+        ("jobs", &["scene", "harness", "cases", "reports", "studies", "store"]),
         (
             ".",
             &[
@@ -93,7 +93,7 @@ fn crates_depend_in_one_direction() {
                 "reports",
                 "store",
                 "studies",
-                "campaign",
+                "jobs",
             ],
         ),
     ];

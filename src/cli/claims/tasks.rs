@@ -1,12 +1,9 @@
-//! Tasks of `run`: claims with their controls, figures of cases, and conformance properties. `run` does the tasks in
-//! one process, and a plan distributes them over several processes. Both make the report from the same results.
+//! Tasks of `run` and `conform`: claims with their controls, figures of cases, and conformance properties.
 
 use super::ClaimOptions;
 use crate::cli::conform::{self, ConformingSolver};
 use crate::cli::select::CaseSelection;
 use crate::cli::{cache, exit};
-use grainbench::campaign::finished::TaskResult;
-use grainbench::campaign::log::State;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::mistake;
@@ -14,16 +11,19 @@ use grainbench::harness::run::{FinishedRun, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{self, Control, Verdict};
+use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::{RunCost, Section};
 use grainbench::scene::solver::RunError;
+use grainbench::store::log::State;
+use grainbench::store::results::TaskResult;
 use grainbench::studies::run_cache::RunCache;
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, HashSet};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
-/// Claims of cases and conformance properties of solvers.
+/// Claims of cases and conformance properties of solvers. Tasks of the same case share finished runs.
 pub(crate) struct ClaimTasks {
     pub(crate) selected: Vec<CaseSelection>,
     /// Solvers whose conformance properties are tested.
@@ -36,6 +36,11 @@ pub(crate) struct ClaimTasks {
     pub(crate) thorough: bool,
     data: Option<PathBuf>,
     threads: usize,
+    /// All tasks in the order of the report.
+    all: Vec<ClaimTask>,
+    cache: Option<Arc<RunCache>>,
+    solvers: Arc<dyn Solvers>,
+    runners: Vec<OnceLock<Runner>>,
 }
 
 /// Task of a run. The numbers are indices of the case, of the claim within the case, and of the solver.
@@ -69,31 +74,58 @@ impl ClaimTasks {
     ) -> Result<Self, exit::Fault> {
         let thorough = options.levels.iter().any(|level| level == "all");
         let conforms = is_whole && (options.levels.is_empty() || thorough);
+        let conforming = if conforms { conform::owing(&options.solver)? } else { Vec::new() };
         Ok(Self {
-            selected,
-            conforming: if conforms { conform::owing(&options.solver)? } else { Vec::new() },
             controls: !options.no_controls,
             live: options.live,
             thorough,
             data: options.data.clone(),
             threads: usize::from(options.threads),
+            ..Self::with(selected, conforming)
         })
     }
 
-    /// Returns all tasks in the order of the report.
-    pub(crate) fn all(&self) -> Vec<ClaimTask> {
+    /// Returns the tasks of all claims of the selected cases and of the conformance of solvers, with default options.
+    pub(crate) fn with(selected: Vec<CaseSelection>, conforming: Vec<ConformingSolver>) -> Self {
         let of_case = |(case, selected): (usize, &CaseSelection)| {
             let claims = (0..selected.claims.len()).map(move |claim| ClaimTask::Claim(case, claim));
             claims.chain([ClaimTask::Figures(case)])
         };
-        let of_cases = self.selected.iter().enumerate().flat_map(of_case);
-        of_cases.chain((0..self.conforming.len()).map(ClaimTask::Conformance)).collect()
+        let of_cases = selected.iter().enumerate().flat_map(of_case);
+        Self {
+            all: of_cases.chain((0..conforming.len()).map(ClaimTask::Conformance)).collect(),
+            runners: selected.iter().map(|_| OnceLock::new()).collect(),
+            selected,
+            conforming,
+            controls: true,
+            live: false,
+            thorough: false,
+            data: None,
+            threads: 1,
+            cache: None,
+            solvers: cache::solvers(None),
+        }
     }
 
-    /// Returns for each task a key by which `run` sorts the tasks. Claims that need a new run come first, and claims
+    /// Sets the cache of finished runs.
+    pub(crate) fn cached(self, cache: Option<Arc<RunCache>>) -> Self {
+        Self { solvers: cache::solvers(cache.as_ref()), cache, ..self }
+    }
+
+    /// Returns the cache of finished runs.
+    pub(crate) const fn cache(&self) -> Option<&Arc<RunCache>> {
+        self.cache.as_ref()
+    }
+
+    /// Returns all tasks in the order of the report.
+    pub(crate) fn all(&self) -> &[ClaimTask] {
+        &self.all
+    }
+
+    /// Returns the indices of all tasks in the order of their execution. Claims that need a new run come first, and claims
     /// that need only runs of earlier claims follow. All cases progress evenly. Two threads therefore seldom work on
     /// one case, where they would wait for the same scene or run. Figures come last, because they use finished runs.
-    pub(crate) fn turns(&self) -> Vec<f64> {
+    pub(crate) fn order(&self) -> Vec<usize> {
         let mut turns = Vec::new();
         for selected in &self.selected {
             let mut asked = HashSet::new();
@@ -106,7 +138,9 @@ impl ClaimTasks {
             turns.push(3.0);
         }
         turns.extend(self.conforming.iter().map(|_| 2.0));
-        turns
+        let mut order: Vec<usize> = (0..turns.len()).collect();
+        order.sort_by(|a, b| turns[*a].total_cmp(&turns[*b]));
+        order
     }
 
     /// Returns true if the results of an external solver are judged.
@@ -123,9 +157,13 @@ impl ClaimTasks {
     }
 
     /// Returns a runner for the selected case with index `case`, set up by the command's options.
-    pub(crate) fn runner(&self, case: usize, solvers: Arc<dyn Solvers>) -> Runner {
+    pub(crate) fn runner(&self, case: usize) -> &Runner {
+        self.runners[case].get_or_init(|| self.new_runner(case))
+    }
+
+    fn new_runner(&self, case: usize) -> Runner {
         let selected = &self.selected[case];
-        let runner = Runner::new(selected.case, solvers).live(self.live).thorough(self.thorough);
+        let runner = Runner::new(selected.case, Arc::clone(&self.solvers)).live(self.live).thorough(self.thorough);
         let runner = runner.controlled(self.controls).with_data(self.data.as_deref());
         // With all levels, runs with stored results are repeated too.
         let runner = if self.thorough { runner.afresh(Set::Paper) } else { runner };
@@ -137,20 +175,15 @@ impl ClaimTasks {
     }
 
     /// Returns the sections of a report from the results of its tasks.
-    pub(crate) fn sections(
-        &self,
-        results: impl IntoIterator<Item = (ClaimTask, TaskResult<Part>)>,
-        solvers: &Arc<dyn Solvers>,
-    ) -> Vec<Section> {
+    pub(crate) fn sections(&self, results: Vec<TaskResult<Part>>) -> Vec<Section> {
         let mut cases: Vec<CaseResults> = self.selected.iter().map(CaseResults::new).collect();
         let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
-        for (task, result) in results {
+        for (&task, result) in self.all.iter().zip(results) {
             let part = match (result, task) {
                 (TaskResult::Out(part), _) => part,
                 (TaskResult::Nothing, _) => continue,
                 (TaskResult::Crash(detail), ClaimTask::Claim(case, claim)) => {
-                    let runner = self.runner(case, Arc::clone(solvers));
-                    let row = runner.crashed(&self.selected[case].claims[claim], detail);
+                    let row = self.runner(case).crashed(&self.selected[case].claims[claim], detail);
                     cases[case].verdicts[claim] = Some(row);
                     continue;
                 }
@@ -180,7 +213,8 @@ impl ClaimTasks {
             cases[case].figures.extend(section.figures);
             cases[case].runs.extend(keys.into_iter().zip(section.runs));
         }
-        let finished = self.selected.iter().zip(cases).map(|(selected, results)| results.section(selected, solvers));
+        let finished =
+            self.selected.iter().zip(cases).map(|(selected, results)| results.section(selected, &self.solvers));
         let mut sections: Vec<Section> = finished.collect();
         if !verdicts.is_empty() {
             sections.push(conform::section_of(verdicts, controls));
@@ -217,45 +251,30 @@ impl CaseResults {
     }
 }
 
-/// Runners of all cases. Tasks of the same case share finished runs.
-pub(crate) struct Desk<'a> {
-    tasks: &'a ClaimTasks,
-    solvers: Arc<dyn Solvers>,
-    runners: Vec<OnceLock<Runner>>,
-}
+impl TaskList for ClaimTasks {
+    type Output = Part;
 
-impl<'a> Desk<'a> {
-    pub(crate) fn new(tasks: &'a ClaimTasks, cache: Option<&Arc<RunCache>>) -> Self {
-        let runners = tasks.selected.iter().map(|_| OnceLock::new()).collect();
-        Self { tasks, solvers: cache::solvers(cache), runners }
-    }
-
-    pub(crate) const fn solvers(&self) -> &Arc<dyn Solvers> {
-        &self.solvers
-    }
-
-    fn runner(&self, case: usize) -> &Runner {
-        self.runners[case].get_or_init(|| self.tasks.runner(case, Arc::clone(&self.solvers)))
-    }
-
-    /// Does a task and returns its state and result.
-    pub(crate) fn perform(&self, task: ClaimTask) -> (State, Part) {
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Part>) -> (State, Part) {
+        let task = self.all[place];
+        sink.now(&self.name(task));
         match task {
             ClaimTask::Claim(case, claim) => self.claim(case, claim),
             ClaimTask::Figures(case) => self.figures(case),
             ClaimTask::Conformance(solver) => {
-                let (verdicts, controls) = conform::judge(&self.tasks.conforming[solver], &self.solvers);
+                let (verdicts, controls) = conform::judge(&self.conforming[solver], &self.solvers);
                 let section = Section { title: String::new(), ..conform::section_of(verdicts, controls) };
                 (State::Done, in_short(Part { keys: Vec::new(), section, without: None }))
             }
         }
     }
+}
 
+impl ClaimTasks {
     /// Judges a claim and its negative control.
     fn claim(&self, case: usize, claim: usize) -> (State, Part) {
-        let (selected, runner) = (&self.tasks.selected[case], self.runner(case));
+        let (selected, runner) = (&self.selected[case], self.runner(case));
         let claim = &selected.claims[claim];
-        let (verdict, control) = runner.judge_and_control(claim, self.tasks.controls);
+        let (verdict, control) = runner.judge_and_control(claim, self.controls);
         // A solver that is not installed now may be installed later, so the task can be repeated.
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
         let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
@@ -267,7 +286,7 @@ impl<'a> Desk<'a> {
     }
 
     fn figures(&self, case: usize) -> (State, Part) {
-        let (selected, runner) = (&self.tasks.selected[case], self.runner(case));
+        let (selected, runner) = (&self.selected[case], self.runner(case));
         let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
         match draw(selected, runner) {
             Ok(figures) => part.section.figures = figures,

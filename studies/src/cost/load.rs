@@ -83,7 +83,7 @@ pub fn measure(
                     Err(reason) => load.absent = Some(reason.to_string()),
                 }
             }
-            follow.done(false);
+            follow.done();
         }
     }
     Ok(entrants.into_iter().map(|entrant| entrant.load).collect())

@@ -3,8 +3,7 @@
 
 use super::knobs::{self, SweepPoint};
 use crate::clock::{self, TimedResult};
-use crate::result_cache::ResultCache;
-use crate::{ProgressObserver, identity};
+use crate::run_cache::run_words;
 use grainbench_harness::run::{Change, FinishedRun};
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::statistics::range;
@@ -13,7 +12,7 @@ use grainbench_reports::study::point::{Counts, Diagram, Point, PointStatus, Timi
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{RunError, Solver};
-use grainbench_store::WriteError;
+use grainbench_store::key::Id;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};
 
@@ -59,8 +58,8 @@ pub struct PointSelection {
 /// Description of a point before its measurement.
 #[derive(Clone, Debug, PartialEq)]
 pub struct PointPlan {
-    /// Name in the result cache.
-    pub name: String,
+    /// Id of the task that measures the point.
+    pub id: Id,
     /// Solver name with its settings.
     pub solver: String,
     /// Resolution and further parameters as text.
@@ -76,8 +75,7 @@ struct Task {
     floor: &'static str,
     scene: Arc<Scene>,
     solver: Arc<dyn Solver>,
-    /// Name in the result cache.
-    name: String,
+    id: Id,
     /// Processor time of a run of one step by another program (s). Points with the same scene and solver share it.
     ///
     /// It estimates the start-up, which is not part of the cost of steps.
@@ -105,181 +103,135 @@ impl Task {
     }
 }
 
-/// Measurement of selected points with solvers that are found by name.
-pub struct Meter<'a> {
-    /// Hash of this program.
-    pub program: String,
-    /// Cache of finished points.
-    pub cache: &'a ResultCache,
-    /// Points to measure.
-    pub wanted: PointSelection,
-    /// Solvers by name.
-    pub solvers: &'a dyn Solvers,
+/// Selected points of a target quantity.
+pub struct PointSet {
+    /// Target quantity.
+    pub subject: TargetQuantity,
+    tasks: Vec<Task>,
+    /// True to measure only errors and counts.
+    counts: bool,
 }
 
-impl<'a> Meter<'a> {
-    /// Returns a meter for the given solvers.
+impl PointSet {
+    /// Selects the points of a target quantity. `program` is the hash of this program.
     #[must_use]
-    pub fn new(cache: &'a ResultCache, wanted: PointSelection, solvers: &'a dyn Solvers) -> Self {
-        Self { program: identity::of_this_program(), cache, wanted, solvers }
+    pub fn new(subject: TargetQuantity, wanted: &PointSelection, solvers: &dyn Solvers, program: &str) -> Self {
+        let tasks = tasks(&subject, wanted, solvers, program);
+        Self { subject, tasks, counts: wanted.counts }
     }
 
-    /// Returns the number of points of a target quantity.
+    /// Returns the number of points.
     #[must_use]
-    pub fn count(&self, subject: &TargetQuantity) -> usize {
-        self.tasks(subject).len()
+    pub const fn count(&self) -> usize {
+        self.tasks.len()
     }
 
-    /// Returns the points of a target quantity in the order of their first measurement.
+    /// Returns the points in the order of their first measurement.
     #[must_use]
-    pub fn planned(&self, subject: &TargetQuantity) -> Vec<PointPlan> {
-        let planned = |task: Task| {
+    pub fn planned(&self) -> Vec<PointPlan> {
+        let planned = |task: &Task| {
             let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
             let once = if task.is_program { PROGRAM * once } else { once };
-            let times = if self.wanted.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
+            let times = if self.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
             // A repetition lasts at least `LEAST`, because of the resolution of the clock.
-            let seconds = times * once.max(if self.wanted.counts { 0.0 } else { LEAST });
-            let SweepPoint { solver, resolution, knobs, .. } = task.turn;
+            let seconds = times * once.max(if self.counts { 0.0 } else { LEAST });
+            let SweepPoint { solver, resolution, knobs, .. } = &task.turn;
             let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
-            PointPlan { name: task.name, solver, setting, seconds }
+            PointPlan { id: task.id, solver: solver.clone(), setting, seconds }
         };
-        self.tasks(subject).into_iter().map(planned).collect()
+        self.tasks.iter().map(planned).collect()
     }
 
-    /// Measures all points of a target quantity.
-    ///
-    /// # Errors
-    /// When a point cannot be stored.
-    pub fn diagram(&self, subject: &TargetQuantity, follow: &mut dyn ProgressObserver) -> Result<Diagram, WriteError> {
-        let tasks = self.tasks(subject);
-        let points = self.measure(subject, &tasks, follow)?;
-        Ok(drawn(subject, &tasks, points))
-    }
-
-    /// Returns the diagram of the finished points of a target quantity, without new measurements.
-    #[must_use]
-    pub fn finished(&self, subject: &TargetQuantity) -> Diagram {
-        let mut tasks = self.tasks(subject);
-        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
-        let mut is_there = points.iter().map(Option::is_some).collect::<Vec<_>>().into_iter();
-        tasks.retain(|_| is_there.next().unwrap_or_default());
-        points.retain(Option::is_some);
-        drawn(subject, &tasks, points)
-    }
-
-    /// Measures and stores the points of a target quantity for whose names `wanted` returns true.
-    ///
-    /// # Errors
-    /// When a point cannot be stored.
-    pub fn measure_named(
-        &self,
-        subject: &TargetQuantity,
-        wanted: &dyn Fn(&str) -> bool,
-        follow: &mut dyn ProgressObserver,
-    ) -> Result<(), WriteError> {
-        let mut tasks = self.tasks(subject);
-        tasks.retain(|task| wanted(&task.name));
-        self.measure(subject, &tasks, follow).map(drop)
-    }
-
-    /// Measures the points of a target quantity that are not in the cache, one at a time, with repetitions in
-    /// alternation.
-    fn measure(
-        &self,
-        subject: &TargetQuantity,
-        tasks: &[Task],
-        follow: &mut dyn ProgressObserver,
-    ) -> Result<Vec<Option<Point>>, WriteError> {
-        let mut points: Vec<Option<Point>> = tasks.iter().map(|task| self.cache.take(&task.name)).collect();
-        points.iter().flatten().for_each(|_| follow.done(true));
+    /// Measures the points with the given indices, one at a time, with repetitions in alternation. Calls `now` with the
+    /// name of the next run, and `leave` with each measured point.
+    pub fn measure(&self, places: &[usize], now: &dyn Fn(&str), leave: &mut dyn FnMut(usize, Point)) {
         let mut open: Vec<(usize, f64, Point)> = Vec::new();
-        for (at, task) in tasks.iter().enumerate() {
-            if points[at].is_some() {
-                continue;
-            }
-            follow.now(&format!("{} · {} {}", subject.case.name, task.turn.solver, task.turn.resolution));
-            let point = first(subject, task);
+        for &place in places {
+            let task = &self.tasks[place];
+            now(&format!("{} · {} {}", self.subject.case.name, task.turn.solver, task.turn.resolution));
+            let point = first(&self.subject, task);
             let whole = point.repetitions.first().map_or(0.0, |timing| timing.wall + timing.start_up);
-            if whole < SHORT && point.standing == PointStatus::Measured && !self.wanted.counts {
+            if whole < SHORT && point.standing == PointStatus::Measured && !self.counts {
                 let repetitions = if whole < WARM { Vec::new() } else { point.repetitions };
-                open.push((at, whole, Point { repetitions, ..point }));
+                open.push((place, whole, Point { repetitions, ..point }));
             } else {
-                self.cache.put(&task.name, &point)?;
-                points[at] = Some(point);
-                follow.done(false);
+                leave(place, point);
             }
         }
         for round in 1..=REPETITIONS {
-            for (at, whole, point) in open.iter_mut().filter(|(_, _, point)| point.repetitions.len() < round) {
-                follow.now(&format!("{} · {} again", subject.case.name, tasks[*at].turn.solver));
-                point.repetitions.extend(repeated(&tasks[*at], *whole));
+            for (place, whole, point) in open.iter_mut().filter(|(_, _, point)| point.repetitions.len() < round) {
+                let task = &self.tasks[*place];
+                now(&format!("{} · {} again", self.subject.case.name, task.turn.solver));
+                point.repetitions.extend(repeated(task, *whole));
             }
         }
-        for (at, _, mut point) in open {
+        for (place, _, mut point) in open {
             summarise(&mut point);
-            self.cache.put(&tasks[at].name, &point)?;
-            points[at] = Some(point);
-            follow.done(false);
+            leave(place, point);
         }
-        Ok(points)
     }
 
-    fn tasks(&self, subject: &TargetQuantity) -> Vec<Task> {
-        let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
-        let strangers = self.solvers.strangers();
-        let mut tasks = Vec::new();
-        let mut solvers: BTreeMap<String, Option<Arc<dyn Solver>>> = BTreeMap::new();
-        for lane in &subject.lanes {
-            let mut scene = plain.clone();
-            if let Some(change) = &lane.prepare {
-                let change: &Change = change;
-                change(&mut scene);
-            }
-            let scene = Arc::new(scene);
-            let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
-            for turn in knobs::turns(lane, &strangers) {
-                let named = &self.wanted.solvers;
-                if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || *name == turn.line) {
-                    continue;
-                }
-                let is_program = self.solvers.is_program(&turn.solver);
-                let slower = if is_program { PROGRAM } else { 1.0 };
-                if !self.wanted.all && slower * knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
-                    continue;
-                }
-                let solver = solvers.entry(turn.solver.clone()).or_insert_with(|| self.solvers.find(&turn.solver));
-                let Some(solver) = solver.clone() else { continue };
-                let once = if self.wanted.counts { "|once" } else { "" };
-                let read = format!("{}|{}|{}{once}", subject.quantity, subject.variant, turn.knobs);
-                let program = self.program.clone() + &self.solvers.edition(&turn.solver);
-                let name = identity::of_run(&program, &turn.solver, &scene, &turn.resolution, &read);
-                // Two solver setups may lead to the same run.
-                if tasks.iter().all(|task: &Task| task.name != name) {
-                    let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
-                    let scene = Arc::clone(&scene);
-                    let stranger = strangers.iter().find(|stranger| stranger.name == turn.solver);
-                    let stays = stranger.is_some_and(|stranger| stranger.stays);
-                    // The cause of the floor of an external solver is unknown.
-                    let floor = stranger.map_or(lane.method.floor(), |_| UNKNOWN);
-                    tasks.push(Task { turn, floor, scene, solver, name, start, is_program, stays });
-                }
-            }
+    /// Returns the diagram of the measured points, with error floors marked. `points` has an entry for each point.
+    #[must_use]
+    pub fn diagram(&self, points: Vec<Option<Point>>) -> Diagram {
+        let measured = self.tasks.iter().zip(points).filter_map(|(task, point)| Some((task, point?)));
+        let (tasks, mut points): (Vec<&Task>, Vec<Point>) = measured.unzip();
+        mark_floors(&tasks, &mut points);
+        Diagram {
+            case: self.subject.case.name.to_owned(),
+            variant: self.subject.variant.to_owned(),
+            quantity: self.subject.quantity.clone(),
+            source: self.subject.source.clone(),
+            points,
         }
-        tasks
     }
 }
 
-/// Returns the diagram of measured points, with error floors marked.
-fn drawn(subject: &TargetQuantity, tasks: &[Task], points: Vec<Option<Point>>) -> Diagram {
-    let mut points: Vec<Point> = points.into_iter().flatten().collect();
-    mark_floors(tasks, &mut points);
-    Diagram {
-        case: subject.case.name.to_owned(),
-        variant: subject.variant.to_owned(),
-        quantity: subject.quantity.clone(),
-        source: subject.source.clone(),
-        points,
+fn tasks(subject: &TargetQuantity, wanted: &PointSelection, solvers: &dyn Solvers, program: &str) -> Vec<Task> {
+    let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
+    let strangers = solvers.strangers();
+    let mut tasks = Vec::new();
+    let mut found: BTreeMap<String, Option<Arc<dyn Solver>>> = BTreeMap::new();
+    for lane in &subject.lanes {
+        let mut scene = plain.clone();
+        if let Some(change) = &lane.prepare {
+            let change: &Change = change;
+            change(&mut scene);
+        }
+        let scene = Arc::new(scene);
+        let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
+        for turn in knobs::turns(lane, &strangers) {
+            let named = &wanted.solvers;
+            if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || *name == turn.line) {
+                continue;
+            }
+            let is_program = solvers.is_program(&turn.solver);
+            let slower = if is_program { PROGRAM } else { 1.0 };
+            if !wanted.all && slower * knobs::nominal_seconds(&scene, &turn.resolution) > LONGEST {
+                continue;
+            }
+            let solver = found.entry(turn.solver.clone()).or_insert_with(|| solvers.find(&turn.solver));
+            let Some(solver) = solver.clone() else { continue };
+            let once = if wanted.counts { "|once" } else { "" };
+            let read = format!("{}|{}|{}{once}", subject.quantity, subject.variant, turn.knobs);
+            let words = run_words(&turn.solver, &scene, &turn.resolution, &read);
+            let id = Id::of_words(
+                &(program.to_owned() + &solvers.edition(&turn.solver)),
+                &words.each_ref().map(String::as_str),
+            );
+            // Two solver setups may lead to the same run.
+            if tasks.iter().all(|task: &Task| task.id != id) {
+                let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
+                let scene = Arc::clone(&scene);
+                let stranger = strangers.iter().find(|stranger| stranger.name == turn.solver);
+                let stays = stranger.is_some_and(|stranger| stranger.stays);
+                // The cause of the floor of an external solver is unknown.
+                let floor = stranger.map_or(lane.method.floor(), |_| UNKNOWN);
+                tasks.push(Task { turn, floor, scene, solver, id, start, is_program, stays });
+            }
+        }
     }
+    tasks
 }
 
 /// Runs a point once and returns its times, or `None` if the run did not start. The reference task is timed for
@@ -393,7 +345,7 @@ fn summarise(point: &mut Point) {
 ///
 /// A sequence needs at least three points. The ratio of the finest error to the error before it must be from [`FLOOR`] to
 /// 1/[`FLOOR`]. All points whose ratio to the finest error is in this range are marked.
-fn mark_floors(tasks: &[Task], points: &mut [Point]) {
+fn mark_floors(tasks: &[&Task], points: &mut [Point]) {
     let mut sequences: BTreeMap<(String, String), Vec<(f64, usize)>> = BTreeMap::new();
     for (at, task) in tasks.iter().enumerate() {
         if let (Some(fineness), PointStatus::Measured) = (task.turn.sequence, points[at].standing) {

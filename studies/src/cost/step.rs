@@ -75,7 +75,7 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObs
             for (scene, resolution) in &family.scenes {
                 follow.now(&format!("{}, lap {round} of {rounds}", scene.title));
                 rows.push(lap(&*solver, scene, resolution, family.counts)?);
-                follow.done(false);
+                follow.done();
             }
             for (price, value) in prices[at..].iter_mut().zip(solved(rows)) {
                 price.nanoseconds.push(value);
@@ -85,7 +85,7 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObs
         follow.now(&format!("memory and registers, lap {round} of {rounds}"));
         probe.streamed.push(streamed());
         probe.computed.push(computed());
-        follow.done(false);
+        follow.done();
     }
     Ok(Model { prices, probe })
 }

@@ -1,8 +1,6 @@
 //! Effects study of a case: the influence of each physical effect on its claims.
 
 use super::idle::{NeutralTrial, ratio_of_times, try_idly};
-use crate::identity;
-use crate::result_cache::ResultCache;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::{ExpectedOutcome, FinishedRun, Run, Set};
@@ -13,7 +11,6 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::record::Record;
 use grainbench_scene::scene::Duration::Seconds;
 use grainbench_scene::solver::{Method, RunError};
-use grainbench_store::WriteError;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 use std::time::Duration;
@@ -59,6 +56,12 @@ impl Ledger {
         Self { case, solvers, runner, claims, without: BTreeMap::new() }
     }
 
+    /// Returns the case.
+    #[must_use]
+    pub const fn case(&self) -> &'static Case {
+        self.case
+    }
+
     /// Returns each pair of an effect and a variant that the claims use. The effect may be on or off.
     #[must_use]
     pub fn pieces(&self) -> Vec<SceneEffect> {
@@ -77,25 +80,9 @@ impl Ledger {
         pieces
     }
 
-    /// Returns the entry of an effect, and true if the entry came from the result cache.
-    ///
-    /// The entry is `None` for an absent effect without a neutral value.
-    ///
-    /// # Errors
-    /// When the entry cannot be stored.
-    pub fn entry(
-        &mut self,
-        program: &str,
-        piece: &SceneEffect,
-        cache: &ResultCache,
-    ) -> Result<(Option<Entry>, bool), WriteError> {
-        let name = identity::of_words(program, &["effect", self.case.name, piece.variant, piece.effect.word()]);
-        if let Some(entry) = cache.take(&name) {
-            return Ok((entry, true));
-        }
-        let entry = if piece.key.is_some() { Some(self.switched_off(piece)) } else { self.idle(piece) };
-        cache.put(&name, &entry)?;
-        Ok((entry, false))
+    /// Returns the entry of an effect, or `None` for an absent effect without a neutral value.
+    pub fn entry(&mut self, piece: &SceneEffect) -> Option<Entry> {
+        if piece.key.is_some() { Some(self.switched_off(piece)) } else { self.idle(piece) }
     }
 
     /// Returns, in words, the first claim whose error exceeds its limit if the effect is switched off.

@@ -4,13 +4,10 @@ use super::PATIENCE;
 use super::assembly::Assembly;
 use super::bisection::largest;
 use super::failure::{Failure, of_error};
-use crate::identity;
-use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_scene::solver::{Resolution, RunError, RunOptions, Solver};
-use grainbench_store::WriteError;
 
 /// Relative precision of a limit.
 const PRECISION: f64 = 0.005;
@@ -27,33 +24,9 @@ pub const GRIDS: [&str; 6] =
 /// Ratio of the energy to its initial value above which a run counts as unstable.
 const MORE_ENERGY: f64 = 1.1;
 
-/// Returns the name of the limit of an assembly in a result cache.
+/// Returns the largest stable time step of an assembly for a solver.
 #[must_use]
-pub fn name_of_assembly(program: &str, assembly: &Assembly, solver: &str) -> String {
-    let text = format!("{:?}", assembly.scene);
-    identity::of_words(program, &["limit", assembly.name, &text, solver])
-}
-
-/// Returns the name of the limit of the vibrating bar in a result cache.
-#[must_use]
-pub fn name_of_bar(program: &str, setting: &str, cells: f64) -> String {
-    identity::of_words(program, &["bar", setting, &cells.to_string()])
-}
-
-/// Returns the limit of an assembly for a solver, and true if the limit came from the result cache.
-///
-/// # Errors
-/// When the limit cannot be stored.
-pub fn of_assembly(
-    program: &str,
-    assembly: &Assembly,
-    (solvers, solver): (&dyn Solvers, &str),
-    cache: &ResultCache,
-) -> Result<(Limit, bool), WriteError> {
-    let name = name_of_assembly(program, assembly, solver);
-    if let Some(limit) = cache.take(&name) {
-        return Ok((limit, true));
-    }
+pub fn of_assembly(assembly: &Assembly, (solvers, solver): (&dyn Solvers, &str)) -> Limit {
     let mut limit = Limit {
         scene: assembly.name.to_owned(),
         knob: if assembly.kappa.is_some() { "k_s/k_n".to_owned() } else { String::new() },
@@ -79,28 +52,14 @@ pub fn of_assembly(
             });
         }
     }
-    cache.put(&name, &limit)?;
-    Ok((limit, false))
+    limit
 }
 
-/// Returns the largest Courant number at which the energy of a vibrating bar grows by at most a tenth. Also returns
-/// true if the limit came from the result cache.
+/// Returns the largest Courant number at which the energy of a vibrating bar grows by at most a tenth.
 ///
 /// `bar` is the scene of the vibrating bar, and `cells` is the number of cells over its length.
-///
-/// # Errors
-/// When the limit cannot be stored.
-pub fn of_bar(
-    program: &str,
-    bar: &Scene,
-    (solvers, setting): (&dyn Solvers, &str),
-    cells: f64,
-    cache: &ResultCache,
-) -> Result<(Limit, bool), WriteError> {
-    let name = name_of_bar(program, setting, cells);
-    if let Some(limit) = cache.take(&name) {
-        return Ok((limit, true));
-    }
+#[must_use]
+pub fn of_bar(bar: &Scene, (solvers, setting): (&dyn Solvers, &str), cells: f64) -> Limit {
     let mut limit = Limit {
         scene: "vibrating bar".to_owned(),
         knob: "cells over the length".to_owned(),
@@ -119,8 +78,7 @@ pub fn of_bar(
         Some(solver) => fill(&mut limit, [0.05, 0.8], 2, |courant| vibrate(&*solver, bar, cells, courant)),
         None => "there is no such solver".clone_into(&mut limit.detail),
     }
-    cache.put(&name, &limit)?;
-    Ok((limit, false))
+    limit
 }
 
 fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Result<(), Stop> {

@@ -8,8 +8,6 @@ mod many;
 use super::PATIENCE as LIMIT;
 use super::failure::{Failure, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
-use crate::identity;
-use crate::result_cache::ResultCache;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::{HardCaseResult, Hardness};
 use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
@@ -18,7 +16,6 @@ use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver};
 use grainbench_scene::source::SceneSource;
-use grainbench_store::WriteError;
 use std::path::Path;
 
 /// Function that checks the condition at the end of a run.
@@ -83,37 +80,11 @@ fn changed(
     HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
 }
 
-/// Returns the name of a solver's result in a result cache.
-#[must_use]
-pub fn name_of(program: &str, case: &HardCase, solver: &str) -> String {
-    let text = format!("{:?}", case.scene);
-    identity::of_words(program, &["hard", &case.name, &text, solver])
-}
-
 /// Estimates the time of a case with a solver (s); zero if the case is too long to run.
 #[must_use]
 pub fn seconds(case: &HardCase, solver: &str) -> f64 {
     let expected = case.scene.as_ref().map_or(0.0, |scene| nominal_seconds(scene, &resolution(solver, 1.0)));
     if expected > HOPELESS { 0.0 } else { expected }
-}
-
-/// Returns the result of a solver for a case, and true if it came from the result cache.
-///
-/// # Errors
-/// When the result cannot be stored.
-pub fn verdict(
-    program: &str,
-    case: &HardCase,
-    (solvers, solver): (&dyn Solvers, &str),
-    cache: &ResultCache,
-) -> Result<(HardCaseResult, bool), WriteError> {
-    let name = name_of(program, case, solver);
-    if let Some(row) = cache.take(&name) {
-        return Ok((row, true));
-    }
-    let row = judge(case, solvers, solver);
-    cache.put(&name, &row)?;
-    Ok((row, false))
 }
 
 /// Runs a case with a solver at its default time step, and at smaller steps if the run fails.

@@ -1,13 +1,11 @@
 //! Progress of a plan.
 
 use crate::fault::Fault;
-use crate::finished::FinishedTasks;
 use crate::lease::{self, LeaseContents};
-use crate::log::State;
 use crate::plan::Plan;
-use crate::task::Id;
+use grainbench_store::log::State;
+use grainbench_store::results::FinishedTasks;
 use serde::Serialize;
-use std::collections::HashSet;
 
 /// Progress of a plan.
 #[derive(Clone, Debug, Default, Serialize)]
@@ -34,7 +32,7 @@ pub struct Status {
     pub workers: Vec<LeaseContents>,
     /// Number of truncated or damaged result lines. Their tasks are repeated.
     pub damaged: usize,
-    /// Number of results for tasks that already had a successful result.
+    /// Number of further results for tasks of the plan that already had a successful result.
     pub twice: usize,
 }
 
@@ -45,7 +43,7 @@ impl Status {
     /// When a file of the plan cannot be read.
     pub fn from_plan(plan: &Plan) -> Result<Self, Fault> {
         let workers = lease::held(&plan.path, plan.head.lease_seconds)?;
-        let finished = FinishedTasks::read(&plan.path, false)?;
+        let finished = FinishedTasks::read(&plan.path, false).map_err(Fault::Input)?;
         let mut status = Self { tasks: plan.tasks.len(), damaged: finished.damaged, ..Self::default() };
         let (mut left, mut took, mut expected) = (0.0, 0.0, 0.0);
         for (place, task) in plan.tasks.iter().enumerate() {
@@ -55,6 +53,7 @@ impl Status {
                 *(if is_running { &mut status.running } else { &mut status.waiting }) += 1;
                 continue;
             };
+            status.twice += entry.repeats;
             took += entry.seconds;
             expected += task.seconds;
             *match entry.state {
@@ -65,8 +64,6 @@ impl Status {
         }
         let pace = if expected > 0.0 && took > 0.0 { took / expected } else { 1.0 };
         status.seconds_left = left * pace / workers.len().max(1) as f64;
-        let ids: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
-        status.twice = if finished.entries.keys().any(|id| ids.contains(id)) { finished.twice } else { 0 };
         status.workers = workers;
         Ok(status)
     }

@@ -1,10 +1,10 @@
-//! Plan of claims. It has one task for each claim with its negative control, one for the figures of each case, and one
-//! for the conformance of each solver.
+//! Tasks of `run`: one for each claim with its negative control, one for the figures of each case, and one for the
+//! conformance of each solver.
 
 use super::arguments::Arguments;
-use super::study::{ReportOptions, Study};
+use super::study::{ReportOptions, Study, Tasks, is_plan};
 use crate::cli::cache;
-use crate::cli::claims::tasks::{ClaimTask, ClaimTasks, Desk};
+use crate::cli::claims::tasks::{ClaimTask, ClaimTasks, Part};
 use crate::cli::claims::{self, ClaimOptions};
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::filter::Filters;
@@ -13,11 +13,6 @@ use crate::cli::publish::{Output, add_reasons, publish, says_nothing};
 use crate::cli::select::{self, CaseSelection};
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
-use grainbench::campaign::finished::FinishedTasks;
-use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
-use grainbench::campaign::share::share;
-use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::ResultSink;
 use grainbench::cases::folder;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
@@ -26,10 +21,15 @@ use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
+use grainbench::jobs::execute::{ResultSink, TaskList};
+use grainbench::jobs::plan::{Kind, Plan};
+use grainbench::jobs::task::{Id, Task};
+use grainbench::store::key;
+use grainbench::store::log::State;
+use grainbench::store::results::TaskResult;
 use grainbench::studies::cost::knobs::nominal_seconds;
-use std::collections::{BTreeMap, HashMap, HashSet};
+use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
-use std::sync::Arc;
 
 /// Expected duration of the figures of a case, without their runs (s).
 const FIGURES: f64 = 0.5;
@@ -80,17 +80,11 @@ impl ClaimStudy {
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
         claims::narrow(&mut selected, &options, &filters)?;
         let is_whole = cases.is_empty() && options.filter.is_empty();
-        let tasks = ClaimTasks::new(selected, &options, is_whole)?;
+        let tasks = ClaimTasks::new(selected, &options, is_whole)?.cached(cache::open(false));
         let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
-        let (strangers, _) = NamedSolvers::read_by_content(&manifests)?;
+        let (strangers, _) = NamedSolvers::read_for(&manifests, true)?;
         let words = claims::words(&cases, &options);
         Ok(Self { tasks, strangers, is_whole: is_whole && options.solver.is_empty(), words })
-    }
-
-    /// Returns all tasks with their ids, in the order of the report.
-    fn with_ids(&self, program: &str) -> Result<Vec<(Id, ClaimTask)>, Fault> {
-        let tasks = self.tasks.all();
-        Ok(self.ids(program)?.into_iter().zip(tasks).collect())
     }
 
     /// Returns the ids of all tasks, in the order of the report.
@@ -104,7 +98,7 @@ impl ClaimStudy {
                 None => String::new(),
             };
             let case = selected.case.name;
-            let content: Vec<String> = files_of(selected)?.iter().map(|path| hash_of_file(path)).collect();
+            let content: Vec<String> = files_of(selected)?.iter().map(|path| key::of_file(path)).collect();
             let content = content.join(" ");
             let mut rows = String::new();
             for claim in &selected.claims {
@@ -125,22 +119,6 @@ impl ClaimStudy {
             ids.push(Id::of_words(program, &["owed", &name, &self.strangers.edition(&name)]));
         }
         Ok(ids)
-    }
-
-    /// Returns the tasks of a plan.
-    ///
-    /// # Errors
-    /// When the cases or programs have changed since the plan was written.
-    fn planned(&self, plan: &Plan) -> Result<Vec<(Id, ClaimTask)>, Fault> {
-        let tasks = self.with_ids(&plan.head.program)?;
-        let known: HashSet<Id> = plan.tasks.iter().map(|task| task.id).collect();
-        if tasks.iter().all(|(id, _)| known.contains(id)) {
-            return Ok(tasks);
-        }
-        let path = plan.path.display();
-        Err(Fault::input(format!(
-            "{path}: the cases or programs have changed; write the plan again, unchanged tasks stay finished"
-        )))
     }
 
     /// Returns the hashes of the installed programs that a claim runs. A stored run needs no program.
@@ -172,7 +150,7 @@ fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
     folder::files(&selected.case.directory()).map_err(Fault::input)
 }
 
-impl Study for ClaimStudy {
+impl Tasks for ClaimStudy {
     fn kind(&self) -> Kind {
         Kind::Run
     }
@@ -182,31 +160,23 @@ impl Study for ClaimStudy {
     }
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
-        let solvers = cache::solvers(None);
-        let selected = &self.tasks.selected;
-        let runners: Vec<Runner> =
-            (0..selected.len()).map(|case| self.tasks.runner(case, Arc::clone(&solvers))).collect();
-        let task = |(id, task): (Id, ClaimTask)| {
+        let task = |(id, &task): (Id, &ClaimTask)| {
             let new = |scene: String, solver: String, level: String, what: String, seconds: f64| Task {
-                id,
                 scene,
-                set: BTreeMap::new(),
                 solver,
                 level,
                 what,
-                repetitions: 1,
-                seconds,
-                group: None,
+                ..Task::new(id, seconds)
             };
             match task {
                 ClaimTask::Claim(case, claim) => {
-                    let selected = &selected[case];
+                    let selected = &self.tasks.selected[case];
                     let claim = &selected.claims[claim];
                     let first = claim.runs.first();
                     let variant = first.map_or("", |run| run.variant);
                     let ours = first.map_or("", |run| run.solver).to_owned();
                     let solver = selected.stranger.as_ref().map_or(ours, |other| other.manifest().name.clone());
-                    let seconds = self.seconds(&runners[case], claim);
+                    let seconds = self.seconds(self.tasks.runner(case), claim);
                     let scene = format!("{}/{variant}", selected.case.name);
                     new(scene, solver, claim.resolution(), claim.quantity.clone(), seconds)
                 }
@@ -219,37 +189,42 @@ impl Study for ClaimStudy {
                 }
             }
         };
-        Ok(self.with_ids(program)?.into_iter().map(task).collect())
+        Ok(self.ids(program)?.into_iter().zip(self.tasks.all()).map(task).collect())
     }
 
     fn inputs(&self) -> BTreeMap<String, String> {
         // If a folder cannot be read, the error is reported when the tasks are listed.
         let files = self.tasks.selected.iter().flat_map(|selected| files_of(selected).unwrap_or_default());
         let mut inputs = self.strangers.inputs();
-        inputs.extend(files.map(|path| (path.display().to_string(), hash_of_file(&path))));
+        inputs.extend(files.map(|path| (path.display().to_string(), key::of_file(&path))));
         inputs
     }
 
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, sink: &Arc<ResultSink>) -> Result<(), Fault> {
-        let cache = cache::open(false);
-        let desk = Desk::new(&self.tasks, cache.as_ref());
-        let known: HashMap<Id, ClaimTask> = self.planned(plan)?.into_iter().collect();
-        let do_task = |place: usize| {
-            let id = tasks[place].id;
-            if let Some(task) = known.get(&id) {
-                sink.attempt(id, || desk.perform(*task));
-            }
-        };
-        share(tasks.len(), jobs, || sink.goes_on(), do_task);
-        if let Some(cache) = &cache {
+    fn check(&self, plan: &Plan) -> Result<(), Fault> {
+        let ids = self.ids(&plan.head.program)?;
+        is_plan(plan, ids.into_iter().eq(plan.tasks.iter().map(|task| task.id)))
+    }
+}
+
+impl TaskList for ClaimStudy {
+    type Output = Part;
+
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Part>) -> (State, Part) {
+        self.tasks.perform(place, sink)
+    }
+}
+
+impl Drop for ClaimStudy {
+    fn drop(&mut self) {
+        if let Some(cache) = self.tasks.cache() {
             cache.make_room();
         }
-        Ok(())
     }
+}
 
-    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
-        let results = self.planned(plan)?.into_iter().map(|(id, task)| (task, finished.result(id)));
-        let sections = self.tasks.sections(results, &cache::solvers(None));
+impl Study for ClaimStudy {
+    fn report(&self, results: Vec<TaskResult<Part>>, how: &ReportOptions<'_>) -> Outcome {
+        let sections = self.tasks.sections(results);
         let words = self.words.iter().chain(&how.words).cloned().collect();
         let mut report = claims::report(provenance(words, how.seconds), sections, self.is_whole)?;
         let is_mute = self.tasks.has_stranger() && says_nothing(&report);

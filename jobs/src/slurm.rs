@@ -4,10 +4,10 @@
 //! `squeue` does not answer, the submission fails, because the queue is unknown.
 
 use crate::fault::Fault;
-use crate::finished::FinishedTasks;
 use crate::lease;
 use crate::plan::Plan;
 use crate::shard::{self, MOST};
+use grainbench_store::results::FinishedTasks;
 use grainbench_store::{WriteError, write_file};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
@@ -129,7 +129,7 @@ pub fn in_queue(plan: &Path) -> Result<usize, Fault> {
 
 /// Returns the numbers of the shards that are not queued and have a task that is neither finished nor leased.
 fn left(plan: &Plan, shards: u32, jobs: &[Job], queued: &BTreeMap<u64, BTreeSet<u32>>) -> Result<Vec<u32>, Fault> {
-    let finished = FinishedTasks::read(&plan.path, false)?;
+    let finished = FinishedTasks::read(&plan.path, false).map_err(Fault::Input)?;
     let is_queued = |index: u32| {
         jobs.iter()
             .any(|job| job.shards == shards && queued.get(&job.job).is_some_and(|of_job| of_job.contains(&index)))

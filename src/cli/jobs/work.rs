@@ -1,26 +1,23 @@
 //! `run --resume DIR`: runs the tasks of a plan or of a shard, on this machine or through a batch system.
 
 use super::arguments::Arguments as Planned;
-use super::{enter, kinds};
+use super::enter;
+use super::study::from_arguments;
+use super::watch::Follower;
 use crate::cli::cores::{MOST_THREADS, cores};
 use crate::cli::exit::{self, Fault, Outcome, RED, print};
-use crate::cli::interrupt::Interrupt;
-use crate::cli::progress::Progress;
 use crate::cli::provenance::provenance;
 use crate::cli::value::whole;
-use grainbench::campaign::lease::LeaseContents;
-use grainbench::campaign::log::Worker;
-use grainbench::campaign::plan::Plan;
-use grainbench::campaign::shard::Shard;
-use grainbench::campaign::slurm;
-use grainbench::campaign::work::{Summary, Watch, WorkRequest, work as do_shard};
-use grainbench::reference::has_ended_programs;
+use grainbench::jobs::plan::Plan;
+use grainbench::jobs::shard::Shard;
+use grainbench::jobs::slurm;
+use grainbench::jobs::work::{Summary, WorkRequest};
 use grainbench::reports::number;
+use grainbench::store::log::Worker;
 use grainbench::store::machine;
 use std::env;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
-use std::sync::{Arc, Mutex, PoisonError};
 use std::time::{SystemTime, UNIX_EPOCH};
 
 #[derive(clap::Args)]
@@ -81,7 +78,8 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     if options.on.is_some() {
         return submit(&plan, options);
     }
-    let study = kinds::from_arguments(&Planned::read(&plan)?)?;
+    let study = from_arguments(&Planned::read(&plan)?, true)?;
+    study.check(&plan)?;
     let jobs = match (jobs, plan.head.timed) {
         (Some(2..), true) => {
             return Err(Fault::input("--jobs: expected 1, because times are measured, found more"));
@@ -90,15 +88,8 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
         (Some(jobs), false) => usize::from(jobs),
         (None, false) => cores(),
     };
-    let observer = Arc::new(WorkObserver { interrupt: Interrupt::listen(), progress: Mutex::new(None) });
-    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again: retry_failed };
-    let worker = worker();
-    let watch = Arc::<WorkObserver>::clone(&observer);
-    let done = do_shard(&plan, &asked, &worker, watch, &|tasks, desk| {
-        study.work(&plan, tasks, jobs, desk).map_err(|fault| grainbench::campaign::Fault::Input(fault.to_string()))
-    });
-    *observer.progress.lock().unwrap_or_else(PoisonError::into_inner) = None;
-    let summary = done?;
+    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again: retry_failed, jobs };
+    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks"))?;
     if !options.quiet {
         print(&words(&summary))?;
     }
@@ -127,7 +118,7 @@ fn words(summary: &Summary) -> String {
 }
 
 /// Returns a description of this process as a worker.
-fn worker() -> Worker {
+pub(super) fn worker() -> Worker {
     let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
     let (host, process) = (machine::name(), std::process::id());
     let about = provenance(Vec::new(), 0.0);
@@ -145,39 +136,5 @@ fn worker() -> Worker {
         job,
         granted: variable("SLURM_CPUS_ON_NODE").and_then(|cores| cores.parse().ok()),
         began: about.date,
-    }
-}
-
-/// Observer that shows the progress and starts no new task after an interrupt.
-struct WorkObserver {
-    interrupt: Interrupt,
-    progress: Mutex<Option<Progress>>,
-}
-
-impl Watch for WorkObserver {
-    fn goes_on(&self) -> bool {
-        !self.interrupt.is_asked()
-    }
-
-    fn are_results_valid(&self) -> bool {
-        !has_ended_programs()
-    }
-
-    fn begins(&self, tasks: usize) {
-        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
-        *progress = Some(Progress::new(tasks as u64, "tasks"));
-    }
-
-    fn finished(&self) {
-        if let Some(progress) = &*self.progress.lock().unwrap_or_else(PoisonError::into_inner) {
-            progress.advance();
-        }
-    }
-
-    fn waits(&self, others: &[LeaseContents]) {
-        let mut progress = self.progress.lock().unwrap_or_else(PoisonError::into_inner);
-        let progress = progress.get_or_insert_with(|| Progress::new(0, "tasks"));
-        let names: Vec<&str> = others.iter().map(|other| other.worker.as_str()).collect();
-        progress.now(&format!("other workers have the remaining tasks: {}", names.join(", ")));
     }
 }

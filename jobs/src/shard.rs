@@ -96,19 +96,11 @@ fn length(task: &Task) -> f64 {
 mod tests {
     use super::*;
     use crate::task::Id;
-    use std::collections::BTreeMap;
 
     fn tasks(seconds: &[f64], groups: &[Option<u32>]) -> Vec<Task> {
         let task = |(seconds, group): (&f64, &Option<u32>)| Task {
-            id: Id::of_words("", &[]),
-            scene: String::new(),
-            set: BTreeMap::new(),
-            solver: String::new(),
-            level: String::new(),
-            what: String::new(),
-            repetitions: 1,
-            seconds: *seconds,
             group: *group,
+            ..Task::new(Id::of_words("", &[]), *seconds)
         };
         seconds.iter().zip(groups).map(task).collect()
     }

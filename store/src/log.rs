@@ -4,8 +4,8 @@
 //! The line of a task is `ID STATE SECONDS LOAD SUM JSON`. `SUM` is a checksum of the other fields. Tasks whose lines
 //! are truncated or damaged are repeated.
 
-use crate::task::Id;
-use grainbench_store::WriteError;
+use crate::key::Id;
+use crate::write::WriteError;
 use serde::{Deserialize, Serialize};
 use std::fs::File;
 use std::io::{self, Write};
@@ -85,7 +85,9 @@ pub struct Line<'a> {
 }
 
 impl<'a> Line<'a> {
-    fn written(&self) -> String {
+    /// Returns the text of the line, with its newline.
+    #[must_use]
+    pub fn written(&self) -> String {
         let load = self.load.map_or_else(|| "-".to_owned(), |load| load.to_string());
         let head = format!("{} {} {:.6} {load}", self.id, self.state.word(), self.seconds);
         format!("{head} {} {}\n", sum(&head, self.json), self.json)

@@ -1,9 +1,9 @@
 //! `--plan DIR`: writes a plan as a file with one task per line.
 
 use super::arguments::Arguments;
-use super::kinds;
+use super::study::{from_arguments, plan_of};
 use crate::cli::exit::{Fault, Outcome, print, print_json};
-use grainbench::campaign::plan::{Head, Plan, check_place};
+use grainbench::jobs::plan::{Head, Plan, check_place};
 use grainbench::reports::number;
 use serde::Serialize;
 use std::path::PathBuf;
@@ -22,20 +22,8 @@ struct Summary<'a> {
 /// Computes the tasks of a plan, writes it to `--out` and returns it.
 pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
-    let study = kinds::from_arguments(arguments)?;
-    let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
-    head.shards = arguments.shards.unwrap_or(0);
-    head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
-    head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
-    head.inputs = study.inputs();
-    let tasks = study.tasks(&head.program)?;
-    if tasks.is_empty() {
-        return Err(Fault::input("expected at least one task, found none for the selected cases and solvers"));
-    }
-    if tasks.len() > u32::MAX as usize {
-        return Err(Fault::input(format!("expected at most 4294967295 tasks, found {}", tasks.len())));
-    }
-    Ok(Plan::write(&arguments.out, head, tasks)?)
+    let Plan { path, head, tasks } = plan_of(&*from_arguments(arguments, true)?, arguments)?;
+    Ok(Plan::write(&path, head, tasks)?)
 }
 
 /// Writes a plan and prints the number of tasks and their expected duration.

@@ -2,15 +2,15 @@
 
 use crate::cli::exit::Fault;
 use crate::cli::value::whole;
-use grainbench::campaign::plan::Plan;
-use grainbench::campaign::shard;
+use grainbench::jobs::plan::Plan;
+use grainbench::jobs::shard;
 use std::path::PathBuf;
 
 /// Arguments of a plan.
 #[derive(Clone, Default, clap::Args)]
 pub(crate) struct Arguments {
-    /// Kind of plan: `run`, `cost`, `stability`, or the path of a sweep file.
-    #[arg(value_name = "run|cost|stability|SWEEP.toml")]
+    /// Kind of plan: `run`, `cost`, `stability`, `effects`, or the path of a sweep file.
+    #[arg(value_name = "run|cost|stability|effects|SWEEP.toml")]
     pub(crate) what: String,
     /// Cases, as for `run`, `cost` and `stability`. Default: all.
     #[arg(value_name = "CASE|CASE/VARIANT")]
@@ -53,18 +53,22 @@ pub(crate) struct PlanOptions {
     /// Write a plan to this directory and run nothing. `run --resume DIR` runs the plan. Finished tasks of an existing
     /// plan stay finished.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
-    pub(crate) plan: Option<PathBuf>,
+    plan: Option<PathBuf>,
     /// Number of shards of the plan. Default: as many as last at least 60 s on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,
 }
 
 impl PlanOptions {
+    /// Returns true if a plan is written.
+    pub(crate) const fn is_given(&self) -> bool {
+        self.plan.is_some()
+    }
+
     /// Returns the arguments of the plan; none without `--plan`.
-    pub(crate) fn arguments(&self, what: &str, cases: &[String], solver: &[String]) -> Option<Arguments> {
+    pub(crate) fn planned(&self, arguments: &Arguments) -> Option<Arguments> {
         let out = self.plan.clone()?;
-        let (what, cases, solver) = (what.to_owned(), cases.to_vec(), solver.to_vec());
-        Some(Arguments { what, cases, solver, shards: self.shards, out, ..Arguments::default() })
+        Some(Arguments { shards: self.shards, out, ..arguments.clone() })
     }
 }
 
@@ -90,6 +94,12 @@ impl Arguments {
             [("no-controls", self.no_controls), ("live", self.live), ("prices", self.prices), ("counts", self.counts)];
         words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(name, _)| format!("--{name}")));
         words
+    }
+
+    /// Returns the command, the cases and the solvers for the provenance of the report.
+    pub(super) fn said(&self, command: &str) -> Vec<String> {
+        let words = std::iter::once(command.to_owned()).chain(self.cases.iter().cloned());
+        words.chain(self.solver.iter().map(|solver| format!("--solver {solver}"))).collect()
     }
 
     /// Reads the arguments from a stored plan.

@@ -6,8 +6,6 @@ pub mod level;
 mod look;
 
 use crate::fault::Fault;
-use crate::log::State;
-use crate::plan::hash_of_file;
 use crate::task::{Id, Task};
 use file::{File, SolverEntry};
 use grainbench_cases::folder::Expression;
@@ -24,6 +22,8 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::solver::{Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
 use grainbench_scene::text::{line_of, written};
+use grainbench_store::key;
+use grainbench_store::log::State;
 use grainbench_studies::clock;
 use grainbench_studies::cost::knobs::nominal_seconds;
 use look::{EvaluatedQuantity, EvaluatedRun};
@@ -200,7 +200,7 @@ impl Sweep {
     /// Returns the hash of the inputs that are common to all points.
     fn common(&self) -> Result<String, Fault> {
         let looks: Vec<String> = self.looks.iter().map(EvaluatedQuantity::identity).collect();
-        let files: Vec<String> = self.files()?.iter().map(|path| hash_of_file(path)).collect();
+        let files: Vec<String> = self.files()?.iter().map(|path| key::of_file(path)).collect();
         let File { scene, timed, repetitions, .. } = &self.file;
         let text = self.source.text();
         let common = format!("{text}|{scene}|{:?}|{looks:?}|{files:?}|{timed}|{repetitions}", self.source.directory);
@@ -296,16 +296,16 @@ impl Sweep {
 
     /// Runs the task with the given index.
     #[must_use]
-    pub fn run(&self, place: usize, task: &Task, solver: &dyn Solver) -> (State, PointOutput) {
-        let Some((point, level)) = self.place(place) else {
-            return failed("the sweep has no such point".to_owned(), Outcome::Broken, self.looks.len());
-        };
-        let source = self.source(&task.set);
+    pub fn run(&self, place: usize, solvers: &[Option<Arc<dyn Solver>>]) -> (State, PointOutput) {
+        let broken = |why: String| failed(why, Outcome::Broken, self.looks.len());
+        let Some((point, level)) = self.place(place) else { return broken("the sweep has no such point".to_owned()) };
+        let Some(solver) = &solvers[level.asked] else { return broken("there is no such solver".to_owned()) };
+        let source = self.source(&self.set(level, point));
         let scene = match source.scene(&read_grains) {
             Ok(scene) => Arc::new(scene),
-            Err(error) => return failed(error.to_string(), Outcome::Broken, self.looks.len()),
+            Err(error) => return broken(error.to_string()),
         };
-        match self.ran(&scene, &level.resolution, solver) {
+        match self.ran(&scene, &level.resolution, &**solver) {
             Err(error) => failed(error.to_string(), Outcome::from(&error), self.looks.len()),
             Ok((record, timings)) => {
                 let ran = ran(&record);
@@ -336,19 +336,19 @@ impl Sweep {
         Ok((last.ok_or_else(missing)?, timings))
     }
 
-    /// Returns the report of the finished tasks. `output_of_point` returns the result of a task by its index, or `None`
+    /// Returns the report of the finished tasks. `outputs` has the result of each task, or `None`
     /// if the task is not finished.
     #[must_use]
     pub fn report(
         &self,
         names: &[String],
         provenance: grainbench_reports::Provenance,
-        output_of_point: impl Fn(usize) -> Option<PointOutput>,
+        outputs: Vec<Option<PointOutput>>,
     ) -> grainbench_reports::sweep::Sweep {
         let mut points = Vec::new();
         let mut missing = 0;
-        for place in 0..self.points.len() * self.levels.len() {
-            let (Some(left), Some((point, level))) = (output_of_point(place), self.place(place)) else {
+        for (place, output) in outputs.into_iter().enumerate() {
+            let (Some(left), Some((point, level))) = (output, self.place(place)) else {
                 missing += 1;
                 continue;
             };

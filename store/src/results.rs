@@ -1,13 +1,15 @@
-//! Finished tasks of a plan, from the result files of all workers.
+//! Results of finished tasks, from the result files of all workers.
 
-use crate::fault::Fault;
+use crate::key::Id;
 use crate::log::{self, ENDING, Line, State, Worker};
-use crate::plan::RESULTS;
-use crate::task::Id;
+use crate::write::WriteError;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
 use std::fs;
 use std::path::{Path, PathBuf};
+
+/// Directory of result files.
+pub const RESULTS: &str = "results";
 
 /// Result of a task.
 #[derive(Clone, Debug, PartialEq)]
@@ -23,6 +25,8 @@ pub struct Entry {
     pub worker: usize,
     /// Result as JSON; empty unless results were requested.
     pub json: Box<str>,
+    /// Number of further results, which are ignored because the first result was successful.
+    pub repeats: usize,
 }
 
 /// Result of a task, deserialised from its JSON text.
@@ -36,7 +40,7 @@ pub enum TaskResult<T> {
     Crash(String),
 }
 
-/// All finished tasks of a plan.
+/// All finished tasks whose results are in a directory.
 #[derive(Clone, Debug, Default)]
 pub struct FinishedTasks {
     /// Results by task.
@@ -45,8 +49,30 @@ pub struct FinishedTasks {
     pub workers: Vec<Worker>,
     /// Number of truncated or damaged lines. A file with a damaged first line counts as one line.
     pub damaged: usize,
-    /// Number of results for tasks that already had a successful result. They are ignored.
-    pub twice: usize,
+}
+
+/// Removes the result files of a directory.
+///
+/// # Errors
+/// When a file cannot be removed.
+pub fn remove(directory: &Path) -> Result<(), WriteError> {
+    for file in files(&directory.join(RESULTS)).unwrap_or_default() {
+        fs::remove_file(&file).map_err(|source| WriteError::new(&file, source))?;
+    }
+    Ok(())
+}
+
+/// Returns the result files in a folder, in the order of the starts of their workers; none if there is no folder.
+fn files(folder: &Path) -> std::io::Result<Vec<PathBuf>> {
+    let entries = match fs::read_dir(folder) {
+        Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(Vec::new()),
+        entries => entries?,
+    };
+    let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
+    files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
+    // The names begin with the time.
+    files.sort();
+    Ok(files)
 }
 
 impl FinishedTasks {
@@ -54,20 +80,14 @@ impl FinishedTasks {
     ///
     /// # Errors
     /// When a file cannot be read.
-    pub fn read(plan: &Path, with_results: bool) -> Result<Self, Fault> {
-        let folder = plan.join(RESULTS);
-        let mut finished = Self::default();
-        let entries = match fs::read_dir(&folder) {
-            Ok(entries) => entries,
-            Err(error) if error.kind() == std::io::ErrorKind::NotFound => return Ok(finished),
-            Err(error) => return Err(Fault::in_file(&folder, "a directory that can be read", error)),
+    pub fn read(directory: &Path, with_results: bool) -> Result<Self, String> {
+        let folder = directory.join(RESULTS);
+        let unreadable = |path: &Path, what: &str, error: std::io::Error| {
+            format!("{}: expected a {what} that can be read, found {error}", path.display())
         };
-        let mut files: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
-        files.retain(|path| path.extension().is_some_and(|ending| ending == ENDING));
-        // The names begin with the time, so this is the order of the starts of the workers.
-        files.sort();
-        for file in files {
-            let bytes = fs::read(&file).map_err(|error| Fault::in_file(&file, "a file that can be read", error))?;
+        let mut finished = Self::default();
+        for file in files(&folder).map_err(|error| unreadable(&folder, "directory", error))? {
+            let bytes = fs::read(&file).map_err(|error| unreadable(&file, "file", error))?;
             finished.add(&bytes, with_results);
         }
         Ok(finished)
@@ -117,13 +137,53 @@ impl FinishedTasks {
     fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
         let Line { id, state, seconds, load, json } = *line;
         let json = if with_results { json } else { "" };
-        let entry = || Entry { state, seconds, load, worker, json: json.into() };
+        let entry = || Entry { state, seconds, load, worker, json: json.into(), repeats: 0 };
         match self.entries.get_mut(&id) {
             None => {
                 self.entries.insert(id, entry());
             }
             Some(known) if known.state != State::Done => *known = entry(),
-            Some(_) => self.twice += 1,
+            Some(known) => known.repeats += 1,
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::log::Log;
+
+    #[test]
+    fn the_first_successful_result_of_a_task_counts() {
+        let directory = tempfile::tempdir().unwrap();
+        fs::create_dir(directory.path().join(RESULTS)).unwrap();
+        let [a, b] = ["a", "b"].map(|word| Id::of_words("", &[word]));
+        for (name, results) in [
+            ("1", [(a, State::Failed, "1"), (b, State::Done, "2")]),
+            ("2", [(a, State::Done, "3"), (b, State::Done, "4")]),
+            ("3", [(a, State::Crashed, "\"5\""), (b, State::Failed, "6")]),
+        ] {
+            let worker = Worker {
+                name: name.to_owned(),
+                host: String::new(),
+                process: 0,
+                machine: String::new(),
+                cores: 1,
+                job: None,
+                granted: None,
+                began: String::new(),
+            };
+            let mut log = Log::new(&directory.path().join(RESULTS), &worker).unwrap();
+            for (id, state, json) in results {
+                log.add(&Line { id, state, seconds: 1.0, load: None, json }).unwrap();
+            }
+        }
+        let finished = FinishedTasks::read(directory.path(), true).unwrap();
+        assert_eq!([a, b].map(|id| finished.result::<u32>(id)), [TaskResult::Out(3), TaskResult::Out(2)]);
+        // Repeats are counted for each task, because the directory may hold results of tasks outside a plan.
+        assert_eq!([a, b].map(|id| finished.entries[&id].repeats), [1, 2]);
+        remove(directory.path()).unwrap();
+        assert_eq!(FinishedTasks::read(directory.path(), true).unwrap().entries.len(), 0);
     }
 }

@@ -5,7 +5,8 @@ use crate::shard;
 use crate::task::{self, Task};
 use grainbench_scene::error::expected_and_found;
 use grainbench_scene::text::line_of;
-use grainbench_store::{StagedDir, WriteError, is_scratch};
+use grainbench_store::results::RESULTS;
+use grainbench_store::{StagedDir, WriteError, is_scratch, key};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::fs;
@@ -15,8 +16,6 @@ use std::path::{Path, PathBuf};
 pub const HEAD: &str = "plan.toml";
 /// File with the tasks, one per line.
 pub const TASKS: &str = "tasks.jsonl";
-/// Directory of result files.
-pub const RESULTS: &str = "results";
 /// Directory of leases.
 pub const RUNNING: &str = "running";
 /// Format version of `plan.toml`. It must be raised whenever the meaning of stored data changes.
@@ -34,6 +33,8 @@ pub enum Kind {
     Cost,
     /// Stability study.
     Stability,
+    /// Study of the influence of effects.
+    Effects,
     /// Parameter sweep over keys of a scene.
     Sweep,
 }
@@ -93,7 +94,7 @@ impl Head {
             seconds: 0.0,
             timed,
             lease_seconds: LEASE,
-            program: grainbench_studies::identity::of_this_program(),
+            program: key::of_this_program(),
             version: String::new(),
             date: String::new(),
             directory: std::env::current_dir().unwrap_or_default(),
@@ -202,7 +203,7 @@ impl Plan {
     /// When the program or an input file differs. The error names it.
     pub fn check_program(&self) -> Result<(), Fault> {
         let head = &self.head;
-        let here = grainbench_studies::identity::of_this_program();
+        let here = key::of_this_program();
         if here != head.program {
             let expected = format!("the program that wrote the plan, version {}", head.version);
             return Err(Fault::in_file(
@@ -212,7 +213,7 @@ impl Plan {
             ));
         }
         for (path, known) in &head.inputs {
-            if hash_of_file(&head.directory.join(path)) != *known {
+            if key::of_file(&head.directory.join(path)) != *known {
                 let found = "a changed file; write the plan again (unchanged tasks stay finished)";
                 return Err(Fault::expected(path, "the file of the plan", found));
             }
@@ -238,12 +239,6 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),
         Err(error) => Err(Fault::in_file(path, expected, error)),
     }
-}
-
-/// Returns the hash of a file's content, or `unreadable`, which equals no hash, if the file cannot be read.
-#[must_use]
-pub fn hash_of_file(path: &Path) -> String {
-    fs::read(path).map_or_else(|_| "unreadable".to_owned(), |bytes| blake3::hash(&bytes).to_hex().to_string())
 }
 
 fn hash(text: &str) -> String {

@@ -1,28 +1,29 @@
 //! Plan of a parameter sweep.
 
 use super::arguments::Arguments;
-use super::study::{ReportOptions, Study};
+use super::study::{ReportOptions, Study, Tasks};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
 use crate::cli::publish::outcome_is_judged;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
-use grainbench::campaign::finished::{FinishedTasks, TaskResult};
-use grainbench::campaign::log::State;
-use grainbench::campaign::plan::{Kind, Plan, hash_of_file};
-use grainbench::campaign::share::share;
-use grainbench::campaign::sweep::Sweep;
-use grainbench::campaign::task::{Id, Task};
-use grainbench::campaign::work::ResultSink;
 use grainbench::harness::verdict;
+use grainbench::jobs::execute::{ResultSink, TaskList};
+use grainbench::jobs::plan::{Kind, Plan};
+use grainbench::jobs::sweep::Sweep;
+use grainbench::jobs::task::Task;
 use grainbench::reports::number;
 use grainbench::reports::sweep::{PointOutput, QuantityResult, sweep_json, write_sweep};
 use grainbench::scene::solver::Solver;
-use std::collections::{BTreeMap, HashMap};
+use grainbench::store::key;
+use grainbench::store::log::State;
+use grainbench::store::results::TaskResult;
+use grainbench::studies::run_cache::RunCache;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Sweep over parameters, with its solvers.
 pub(crate) struct SweepStudy {
@@ -32,12 +33,19 @@ pub(crate) struct SweepStudy {
     asked: Vec<String>,
     /// Solver names in the results.
     names: Vec<String>,
+    solvers: NamedSolvers,
+    /// Cache of finished runs, and the solvers in the order of the sweep file, which use it. They are opened with the first run.
+    opened: OnceLock<(Option<Arc<RunCache>>, Vec<Option<Arc<dyn Solver>>>)>,
 }
 
 impl SweepStudy {
     pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
         if !is_manifest(file) {
-            return Err(Fault::unknown("`SWEEP.toml`, or a command with a plan", file, ["run", "cost", "stability"]));
+            return Err(Fault::unknown(
+                "`SWEEP.toml`, or a command with a plan",
+                file,
+                ["run", "cost", "stability", "effects"],
+            ));
         }
         arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;
@@ -45,16 +53,22 @@ impl SweepStudy {
         // Paths of manifests are relative to the directory of the sweep file.
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
-        let (_, names) = NamedSolvers::read_by_content(&asked)?;
-        Ok(Self { path: file.to_owned(), sweep, asked, names })
+        let (solvers, names) = NamedSolvers::read_for(&asked, true)?;
+        Ok(Self { path: file.to_owned(), sweep, asked, names, solvers, opened: OnceLock::new() })
     }
 
-    fn solvers(&self) -> Result<NamedSolvers, Fault> {
-        NamedSolvers::read_by_content(&self.asked).map(|(solvers, _)| solvers)
+    fn opened(&self) -> &(Option<Arc<RunCache>>, Vec<Option<Arc<dyn Solver>>>) {
+        self.opened.get_or_init(|| {
+            // Timed tasks never use results of the cache.
+            let cache = if self.is_timed() { None } else { cache::open(false) };
+            let solvers = cache::with(self.solvers.clone(), cache.as_ref());
+            let found = self.names.iter().map(|name| solvers.find(name)).collect();
+            (cache, found)
+        })
     }
 }
 
-impl Study for SweepStudy {
+impl Tasks for SweepStudy {
     fn kind(&self) -> Kind {
         Kind::Sweep
     }
@@ -64,7 +78,7 @@ impl Study for SweepStudy {
     }
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
-        Ok(self.sweep.tasks(program, &self.solvers()?, &self.names)?)
+        Ok(self.sweep.tasks(program, &self.solvers, &self.names)?)
     }
 
     fn inputs(&self) -> BTreeMap<String, String> {
@@ -73,50 +87,47 @@ impl Study for SweepStudy {
         // An invalid scene causes an error when the tasks are listed.
         let named = self.sweep.files().unwrap_or_default().into_iter().map(|path| path.display().to_string());
         let files = std::iter::once(self.path.clone()).chain(scene).chain(named).chain(manifests);
-        let mut inputs = self.solvers().map_or_else(|_| BTreeMap::new(), |solvers| solvers.inputs());
-        inputs.extend(files.map(|file| (file.clone(), hash_of_file(Path::new(&file)))));
+        let mut inputs = self.solvers.inputs();
+        inputs.extend(files.map(|file| (file.clone(), key::of_file(Path::new(&file)))));
         inputs
     }
 
-    fn work(&self, plan: &Plan, tasks: &[&Task], jobs: usize, desk: &Arc<ResultSink>) -> Result<(), Fault> {
-        // Timed tasks never use results of the cache.
-        let cache = if self.is_timed() { None } else { cache::open(false) };
-        let solvers = cache::with(self.solvers()?, cache.as_ref());
-        let places: HashMap<Id, usize> = plan.tasks.iter().enumerate().map(|(at, task)| (task.id, at)).collect();
-        let mut found: BTreeMap<&str, Arc<dyn Solver>> = BTreeMap::new();
-        for (asked, name) in self.sweep.solvers().iter().zip(&self.names) {
-            let solver =
-                solvers.find(name).ok_or_else(|| Fault::input(format!("expected a solver, found `{name}`")))?;
-            let named = tasks.iter().find(|task| task.solver == *asked);
-            found.extend(named.map(|task| (task.solver.as_str(), solver)));
-        }
-        let do_piece = |piece: usize| {
-            let task = tasks[piece];
-            if let (Some(place), Some(solver)) = (places.get(&task.id), found.get(task.solver.as_str())) {
-                desk.attempt(task.id, || self.sweep.run(*place, task, &**solver));
-            }
-        };
-        share(tasks.len(), jobs, || desk.goes_on(), do_piece);
-        if let Some(cache) = &cache {
-            cache.make_room();
-        }
+    fn check(&self, _: &Plan) -> Result<(), Fault> {
+        // The sweep file is an input of the plan.
         Ok(())
     }
+}
 
-    fn collect(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
+impl TaskList for SweepStudy {
+    type Output = PointOutput;
+
+    fn perform(&self, place: usize, _: &ResultSink<'_, PointOutput>) -> (State, PointOutput) {
+        self.sweep.run(place, &self.opened().1)
+    }
+}
+
+impl Drop for SweepStudy {
+    fn drop(&mut self) {
+        if let Some((Some(cache), _)) = self.opened.get() {
+            cache.make_room();
+        }
+    }
+}
+
+impl Study for SweepStudy {
+    fn report(&self, results: Vec<TaskResult<PointOutput>>, how: &ReportOptions<'_>) -> Outcome {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
-        let left = |place: usize| -> Option<PointOutput> {
-            match finished.result(plan.tasks.get(place)?.id) {
-                TaskResult::Nothing => None,
-                TaskResult::Out(left) => Some(left),
-                TaskResult::Crash(detail) => {
-                    let looked =
-                        QuantityResult { verdict: Some(verdict::Outcome::Broken), ..QuantityResult::default() };
-                    Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
-                }
+        let crashed = results.iter().any(|result| matches!(result, TaskResult::Crash(_)));
+        let left = |result: TaskResult<PointOutput>| match result {
+            TaskResult::Nothing => None,
+            TaskResult::Out(left) => Some(left),
+            TaskResult::Crash(detail) => {
+                let looked = QuantityResult { verdict: Some(verdict::Outcome::Broken), ..QuantityResult::default() };
+                Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
             }
         };
+        let left = results.into_iter().map(left).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
         write_sweep(how.out, &report).map_err(Fault::writing)?;
         let [within, outside, amber, unjudged] = report.counts();
@@ -128,10 +139,6 @@ impl Study for SweepStudy {
             let page = how.out.join("index.html");
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
-        let crashed = plan
-            .tasks
-            .iter()
-            .any(|task| finished.entries.get(&task.id).is_some_and(|entry| entry.state == State::Crashed));
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
         let nothing_judged = outcomes().next().is_some() && !outcomes().any(outcome_is_judged);
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;

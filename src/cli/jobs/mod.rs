@@ -1,30 +1,32 @@
-//! Many runs from one plan, on this machine or through a batch system. Commands: `--plan DIR`, `run --resume DIR` and
-//! `report DIR`.
+//! Lists of tasks: in the output directory of a command, or from one plan on this machine or through a batch system.
+//! Commands for plans: `--plan DIR`, `run --resume DIR` and `report DIR`.
 
 pub(crate) mod arguments;
+mod claims;
 pub(crate) mod collect;
-mod kinds;
-mod of_cost;
-mod of_run;
-mod of_stability;
-mod of_sweep;
+mod cost;
+mod effects;
+pub(crate) mod here;
 pub(crate) mod plan;
+mod stability;
 pub(crate) mod status;
 mod study;
+mod sweep;
+pub(crate) mod watch;
 pub(crate) mod work;
 
 use super::exit::Fault;
-use grainbench::campaign;
-use grainbench::campaign::plan::Plan;
+use grainbench::jobs;
+use grainbench::jobs::plan::Plan;
 use std::path::Path;
 
-impl From<campaign::Fault> for Fault {
-    fn from(fault: campaign::Fault) -> Self {
+impl From<jobs::Fault> for Fault {
+    fn from(fault: jobs::Fault) -> Self {
         match fault {
-            campaign::Fault::Input(words) => Self::input(words),
-            campaign::Fault::Write(error) => Self::writing(error),
+            jobs::Fault::Input(words) => Self::input(words),
+            jobs::Fault::Write(error) => Self::writing(error),
             // A failure of the batch system is not an input error.
-            campaign::Fault::Batch(words) => Self::Broken(words),
+            jobs::Fault::Batch(words) => Self::Broken(words),
         }
     }
 }

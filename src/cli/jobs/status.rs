@@ -1,9 +1,9 @@
 //! `report --progress`: prints the progress of a plan.
 
 use crate::cli::exit::{Outcome, print, print_json};
-use grainbench::campaign::plan::Plan;
-use grainbench::campaign::slurm;
-use grainbench::campaign::status::Status;
+use grainbench::jobs::plan::Plan;
+use grainbench::jobs::slurm;
+use grainbench::jobs::status::Status;
 use grainbench::reports::number;
 use serde::Serialize;
 use std::path::{Path, PathBuf};

@@ -1,12 +1,12 @@
 //! `report` of a plan. The report contains the results of all finished tasks, as if one machine had run them.
 
 use super::arguments::Arguments as Planned;
-use super::study::ReportOptions;
-use super::{enter, kinds};
+use super::enter;
+use super::study::{ReportOptions, from_arguments};
 use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
-use grainbench::campaign::finished::FinishedTasks;
-use grainbench::campaign::plan::Plan;
+use grainbench::jobs::plan::Plan;
 use grainbench::reports::trend::{Column, write_trend};
+use grainbench::store::results::FinishedTasks;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
@@ -70,21 +70,24 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let plan = enter(plan)?;
     plan.check_program()?;
     check_writable(&out)?;
-    let study = kinds::from_arguments(&Planned::read(&plan)?)?;
-    let finished = FinishedTasks::read(&plan.path, true)?;
-    let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
-    let done = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));
+    let study = from_arguments(&Planned::read(&plan)?, true)?;
+    study.check(&plan)?;
+    let finished = FinishedTasks::read(&plan.path, true).map_err(Fault::input)?;
+    let (missing, unfinished, seconds) = progress(&plan, &finished);
     let how = ReportOptions {
         out: &out,
         strict: arguments.strict,
         parquet: arguments.parquet,
         json: arguments.json,
         against: against.as_deref(),
-        unfinished: unfinished(&plan, missing),
-        words: words(&plan, &finished, missing),
-        seconds: done.map(|entry| entry.seconds).sum(),
+        words: words(&plan, &finished, unfinished.clone()),
+        unfinished,
+        seconds,
+        is_draft: false,
+        update_stored: None,
+        end: String::new(),
     };
-    let code = study.collect(&plan, &finished, &how)?;
+    let code = study.report_of(&plan, &finished, &how)?;
     if !earlier.is_empty() {
         let mut columns = earlier;
         columns.push(read_column(&out)?);
@@ -99,15 +102,20 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     Ok(code)
 }
 
-/// Returns a text with the numbers of finished and of all tasks; none if all tasks are finished.
-fn unfinished(plan: &Plan, missing: usize) -> Option<String> {
-    (missing > 0).then(|| format!("unfinished: {} of {} tasks", plan.tasks.len() - missing, plan.tasks.len()))
+/// Returns the number of tasks without a result, a text with the numbers of finished and of all tasks if a task is not
+/// finished, and the duration of the finished tasks (s).
+pub(super) fn progress(plan: &Plan, finished: &FinishedTasks) -> (usize, Option<String>, f64) {
+    let done: Vec<f64> =
+        plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.seconds).collect();
+    let missing = plan.tasks.len() - done.len();
+    let unfinished = (missing > 0).then(|| format!("unfinished: {} of {} tasks", done.len(), plan.tasks.len()));
+    (missing, unfinished, done.iter().sum())
 }
 
 /// Returns texts for the report: the machines that ran the tasks, and the largest system load during timed tasks. If
 /// tasks are missing, the first text is the number of finished tasks.
-fn words(plan: &Plan, finished: &FinishedTasks, missing: usize) -> Vec<String> {
-    let mut words: Vec<String> = unfinished(plan, missing).into_iter().collect();
+fn words(plan: &Plan, finished: &FinishedTasks, unfinished: Option<String>) -> Vec<String> {
+    let mut words: Vec<String> = unfinished.into_iter().collect();
     let used: BTreeSet<usize> =
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
     let mut machines: BTreeSet<String> = BTreeSet::new();

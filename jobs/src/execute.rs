@@ -1,0 +1,193 @@
+//! Executor of a list of tasks. It distributes the tasks over threads and hands over each result as soon as it is known.
+
+use crate::share::share;
+use crate::task::Task;
+use grainbench_store::WriteError;
+use grainbench_store::log::State;
+use grainbench_store::results::TaskResult;
+use serde::Serialize;
+use serde::de::DeserializeOwned;
+use std::any::Any;
+use std::collections::BTreeSet;
+use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::{Mutex, MutexGuard, PoisonError};
+use std::time::Instant;
+
+/// List of tasks, which are named by their indices.
+pub trait TaskList: Sync {
+    /// Result of a task.
+    type Output: Serialize + DeserializeOwned + Send;
+
+    /// Performs a task and returns its state and its result.
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Self::Output>) -> (State, Self::Output);
+
+    /// Performs the tasks of a group.
+    fn perform_group(&self, places: &[usize], sink: &ResultSink<'_, Self::Output>) {
+        self.perform_each(places, sink);
+    }
+
+    /// Performs tasks one after the other.
+    fn perform_each(&self, places: &[usize], sink: &ResultSink<'_, Self::Output>) {
+        for &place in places {
+            if !sink.goes_on() {
+                return;
+            }
+            let start = Instant::now();
+            match catch_unwind(AssertUnwindSafe(|| self.perform(place, sink))) {
+                Ok((state, output)) => sink.leave(place, state, start.elapsed().as_secs_f64(), Ok(output)),
+                Err(reason) => sink.crashed(place, start, &*reason),
+            }
+        }
+    }
+}
+
+/// Observer of progress, which can also stop the execution.
+pub trait Watch: Sync {
+    /// Returns true if further tasks may be started.
+    fn goes_on(&self) -> bool {
+        true
+    }
+    /// Returns false if an interrupt may have spoilt results. They are then not stored.
+    fn are_results_valid(&self) -> bool {
+        true
+    }
+    /// Called when `tasks` tasks are started.
+    fn begins(&self, _tasks: usize) {}
+    /// Called with the name of the current task.
+    fn now(&self, _name: &str) {}
+    /// Called when a task is finished.
+    fn finished(&self) {}
+    /// Called when the remaining tasks are leased to these other workers.
+    fn waits(&self, _others: &[String]) {}
+}
+
+impl Watch for () {}
+
+/// Result of a finished task, or the message of its panic.
+pub type Finished<T> = Result<T, String>;
+/// Function that stores the result of a task. Its arguments are the index of the task, its state, its duration (s) and its
+/// result.
+pub type Store<'a, T> = dyn Fn(usize, State, f64, Finished<T>) -> Result<(), WriteError> + Sync + 'a;
+
+/// Receiver of results.
+pub struct ResultSink<'a, T> {
+    watch: &'a dyn Watch,
+    store: &'a Store<'a, T>,
+    left: Mutex<BTreeSet<usize>>,
+    fault: Mutex<Option<WriteError>>,
+    stops: AtomicBool,
+    failed: AtomicUsize,
+}
+
+impl<'a, T> ResultSink<'a, T> {
+    /// Returns a sink that stores results with a function.
+    pub fn new(watch: &'a dyn Watch, store: &'a Store<'a, T>) -> Self {
+        Self {
+            watch,
+            store,
+            left: Mutex::default(),
+            fault: Mutex::default(),
+            stops: AtomicBool::new(false),
+            failed: AtomicUsize::new(0),
+        }
+    }
+
+    /// Returns true if another task may be started.
+    #[must_use]
+    pub fn goes_on(&self) -> bool {
+        !self.stops.load(Ordering::Relaxed) && self.watch.goes_on()
+    }
+
+    /// Reports the name of the current task.
+    pub fn now(&self, name: &str) {
+        self.watch.now(name);
+    }
+
+    /// Stores the result of a task that took `seconds`. After an error of the disk, no further task is started.
+    pub fn leave(&self, place: usize, state: State, seconds: f64, result: Finished<T>) {
+        if !self.watch.are_results_valid() {
+            return;
+        }
+        if let Err(error) = (self.store)(place, state, seconds, result) {
+            self.stops.store(true, Ordering::Relaxed);
+            locked(&self.fault).get_or_insert(error);
+            return;
+        }
+        locked(&self.left).insert(place);
+        self.failed.fetch_add(usize::from(state != State::Done), Ordering::Relaxed);
+        self.watch.finished();
+    }
+
+    fn crashed(&self, place: usize, start: Instant, reason: &(dyn Any + Send)) {
+        let words = reason.downcast_ref::<String>().map(String::as_str).or_else(|| reason.downcast_ref().copied());
+        let words = words.unwrap_or("our program failed").to_owned();
+        self.leave(place, State::Crashed, start.elapsed().as_secs_f64(), Err(words));
+    }
+
+    /// Returns the number of stored results.
+    #[must_use]
+    pub fn done(&self) -> usize {
+        locked(&self.left).len()
+    }
+
+    /// Returns the number of results of tasks that failed or crashed.
+    #[must_use]
+    pub fn failed(&self) -> usize {
+        self.failed.load(Ordering::Relaxed)
+    }
+
+    /// Returns the first error of the disk, and forgets it.
+    pub fn fault(&self) -> Option<WriteError> {
+        locked(&self.fault).take()
+    }
+}
+
+pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
+    mutex.lock().unwrap_or_else(PoisonError::into_inner)
+}
+
+/// Performs groups of tasks on up to `at_once` threads. If a task panics, it is recorded as crashed, and the others
+/// continue.
+pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sink: &ResultSink<'_, L::Output>) {
+    let perform = |group: usize| {
+        let start = Instant::now();
+        if let Err(reason) = catch_unwind(AssertUnwindSafe(|| list.perform_group(&groups[group], sink))) {
+            for &place in &groups[group] {
+                let is_left = locked(&sink.left).contains(&place);
+                if !is_left {
+                    sink.crashed(place, start, &*reason);
+                }
+            }
+        }
+    };
+    share(groups.len(), at_once, || sink.goes_on(), perform);
+}
+
+/// Performs all tasks in memory on up to `at_once` threads, in the order `order` of their indices. Calls `told` with each
+/// result. Returns the results in the order of the list.
+pub fn in_memory<L: TaskList>(
+    list: &L,
+    order: &[usize],
+    at_once: usize,
+    watch: &dyn Watch,
+    told: &(dyn Fn(&L::Output) + Sync),
+) -> Vec<TaskResult<L::Output>> {
+    let results: Vec<Mutex<TaskResult<L::Output>>> = order.iter().map(|_| Mutex::new(TaskResult::Nothing)).collect();
+    let store = |place: usize, _: State, _: f64, result: Finished<L::Output>| {
+        result.iter().for_each(told);
+        *locked(&results[place]) = result.map_or_else(TaskResult::Crash, TaskResult::Out);
+        Ok(())
+    };
+    watch.begins(order.len());
+    let groups: Vec<Vec<usize>> = order.iter().map(|place| vec![*place]).collect();
+    execute(list, &groups, at_once, &ResultSink::new(watch, &store));
+    results.into_iter().map(|result| result.into_inner().unwrap_or_else(PoisonError::into_inner)).collect()
+}
+
+/// Divides tasks into groups: consecutive tasks with the same group number, and single tasks without one.
+#[must_use]
+pub fn groups(tasks: &[Task], places: &[usize]) -> Vec<Vec<usize>> {
+    let is_one = |a: &usize, b: &usize| tasks[*a].group.is_some() && tasks[*a].group == tasks[*b].group;
+    places.chunk_by(is_one).map(<[usize]>::to_vec).collect()
+}

@@ -1,0 +1,85 @@
+//! Tasks of an effects study: one for each effect in each scene of a case.
+
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study, Tasks, outputs};
+use crate::cli::cost::sources;
+use crate::cli::effects;
+use crate::cli::exit::{Fault, Outcome};
+use grainbench::jobs::execute::{ResultSink, TaskList};
+use grainbench::jobs::plan::Kind;
+use grainbench::jobs::task::{Id, Task};
+use grainbench::reports::study::effects::Entry;
+use grainbench::store::log::State;
+use grainbench::store::results::TaskResult;
+use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
+use std::sync::{Mutex, PoisonError};
+
+/// Expected duration of a test of an effect (s).
+const SECONDS: f64 = 0.5;
+
+/// Effects study of cases.
+pub(crate) struct EffectStudy {
+    /// Study of each case. Its tasks share runs.
+    ledgers: Vec<Mutex<Ledger>>,
+    /// Index of the study, and the effect, of each task.
+    pieces: Vec<(usize, SceneEffect)>,
+    arguments: Arguments,
+}
+
+impl EffectStudy {
+    pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
+        arguments.only(&["CASE"])?;
+        let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
+        for (number, (ledger, of_case)) in effects::ledgers(&arguments.cases)?.into_iter().enumerate() {
+            ledgers.push(Mutex::new(ledger));
+            pieces.extend(of_case.into_iter().map(|piece| (number, piece)));
+        }
+        Ok(Self { ledgers, pieces, arguments: arguments.clone() })
+    }
+}
+
+impl Tasks for EffectStudy {
+    fn kind(&self) -> Kind {
+        Kind::Effects
+    }
+
+    fn is_timed(&self) -> bool {
+        true
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        let task = |(number, piece): &(usize, SceneEffect)| {
+            let case = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner).case().name;
+            Task {
+                scene: format!("{case}/{}", piece.variant),
+                what: piece.effect.word().to_owned(),
+                // One worker tests all effects of a case, because they share runs.
+                group: u32::try_from(*number).ok(),
+                ..Task::new(Id::of_words(program, &["effect", case, piece.variant, piece.effect.word()]), SECONDS)
+            }
+        };
+        Ok(self.pieces.iter().map(task).collect())
+    }
+}
+
+impl TaskList for EffectStudy {
+    type Output = Option<Entry>;
+
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Option<Entry>>) -> (State, Option<Entry>) {
+        let (number, piece) = &self.pieces[place];
+        sink.now(&format!("{} · {}", piece.variant, piece.effect.word()));
+        let mut ledger = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner);
+        (State::Done, ledger.entry(piece))
+    }
+}
+
+impl Study for EffectStudy {
+    fn report(&self, results: Vec<TaskResult<Option<Entry>>>, how: &ReportOptions<'_>) -> Outcome {
+        let (results, has_crash) = outputs(results, how);
+        let mut study = how.study(self.arguments.said("effects"));
+        study.ledger.extend(results.into_iter().flatten().flatten());
+        let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
+        study.sources = sources(&solvers.collect::<Vec<_>>());
+        how.publish(&study, effects::text(&study), has_crash || effects::is_red(&study))
+    }
+}

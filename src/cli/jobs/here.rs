@@ -1,0 +1,105 @@
+//! Tasks of a command without `--plan`. They run in its output directory, and an interrupted command continues there.
+
+use super::arguments::{Arguments, PlanOptions};
+use super::collect::progress;
+use super::study::{ReportOptions, from_arguments, plan_of};
+use super::watch::Follower;
+use super::work::worker;
+use crate::cli::cores::cores;
+use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
+use grainbench::jobs::plan::{Plan, RUNNING};
+use grainbench::jobs::shard::Shard;
+use grainbench::jobs::work::WorkRequest;
+use grainbench::store::results::{self, FinishedTasks};
+use std::fs;
+use std::path::Path;
+use std::process::ExitCode;
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
+
+/// Shortest time between two updates of the report while tasks run.
+const EVERY: Duration = Duration::from_secs(5);
+/// Directories with finished parts that an earlier version of this program wrote to the output directory.
+const EARLIER: [&str; 2] = ["points", "pieces"];
+
+/// Options of a command.
+#[derive(Default)]
+pub(crate) struct Options<'a> {
+    /// True to repeat finished tasks.
+    pub(crate) no_cache: bool,
+    /// `results.json` of an earlier report.
+    pub(crate) against: Option<&'a Path>,
+    /// True to store the results in the source tree.
+    pub(crate) update_stored: bool,
+}
+
+/// Writes a plan if `--plan` is given. Otherwise performs the tasks.
+pub(crate) fn plan_or_perform(plan: &PlanOptions, arguments: &Arguments, options: &Options<'_>) -> Outcome {
+    plan.planned(arguments).map_or_else(|| perform(arguments, options), |planned| super::plan::plan(&planned))
+}
+
+/// Performs the tasks that are not finished and writes the report. The report is also written while tasks run.
+fn perform(arguments: &Arguments, options: &Options<'_>) -> Outcome {
+    let out = &arguments.out;
+    let study = from_arguments(arguments, false)?;
+    if Plan::is_in(out) {
+        let there = out.display();
+        return Err(Fault::input(format!("--out: {there}: expected a directory without a plan, found a plan")));
+    }
+    if let Some(path) = options.against {
+        grainbench::reports::study::points_of(path).map_err(Fault::input)?;
+    }
+    check_writable(out)?;
+    let plan = plan_of(&*study, arguments)?;
+    for folder in EARLIER.map(|name| out.join(name)).iter().filter(|folder| folder.is_dir()) {
+        let what = "finished parts of an earlier version are not read, and their folder can be deleted";
+        exit::say("note", &format!("{}: {what}", folder.display()));
+    }
+    if options.no_cache {
+        results::remove(out).map_err(Fault::writing)?;
+    }
+    let how = ReportOptions {
+        out,
+        strict: false,
+        parquet: false,
+        json: arguments.json,
+        against: options.against,
+        unfinished: None,
+        words: Vec::new(),
+        seconds: 0.0,
+        is_draft: false,
+        update_stored: None,
+        end: String::new(),
+    };
+    let report = |how: ReportOptions<'_>| {
+        let finished = FinishedTasks::read(out, true).map_err(Fault::input)?;
+        let (missing, unfinished, seconds) = progress(&plan, &finished);
+        let words = unfinished.clone().into_iter().collect();
+        let update_stored = how.update_stored.filter(|_| missing == 0);
+        study.report_of(&plan, &finished, &ReportOptions { unfinished, words, seconds, update_stored, ..how })
+    };
+    let written = Mutex::new(Instant::now());
+    let draft = || {
+        // One thread writes the report, and the others continue.
+        if let Ok(mut written) = written.try_lock()
+            && written.elapsed() > EVERY
+        {
+            // An error of the disk is reported with the last report.
+            let _ = report(ReportOptions { is_draft: true, ..how.clone() });
+            *written = Instant::now();
+        }
+    };
+    let jobs = if study.is_timed() { 1 } else { cores() };
+    let asked = WorkRequest { shard: Shard::WHOLE, again: false, jobs };
+    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks").calling(&draft))?;
+    // The folder of leases is empty unless another process works on the same directory.
+    let _ = fs::remove_dir(out.join(RUNNING));
+    let end = format!("{} of {} tasks were finished before\n", summary.before, summary.tasks);
+    let update_stored = options.update_stored.then_some(arguments.what.as_str());
+    let code = report(ReportOptions { end, update_stored, ..how.clone() })?;
+    if summary.left > 0 {
+        exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
+        return Ok(ExitCode::from(RED));
+    }
+    Ok(code)
+}

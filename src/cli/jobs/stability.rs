@@ -1,0 +1,148 @@
+//! Tasks of a stability study: one for each stability limit or hard case, with its solver.
+
+use super::arguments::Arguments;
+use super::study::{ReportOptions, Study, Tasks, outputs};
+use crate::cli::exit::{Fault, Outcome};
+use crate::cli::stability::{self, BAR, WorkItem};
+use crate::cli::strangers::NamedSolvers;
+use grainbench::cases::registry;
+use grainbench::harness::case::PLAIN;
+use grainbench::harness::solvers::Solvers;
+use grainbench::jobs::execute::{ResultSink, TaskList};
+use grainbench::jobs::plan::Kind;
+use grainbench::jobs::task::{Id, Task};
+use grainbench::reports::study::stability::{HardCaseResult, Limit};
+use grainbench::scene::scene::Scene;
+use grainbench::store::log::State;
+use grainbench::store::results::TaskResult;
+use grainbench::studies::stability::assembly::{self, Assembly};
+use grainbench::studies::stability::hard::{self, HardCase};
+use grainbench::studies::stability::limit;
+use serde::{Deserialize, Serialize};
+use std::collections::BTreeMap;
+
+/// Expected duration of finding a stability limit with contact springs (s).
+const SPRINGS: f64 = 0.5;
+/// Expected duration of finding a stability limit with a grid (s per cell).
+const CELLS: f64 = 0.05;
+/// Factor on the expected duration of a hard case. A failed case is repeated with smaller time steps.
+const TRIES: f64 = 3.0;
+
+/// Stability study.
+pub(crate) struct StabilityStudy {
+    assemblies: Vec<Assembly>,
+    hard: Vec<HardCase>,
+    bar: Scene,
+    items: Vec<WorkItem>,
+    solvers: NamedSolvers,
+    arguments: Arguments,
+}
+
+/// Result of a task.
+#[derive(Serialize, Deserialize)]
+pub(crate) enum Tested {
+    Limit(Limit),
+    Hard(HardCaseResult),
+}
+
+impl StabilityStudy {
+    pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
+        arguments.only(&["CASE", "--solver"])?;
+        let (assemblies, hard) = (assembly::all()?, hard::all());
+        let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
+        let items = stability::select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;
+        let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
+        Ok(Self { assemblies, hard, bar: bar.variant(PLAIN)?, items, solvers, arguments: arguments.clone() })
+    }
+
+    fn task(&self, item: &WorkItem, program: &str) -> Task {
+        let id =
+            |solver: &str, words: &[&str]| Id::of_words(&(program.to_owned() + &self.solvers.edition(solver)), words);
+        match item {
+            WorkItem::Assembly(at, solver) => {
+                let Assembly { name, kappa, scene, .. } = &self.assemblies[*at];
+                let kappa = kappa.map_or_else(String::new, |kappa| format!(" {kappa}"));
+                Task {
+                    scene: format!("{name}{kappa}"),
+                    solver: solver.clone(),
+                    what: "limit".to_owned(),
+                    ..Task::new(id(solver, &["limit", name, &format!("{scene:?}"), solver]), SPRINGS)
+                }
+            }
+            WorkItem::Bar(setting, cells) => Task {
+                scene: BAR.to_owned(),
+                solver: (*setting).to_owned(),
+                level: format!("cells={cells}"),
+                what: "limit".to_owned(),
+                ..Task::new(Id::of_words(program, &["bar", setting, &cells.to_string()]), CELLS * cells)
+            },
+            WorkItem::Hard(at, solver) => {
+                let case = &self.hard[*at];
+                let words = ["hard", &case.name, &format!("{:?}", case.scene), solver];
+                Task {
+                    scene: case.name.clone(),
+                    solver: solver.clone(),
+                    what: "hard case".to_owned(),
+                    ..Task::new(id(solver, &words), TRIES * hard::seconds(case, solver))
+                }
+            }
+        }
+    }
+}
+
+impl Tasks for StabilityStudy {
+    fn kind(&self) -> Kind {
+        Kind::Stability
+    }
+
+    fn is_timed(&self) -> bool {
+        false
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        Ok(self.items.iter().map(|item| self.task(item, program)).collect())
+    }
+
+    fn inputs(&self) -> BTreeMap<String, String> {
+        self.solvers.inputs()
+    }
+}
+
+impl TaskList for StabilityStudy {
+    type Output = Tested;
+
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Tested>) -> (State, Tested) {
+        let now = |name: &str, solver: &str| sink.now(&format!("{name} · {solver}"));
+        let tested = match &self.items[place] {
+            WorkItem::Assembly(at, solver) => {
+                let assembly = &self.assemblies[*at];
+                now(assembly.name, solver);
+                Tested::Limit(limit::of_assembly(assembly, (&self.solvers, solver)))
+            }
+            WorkItem::Bar(setting, cells) => {
+                now(BAR, setting);
+                Tested::Limit(limit::of_bar(&self.bar, (&self.solvers, setting), *cells))
+            }
+            WorkItem::Hard(at, solver) => {
+                now(&self.hard[*at].name, solver);
+                Tested::Hard(hard::judge(&self.hard[*at], &self.solvers, solver))
+            }
+        };
+        (State::Done, tested)
+    }
+}
+
+impl Study for StabilityStudy {
+    fn report(&self, results: Vec<TaskResult<Tested>>, how: &ReportOptions<'_>) -> Outcome {
+        let (results, has_crash) = outputs(results, how);
+        let mut study = how.study(self.arguments.said("stability"));
+        for tested in results.into_iter().flatten() {
+            match tested {
+                Tested::Limit(limit) => study.limits.push(limit),
+                Tested::Hard(row) => study.hard.push(row),
+            }
+        }
+        study.sources = stability::sources_of(&study);
+        how.publish(&study, stability::text(&study), has_crash || stability::is_red(&study))
+    }
+}

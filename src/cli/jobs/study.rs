@@ -1,0 +1,163 @@
+//! Kinds of work: each kind lists its tasks, performs them and makes the report. The tasks run in memory, in the output
+//! directory of a command, or in the directory of a plan.
+
+use super::arguments::Arguments;
+use super::claims::ClaimStudy;
+use super::cost::CostStudy;
+use super::effects::EffectStudy;
+use super::stability::StabilityStudy;
+use super::sweep::SweepStudy;
+use crate::cli::exit::{self, Fault, Outcome};
+use crate::cli::keep::keep_study;
+use crate::cli::provenance::provenance;
+use crate::cli::publish::{Output, publish_study};
+use grainbench::jobs::execute::{TaskList, Watch};
+use grainbench::jobs::plan::{Head, Kind, Plan};
+use grainbench::jobs::task::Task;
+use grainbench::jobs::work::{Summary, WorkRequest, work};
+use grainbench::reports::study::{Study as Report, write_study};
+use grainbench::store::log::Worker;
+use grainbench::store::results::{FinishedTasks, TaskResult};
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::process::ExitCode;
+
+/// Tasks of one kind of work.
+pub(crate) trait Tasks: Sync {
+    /// Returns the kind as stored in the file of the plan.
+    fn kind(&self) -> Kind;
+    /// Returns true if the tasks measure times.
+    fn is_timed(&self) -> bool;
+    /// Returns all tasks. `program` is the hash of this program.
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault>;
+    /// Returns the hashes of the files on which the tasks depend, by path.
+    fn inputs(&self) -> BTreeMap<String, String> {
+        BTreeMap::new()
+    }
+    /// Returns an error if the cases or programs have changed since the plan was written.
+    fn check(&self, plan: &Plan) -> Result<(), Fault> {
+        let tasks = self.tasks(&plan.head.program)?;
+        is_plan(plan, tasks.iter().map(|task| task.id).eq(plan.tasks.iter().map(|task| task.id)))
+    }
+}
+
+/// Returns an error if a plan has other tasks.
+pub(super) fn is_plan(plan: &Plan, is_same: bool) -> Result<(), Fault> {
+    let path = plan.path.display();
+    let message = "the cases or programs have changed; write the plan again, unchanged tasks stay finished";
+    if is_same { Ok(()) } else { Err(Fault::input(format!("{path}: {message}"))) }
+}
+
+/// Kind of work.
+pub(crate) trait Study: Tasks + TaskList {
+    /// Writes the report of the finished tasks. `results` has an entry for each task.
+    fn report(&self, results: Vec<TaskResult<Self::Output>>, how: &ReportOptions<'_>) -> Outcome;
+}
+
+/// Kind of work whose results have any type.
+pub(crate) trait AnyStudy: Tasks {
+    /// Runs a shard of a plan.
+    fn work(&self, plan: &Plan, asked: &WorkRequest, worker: &Worker, watch: &dyn Watch) -> Result<Summary, Fault>;
+    /// Writes the report of the finished tasks of a plan.
+    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
+}
+
+impl<S: Study> AnyStudy for S {
+    fn work(&self, plan: &Plan, asked: &WorkRequest, worker: &Worker, watch: &dyn Watch) -> Result<Summary, Fault> {
+        Ok(work(plan, asked, worker, watch, self)?)
+    }
+
+    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
+        self.report(plan.tasks.iter().map(|task| finished.result(task.id)).collect(), how)
+    }
+}
+
+/// Returns the study of the kind that the arguments name. If `is_shared` is true, several processes may run its tasks.
+pub(crate) fn from_arguments(arguments: &Arguments, is_shared: bool) -> Result<Box<dyn AnyStudy>, Fault> {
+    Ok(match arguments.what.as_str() {
+        "run" => Box::new(ClaimStudy::new(arguments)?),
+        "cost" => Box::new(CostStudy::new(arguments, is_shared)?),
+        "stability" => Box::new(StabilityStudy::new(arguments, is_shared)?),
+        "effects" => Box::new(EffectStudy::new(arguments)?),
+        file => Box::new(SweepStudy::new(file, arguments)?),
+    })
+}
+
+/// Returns the plan of a study in a directory, without writing it.
+pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Plan, Fault> {
+    let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
+    head.shards = arguments.shards.unwrap_or(0);
+    head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
+    head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
+    head.inputs = study.inputs();
+    let tasks = study.tasks(&head.program)?;
+    if tasks.is_empty() {
+        return Err(Fault::input("expected at least one task, found none for the selected cases and solvers"));
+    }
+    if tasks.len() > u32::MAX as usize {
+        return Err(Fault::input(format!("expected at most 4294967295 tasks, found {}", tasks.len())));
+    }
+    Ok(Plan { path: arguments.out.clone(), head, tasks })
+}
+
+/// Directory, format and comparison of a report.
+#[derive(Clone)]
+pub(crate) struct ReportOptions<'a> {
+    /// Directory of the report.
+    pub(crate) out: &'a Path,
+    pub(crate) strict: bool,
+    pub(crate) parquet: bool,
+    pub(crate) json: bool,
+    /// `results.json` of the last earlier report.
+    pub(crate) against: Option<&'a Path>,
+    /// Text with the number of finished tasks; none if all tasks are finished.
+    pub(crate) unfinished: Option<String>,
+    /// Further lines that the report lists among its options.
+    pub(crate) words: Vec<String>,
+    /// Total duration of the finished tasks (s).
+    pub(crate) seconds: f64,
+    /// True while tasks are running: the report is written, and nothing is printed.
+    pub(crate) is_draft: bool,
+    /// Name under which a study is stored in the source tree, if it is stored.
+    pub(crate) update_stored: Option<&'a str>,
+    /// Text after the results.
+    pub(crate) end: String,
+}
+
+impl ReportOptions<'_> {
+    /// Returns a study without results. `words` are the command and its options.
+    pub(super) fn study(&self, words: Vec<String>) -> Report {
+        Report::new(provenance(words.into_iter().chain(self.words.iter().cloned()).collect(), self.seconds))
+    }
+
+    /// Writes and prints a study.
+    pub(super) fn publish(&self, study: &Report, text: String, is_red: bool) -> Outcome {
+        if self.is_draft {
+            write_study(self.out, study).map_err(Fault::writing)?;
+            return Ok(ExitCode::SUCCESS);
+        }
+        if let Some(name) = self.update_stored {
+            keep_study(name, study)?;
+        }
+        let output = Output { text: Some(text + &self.end), ..Output::new(self.out, self.json, false) };
+        publish_study(study, output, is_red)
+    }
+}
+
+/// Returns the results of a study. A task whose result is missing has no entry; a crash is reported.
+pub(super) fn outputs<T>(results: Vec<TaskResult<T>>, how: &ReportOptions<'_>) -> (Vec<Option<T>>, bool) {
+    let mut has_crash = false;
+    let output = |result: TaskResult<T>| match result {
+        TaskResult::Out(output) => Some(output),
+        TaskResult::Nothing => None,
+        TaskResult::Crash(detail) => {
+            has_crash = true;
+            if !how.is_draft {
+                exit::say("warning", &format!("a task crashed and is omitted: {detail}"));
+            }
+            None
+        }
+    };
+    let outputs = results.into_iter().map(output).collect();
+    (outputs, has_crash)
+}
