@@ -1,8 +1,7 @@
 //! `grainbench cost`: measures error against computing time.
 
-use super::exit::{Fault, Outcome};
-use super::jobs::arguments::{Arguments as Planned, PlanOptions};
-use super::jobs::here::{Options, plan_or_perform};
+use super::exit::Fault;
+use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
 use grainbench::harness::subject::TargetQuantity;
@@ -46,25 +45,29 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "plan", conflicts_with = "prices")]
     counts: bool,
     #[command(flatten)]
-    plan: PlanOptions,
+    pub(crate) plan: PlanOptions,
 }
 
-/// Measures the points and writes the report, or writes a plan.
-pub(crate) fn cost(arguments: &Arguments) -> Outcome {
-    let &Arguments { prices, counts, json, no_cache, update_stored, .. } = arguments;
-    let planned = Planned {
-        what: "cost".to_owned(),
-        cases: arguments.cases.clone(),
-        solver: arguments.solver.clone(),
-        levels: if arguments.levels == "all" { vec![arguments.levels.clone()] } else { Vec::new() },
-        prices,
-        counts,
-        json,
-        out: arguments.out.clone(),
-        ..Planned::default()
-    };
-    let options = Options { no_cache, update_stored, against: arguments.against.as_deref() };
-    plan_or_perform(&arguments.plan, &planned, &options)
+impl Arguments {
+    /// Returns the arguments of the study.
+    pub(crate) fn planned(&self) -> Planned {
+        Planned {
+            what: "cost".to_owned(),
+            cases: self.cases.clone(),
+            solver: self.solver.clone(),
+            levels: if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() },
+            prices: self.prices,
+            counts: self.counts,
+            json: self.json,
+            out: self.out.clone(),
+            ..Planned::default()
+        }
+    }
+
+    /// Returns the options that do not change the tasks.
+    pub(crate) fn options(&self) -> StudyOptions<'_> {
+        StudyOptions { no_cache: self.no_cache, against: self.against.as_deref(), update_stored: self.update_stored }
+    }
 }
 
 /// Returns true if a study measures no error, or if a value has become worse since an earlier study.

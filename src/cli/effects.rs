@@ -1,8 +1,7 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
 use super::exit::{Fault, Outcome, check_writable};
-use super::jobs::arguments::{Arguments as Planned, PlanOptions};
-use super::jobs::here::{Options, plan_or_perform};
+use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
@@ -19,6 +18,7 @@ use grainbench::scene::solver::{Method, Resolution};
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use grainbench::studies::effects::scene::StudyInput;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -42,7 +42,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    plan: PlanOptions,
+    pub(crate) plan: PlanOptions,
 }
 
 /// Options for a scene file.
@@ -78,8 +78,26 @@ impl SceneOptions {
     }
 }
 
-/// Tests the effects and writes the report, which is updated after each case.
-pub(crate) fn effects(arguments: &Arguments) -> Outcome {
+impl Arguments {
+    /// Returns the arguments of the study of cases.
+    pub(crate) fn planned(&self) -> Planned {
+        Planned {
+            what: "effects".to_owned(),
+            cases: self.cases.clone(),
+            json: self.json,
+            out: self.out.clone(),
+            ..Planned::default()
+        }
+    }
+
+    /// Returns the options that do not change the tasks.
+    pub(crate) const fn options(&self) -> StudyOptions<'_> {
+        StudyOptions { no_cache: self.no_cache, against: None, update_stored: self.update_stored }
+    }
+}
+
+/// Tests the effects of a scene file; returns `None` if the arguments name no scene file.
+pub(crate) fn scene_file(arguments: &Arguments) -> Result<Option<ExitCode>, Fault> {
     if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
         if arguments.cases.len() > 1 {
             return Err(Fault::input(format!("{scene}: expected no case in addition to a scene file")));
@@ -87,7 +105,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
         if arguments.plan.is_given() {
             return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
         }
-        return of_scene(scene, arguments);
+        return of_scene(scene, arguments).map(Some);
     }
     if !arguments.yours.is_usual() {
         let found = "found no scene file: a case sets its own solvers, steps and quantities";
@@ -95,15 +113,7 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             "--solver, --time-step, --time-step-fraction, --matters: expected a scene file with them, {found}"
         )));
     }
-    let &Arguments { json, no_cache, update_stored, .. } = arguments;
-    let planned = Planned {
-        what: "effects".to_owned(),
-        cases: arguments.cases.clone(),
-        json,
-        out: arguments.out.clone(),
-        ..Planned::default()
-    };
-    plan_or_perform(&arguments.plan, &planned, &Options { no_cache, update_stored, against: None })
+    Ok(None)
 }
 
 fn is_scene(name: &str) -> bool {

@@ -44,6 +44,7 @@ mod value;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::Fault;
 use grainbench::lanes::Processor;
+use jobs::here::plan_or_perform as study;
 use std::process::ExitCode;
 
 /// Version of the program, and the commit from which it is built.
@@ -161,9 +162,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fields(arguments) => fields::fields(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Cost(arguments) => cost::cost(&arguments),
-        Command::Stability(arguments) => stability::stability(&arguments),
-        Command::Effects(arguments) => effects::effects(&arguments),
+        Command::Cost(arguments) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+        Command::Stability(arguments) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+        Command::Effects(arguments) => match effects::scene_file(&arguments) {
+            Ok(None) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+            Ok(Some(code)) => Ok(code),
+            Err(fault) => Err(fault),
+        },
         Command::Plan(arguments) => {
             spelling::say_command(
                 "plan",

@@ -1,9 +1,8 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
 use super::cost::sources;
-use super::exit::{Fault, Outcome};
-use super::jobs::arguments::{Arguments as Planned, PlanOptions};
-use super::jobs::here::{Options, plan_or_perform};
+use super::exit::Fault;
+use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use grainbench::reports::number;
 use grainbench::reports::study::Study;
 use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
@@ -39,7 +38,7 @@ pub(crate) struct Arguments {
     #[arg(long)]
     json: bool,
     #[command(flatten)]
-    plan: PlanOptions,
+    pub(crate) plan: PlanOptions,
 }
 
 /// Work item of the study: a stability limit or a hard case, by its index, with its solver.
@@ -49,18 +48,23 @@ pub(crate) enum WorkItem {
     Hard(usize, String),
 }
 
-/// Finds the stability limits, runs the hard cases and writes the report, or writes a plan.
-pub(crate) fn stability(arguments: &Arguments) -> Outcome {
-    let &Arguments { json, no_cache, update_stored, .. } = arguments;
-    let planned = Planned {
-        what: "stability".to_owned(),
-        cases: arguments.cases.clone(),
-        solver: arguments.solver.clone(),
-        json,
-        out: arguments.out.clone(),
-        ..Planned::default()
-    };
-    plan_or_perform(&arguments.plan, &planned, &Options { no_cache, update_stored, against: None })
+impl Arguments {
+    /// Returns the arguments of the study.
+    pub(crate) fn planned(&self) -> Planned {
+        Planned {
+            what: "stability".to_owned(),
+            cases: self.cases.clone(),
+            solver: self.solver.clone(),
+            json: self.json,
+            out: self.out.clone(),
+            ..Planned::default()
+        }
+    }
+
+    /// Returns the options that do not change the tasks.
+    pub(crate) fn options(&self) -> StudyOptions<'_> {
+        StudyOptions { no_cache: self.no_cache, against: None, update_stored: self.update_stored }
+    }
 }
 
 /// Returns true if no stability limit was found and no hard case was solved.

@@ -1,5 +1,6 @@
 //! Claims of a run: the options that select them, and their report.
 
+pub(crate) mod conformance;
 pub(crate) mod tasks;
 
 use super::cores::MOST_THREADS;

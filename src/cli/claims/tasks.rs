@@ -1,7 +1,7 @@
 //! Tasks of `run` and `conform`: claims with their controls, figures of cases, and conformance properties.
 
 use super::ClaimOptions;
-use crate::cli::conform::{self, ConformingSolver};
+use super::conformance::{self as conform, ConformingSolver};
 use crate::cli::select::CaseSelection;
 use crate::cli::{cache, exit};
 use grainbench::harness::course;

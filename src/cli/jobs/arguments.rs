@@ -4,7 +4,7 @@ use crate::cli::exit::Fault;
 use crate::cli::value::whole;
 use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 
 /// Arguments of a plan.
 #[derive(Clone, Default, clap::Args)]
@@ -70,6 +70,16 @@ impl PlanOptions {
         let out = self.plan.clone()?;
         Some(Arguments { shards: self.shards, out, ..arguments.clone() })
     }
+}
+
+/// Options of `cost`, `stability` and `effects` that do not change the tasks.
+pub(crate) struct StudyOptions<'a> {
+    /// True to repeat finished tasks.
+    pub(crate) no_cache: bool,
+    /// `results.json` of an earlier report.
+    pub(crate) against: Option<&'a Path>,
+    /// True to store the results in the source tree.
+    pub(crate) update_stored: bool,
 }
 
 /// Parser for the arguments of a stored plan.

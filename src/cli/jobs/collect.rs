@@ -2,7 +2,8 @@
 
 use super::arguments::Arguments as Planned;
 use super::enter;
-use super::study::{ReportOptions, from_arguments};
+use super::kinds::from_arguments;
+use super::study::ReportOptions;
 use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
 use grainbench::jobs::plan::Plan;
 use grainbench::reports::trend::{Column, write_trend};

@@ -1,8 +1,9 @@
 //! Tasks of a command without `--plan`. They run in its output directory, and an interrupted command continues there.
 
-use super::arguments::{Arguments, PlanOptions};
+use super::arguments::{Arguments, PlanOptions, StudyOptions};
 use super::collect::progress;
-use super::study::{ReportOptions, from_arguments, plan_of};
+use super::kinds::from_arguments;
+use super::study::{ReportOptions, plan_of};
 use super::watch::Follower;
 use super::work::worker;
 use crate::cli::cores::cores;
@@ -12,7 +13,6 @@ use grainbench::jobs::shard::Shard;
 use grainbench::jobs::work::WorkRequest;
 use grainbench::store::results::{self, FinishedTasks};
 use std::fs;
-use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -22,24 +22,13 @@ const EVERY: Duration = Duration::from_secs(5);
 /// Directories with finished parts that an earlier version of this program wrote to the output directory.
 const EARLIER: [&str; 2] = ["points", "pieces"];
 
-/// Options of a command.
-#[derive(Default)]
-pub(crate) struct Options<'a> {
-    /// True to repeat finished tasks.
-    pub(crate) no_cache: bool,
-    /// `results.json` of an earlier report.
-    pub(crate) against: Option<&'a Path>,
-    /// True to store the results in the source tree.
-    pub(crate) update_stored: bool,
-}
-
 /// Writes a plan if `--plan` is given. Otherwise performs the tasks.
-pub(crate) fn plan_or_perform(plan: &PlanOptions, arguments: &Arguments, options: &Options<'_>) -> Outcome {
+pub(crate) fn plan_or_perform(plan: &PlanOptions, arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
     plan.planned(arguments).map_or_else(|| perform(arguments, options), |planned| super::plan::plan(&planned))
 }
 
 /// Performs the tasks that are not finished and writes the report. The report is also written while tasks run.
-fn perform(arguments: &Arguments, options: &Options<'_>) -> Outcome {
+fn perform(arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
     let out = &arguments.out;
     let study = from_arguments(arguments, false)?;
     if Plan::is_in(out) {

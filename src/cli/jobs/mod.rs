@@ -7,6 +7,7 @@ pub(crate) mod collect;
 mod cost;
 mod effects;
 pub(crate) mod here;
+mod kinds;
 pub(crate) mod plan;
 mod stability;
 pub(crate) mod status;

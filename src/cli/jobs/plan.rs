@@ -1,7 +1,8 @@
 //! `--plan DIR`: writes a plan as a file with one task per line.
 
 use super::arguments::Arguments;
-use super::study::{from_arguments, plan_of};
+use super::kinds::from_arguments;
+use super::study::plan_of;
 use crate::cli::exit::{Fault, Outcome, print, print_json};
 use grainbench::jobs::plan::{Head, Plan, check_place};
 use grainbench::reports::number;

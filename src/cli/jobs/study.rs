@@ -2,11 +2,6 @@
 //! directory of a command, or in the directory of a plan.
 
 use super::arguments::Arguments;
-use super::claims::ClaimStudy;
-use super::cost::CostStudy;
-use super::effects::EffectStudy;
-use super::stability::StabilityStudy;
-use super::sweep::SweepStudy;
 use crate::cli::exit::{self, Fault, Outcome};
 use crate::cli::keep::keep_study;
 use crate::cli::provenance::provenance;
@@ -70,17 +65,6 @@ impl<S: Study> AnyStudy for S {
     fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
         self.report(plan.tasks.iter().map(|task| finished.result(task.id)).collect(), how)
     }
-}
-
-/// Returns the study of the kind that the arguments name. If `is_shared` is true, several processes may run its tasks.
-pub(crate) fn from_arguments(arguments: &Arguments, is_shared: bool) -> Result<Box<dyn AnyStudy>, Fault> {
-    Ok(match arguments.what.as_str() {
-        "run" => Box::new(ClaimStudy::new(arguments)?),
-        "cost" => Box::new(CostStudy::new(arguments, is_shared)?),
-        "stability" => Box::new(StabilityStudy::new(arguments, is_shared)?),
-        "effects" => Box::new(EffectStudy::new(arguments)?),
-        file => Box::new(SweepStudy::new(file, arguments)?),
-    })
 }
 
 /// Returns the plan of a study in a directory, without writing it.

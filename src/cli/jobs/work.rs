@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments as Planned;
 use super::enter;
-use super::study::from_arguments;
+use super::kinds::from_arguments;
 use super::watch::Follower;
 use crate::cli::cores::{MOST_THREADS, cores};
 use crate::cli::exit::{self, Fault, Outcome, RED, print};

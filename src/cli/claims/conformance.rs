@@ -1,0 +1,62 @@
+//! Solvers whose conformance properties are tested, and their results.
+
+use crate::cli::exit::Fault;
+use crate::cli::solver;
+use grainbench::cases::solvers;
+use grainbench::harness::solvers::Solvers;
+use grainbench::harness::verdict::{Control, Verdict};
+use grainbench::harness::{case::Physics, conformance};
+use grainbench::reports::Section;
+use grainbench::scene::solver::Solver;
+use grainbench::scene::terms::Terms;
+use std::sync::Arc;
+
+/// Solver whose conformance properties are tested.
+pub(crate) struct ConformingSolver {
+    pub(crate) solver: Arc<dyn Solver>,
+    terms: Terms,
+    /// True if the solver is built in. An external solver may have the name of a built-in solver.
+    is_ours: bool,
+}
+
+/// Returns the named built-in and external solvers with their conformance properties. Without names, returns all
+/// built-in solvers.
+pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
+    let wanted = |name: &String| named.is_empty() || named.contains(name);
+    let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
+    let mut solvers: Vec<ConformingSolver> =
+        ours.map(|(solver, terms)| ConformingSolver { solver: Arc::from(solver), terms, is_ours: true }).collect();
+    for path in named.iter().filter(|name| solver::is_manifest(name)) {
+        let solver = solver::outside(path)?;
+        let terms = solver.terms();
+        solvers.push(ConformingSolver { solver, terms, is_ours: false });
+    }
+    Ok(solvers)
+}
+
+/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache.
+pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<Control>) {
+    let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
+    conformance::judge_kept(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
+}
+
+/// Returns a report section with results of conformance properties.
+pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
+    Section {
+        name: "conformance".to_owned(),
+        physics: Physics::Properties,
+        title: "Conformance properties".to_owned(),
+        claim: format!("For each method: {}.", conformance::ALL.map(|property| property.claim).join("; ")),
+        derivation: "Each property is tested in its own scenes. Examples are a grain that collides with four others, \
+                     with friction and without, two grains that separate, and one grain held between two walls. The \
+                     same solver with an error of 10⁻⁹ must fail. A documented exception of a method is amber and \
+                     states its reason. If the error exceeds the stated size, the exception is red."
+            .to_owned(),
+        weak: "A solver can satisfy all properties and still be wrong. For example, it may conserve momentum and be \
+               symmetric but have the wrong stiffness. Grid methods run in two dimensions, with two cells per radius."
+            .to_owned(),
+        verdicts,
+        controls,
+        ..Section::default()
+    }
+}
