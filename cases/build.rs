@@ -9,9 +9,9 @@ use std::{env, fs};
 /// Source folders of each kind of solver, relative to the root of the workspace. For LAMMPS and LIGGGHTS: the source of
 /// the code that writes their input decks.
 const SOURCES: [(&str, &[&str]); 4] = [
-    ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/lanes/src"]),
-    ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/lanes/src"]),
-    ("RIGID", &["solvers/rigid/src", "solvers/scene/src"]),
+    ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/solver/src", "solvers/lanes/src"]),
+    ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/solver/src", "solvers/lanes/src"]),
+    ("RIGID", &["solvers/rigid/src", "solvers/scene/src", "solvers/solver/src"]),
     ("PROGRAMS", &["reference/src/deck"]),
 ];
 

@@ -5,10 +5,13 @@
 //! sliding turns into rolling has an error.
 
 use grainbench::scene::nalgebra::Vector3;
-use grainbench::scene::record::{Cost, GrainState, Provenance, Record, Snapshot, StepState};
-use grainbench::scene::recorder::Recorder;
 use grainbench::scene::scene::{Duration, Scene, WallShape};
-use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench::solver::Solver;
+use grainbench::solver::failure::RunError;
+use grainbench::solver::observer::Observer;
+use grainbench::solver::record::{Cost, GrainState, Provenance, Record, Snapshot, StepState};
+use grainbench::solver::recorder::Recorder;
+use grainbench::solver::resolution::Resolution;
 
 struct Rigid;
 

@@ -22,5 +22,6 @@ pub use grainbench_mpm as mpm;
 pub use grainbench_reference as reference;
 pub use grainbench_reports as reports;
 pub use grainbench_scene as scene;
+pub use grainbench_solver as solver;
 pub use grainbench_store as store;
 pub use grainbench_studies as studies;

@@ -1,11 +1,14 @@
 //! Runs that can be interrupted and continued from periodic checkpoints.
 
-use crate::scene::brief::Brief;
-use crate::scene::checkpoint::{Checkpoint, CheckpointError};
 use crate::scene::end_state::EndState;
-use crate::scene::record::{PartialOutput, Record, Snapshot};
 use crate::scene::scene::Scene;
-use crate::scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver, StorageError};
+use crate::solver::Solver;
+use crate::solver::brief::Brief;
+use crate::solver::checkpoint::{Checkpoint, CheckpointError};
+use crate::solver::failure::{RunError, StorageError};
+use crate::solver::observer::{Observer, RunOptions, RunOutline};
+use crate::solver::record::{PartialOutput, Record, Snapshot};
+use crate::solver::resolution::Resolution;
 use crate::store::write_file;
 use std::path::Path;
 

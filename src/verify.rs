@@ -9,8 +9,9 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::live::LiveProgram;
 use grainbench_reference::stored::{Drift, StoredRun, drift, folder, unusable};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::Series;
-use grainbench_scene::solver::{RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Series;
 
 /// Largest accepted |difference| of the new run while the run is predictable, divided by the extent of the column.
 /// During this time, a rounding error of one unit in the last place of one position grows to a thousandth of this

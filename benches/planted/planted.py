@@ -27,7 +27,10 @@ sys.dont_write_bytecode = True
 import defects  # noqa: E402  (beside this file, and nothing is to be left there)
 
 ROOT = Path(__file__).resolve().parents[2]
-CLASSES = {"dem": "solvers/dem/src", "mpm": "solvers/mpm/src", "scene": "solvers/scene/src", "files": "reference/src/read"}
+# Crate of the switch of the defects, on which all other crates depend.
+SCENE = "solvers/scene/src"
+CLASSES = {"dem": ("solvers/dem/src",), "mpm": ("solvers/mpm/src",), "scene": (SCENE, "solvers/solver/src"),
+           "files": ("reference/src/read",)}
 CHOOSER = '''//! Which planted defect acts: the one that the environment names.
 
 use std::sync::OnceLock;
@@ -97,9 +100,9 @@ class Planting:
         """Returns the texts of the files of each class without defects."""
         return {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
                                                                  self.tree, capture_output=True)
-                       for path in sorted((self.tree / folder).rglob("*.rs"))
+                       for folder in folders for path in sorted((self.tree / folder).rglob("*.rs"))
                        if path.name not in ("planted.rs", "tests.rs")}
-                for name, folder in CLASSES.items()}
+                for name, folders in CLASSES.items()}
 
     def draw(self):
         """Selects random defects, removes those that do not compile, and numbers the others."""
@@ -133,19 +136,19 @@ class Planting:
         for number, (_, defect) in enumerate(flat(drawn), 1):
             by_file.setdefault(defect.file, []).append((number, defect))
         for file, text in (item for files in texts.values() for item in files.items()):
-            crate = "crate" if file.startswith(CLASSES["scene"]) else "grainbench_scene"
+            crate = "crate" if file.startswith(SCENE) else "grainbench_scene"
             new, lines = defects.planted(text, by_file.get(file, []), f"{crate}::planted::on")
-            if file == f"{CLASSES['scene']}/lib.rs":
+            if file == f"{SCENE}/lib.rs":
                 new = new.replace("\npub mod ", "\npub mod planted;\npub mod ", 1)
             write(self.tree / file, new)
             for number, defect in by_file.get(file, []):
                 stands[defect.key] = (file, *lines[number])
-        write(self.tree / CLASSES["scene"] / "planted.rs", CHOOSER)
+        write(self.tree / SCENE / "planted.rs", CHOOSER)
         return stands
 
     def broken(self, stands):
         """Returns the defects with compiler errors in their lines, or in the lines of their function."""
-        packages = [word for name in ("scene", "dem", "mpm", "reference") for word in ("-p", f"grainbench-{name}")]
+        packages = [word for name in ("scene", "solver", "dem", "mpm", "reference") for word in ("-p", f"grainbench-{name}")]
         said = subprocess.run(["cargo", "check", "--release", "--keep-going", "--message-format=json", *packages],
                               cwd=self.tree, env=self.environment, text=True, capture_output=True)
         dropped, errors = set(), 0

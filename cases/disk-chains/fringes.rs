@@ -9,7 +9,7 @@ use super::elastic::{grid, principal_difference, run};
 use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::prelude::*;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use std::f64::consts::FRAC_PI_2;
 
 /// Chain of discs in the paper, with the times and observations of its figure.

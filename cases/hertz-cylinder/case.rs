@@ -2,7 +2,7 @@
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::material::Deformable;
-use grainbench_scene::record::{Owner, PointState, Snapshot};
+use grainbench_solver::record::{Owner, PointState, Snapshot};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::PI;
 

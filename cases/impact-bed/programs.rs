@@ -5,7 +5,7 @@ use crate::rows::programs::row;
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
-use grainbench_scene::perturbed::move_one;
+use grainbench_solver::perturbed::move_one;
 
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 

@@ -3,8 +3,8 @@
 use grainbench_fields::contact_stress::{Stress, contact_stress};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
-use grainbench_scene::record::{Partner, Snapshot};
 use grainbench_scene::scene::WallShape;
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
 /// Evaluation of each snapshot in horizontal slices of the silo.

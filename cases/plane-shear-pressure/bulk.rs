@@ -5,7 +5,7 @@ use grainbench_fields::contact_stress::{Stress, contact_stress, tells_interval};
 use grainbench_fields::grid::Grid;
 use grainbench_fields::packing::packing_fraction;
 use grainbench_harness::prelude::*;
-use grainbench_scene::record::{GrainState, Snapshot};
+use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
 /// Evaluation of the bulk in each snapshot.

@@ -6,7 +6,7 @@ use crate::rows::rigid;
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
 use grainbench_harness::compare::pointwise::{difference, largest, worst};
 use grainbench_harness::prelude::*;
-use grainbench_scene::perturbed::move_one;
+use grainbench_solver::perturbed::move_one;
 
 const LEVELS: &[Level] = &[
     Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },

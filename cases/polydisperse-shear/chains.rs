@@ -6,7 +6,7 @@
 //! stressed grains in contact are linked if, for both, the line between their centres is within 45° of the direction of
 //! this compression. A chain is a connected group of three or more grains.
 
-use grainbench_scene::record::{Partner, Snapshot};
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, SymmetricEigen, Vector2, Vector3};
 use std::collections::BTreeSet;
 
@@ -113,8 +113,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use grainbench_scene::record::{ContactState, GrainState};
     use grainbench_scene::scene::Grain;
+    use grainbench_solver::record::{ContactState, GrainState};
 
     /// Checks that a row of four compressed discs is a chain, and that a disc that leans on the row with a small force
     /// is not part of it.

@@ -5,8 +5,8 @@ use super::paper::FIGURE_6;
 use super::{entry, gained, grid, measures, momentum, sheared, to_shear};
 use grainbench_harness::prelude::*;
 use grainbench_scene::material::{Constitutive, Deformable};
-use grainbench_scene::record::Partner;
 use grainbench_scene::scene::Duration;
+use grainbench_solver::record::Partner;
 
 /// Number of cells across the slab.
 const CELLS: f64 = 75.0;

@@ -3,7 +3,7 @@
 
 use grainbench_fields::overlap::disc_in_box;
 use grainbench_harness::prelude::{FinishedRun, MissingData};
-use grainbench_scene::record::{GrainState, PointState, Snapshot};
+use grainbench_solver::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
 /// Number of columns over which displacements are averaged.

@@ -10,7 +10,7 @@ use crate::sources::literature::bardenhagen_2000::WORK as PAPER;
 use crate::sources::prototype::sheared_slab as prototype;
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::interval;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 
 const PACKINGS: [&str; 5] = ["seed-1", "seed-2", "seed-3", "seed-4", "seed-5"];
 // The paper states these results in words. The bounds of the claims are our own interpretation.

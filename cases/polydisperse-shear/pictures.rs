@@ -7,7 +7,7 @@ use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
-use grainbench_scene::record::{GrainState, Owner, Record, Snapshot};
+use grainbench_solver::record::{GrainState, Owner, Record, Snapshot};
 use std::sync::Arc;
 
 /// Mean shears at which the paper shows displacement profiles.

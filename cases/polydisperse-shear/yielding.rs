@@ -8,8 +8,8 @@ use super::{FRAMES, chains, grid, to_shear};
 use crate::sources::literature::bardenhagen_2000::WORK as PAPER;
 use crate::sources::prototype::sheared_slab as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Duration;
+use grainbench_solver::record::Snapshot;
 
 const REACHES: &str = "contact under traction acts from more than half a cell away, and grains a few cells across penetrate \
                        each other instead of sliding";

@@ -2,7 +2,7 @@
 
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::BlockShape;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 use std::f64::consts::PI;
 

@@ -7,8 +7,8 @@
 use crate::registry;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
+use grainbench_scene::method::Method;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
-use grainbench_scene::solver::Method;
 use std::sync::Arc;
 
 /// Duration of the run (s), several periods of the pair of discs. The period is 2π/√3 = 3.63 s.

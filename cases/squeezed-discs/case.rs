@@ -4,7 +4,7 @@ use crate::rows::elastic::{PressedDisc, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
 use grainbench_harness::prelude::*;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use std::collections::BTreeMap;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];

@@ -11,10 +11,11 @@ use grainbench_mpm::solver::Mpm;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::LiveProgram;
 use grainbench_rigid::solver::Rigid;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, RunError, Solver};
-use grainbench_scene::terms::Terms;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
+use grainbench_solver::terms::Terms;
+use grainbench_solver::{Defect, Solver};
 use std::sync::Arc;
 use std::time::Duration;
 

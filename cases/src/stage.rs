@@ -1,6 +1,6 @@
 //! Wall forces, overlaps and distance from equilibrium of a packing between walls, at one moment.
 
-use grainbench_scene::record::{ContactState, Partner, Snapshot, WallState};
+use grainbench_solver::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
 /// Tolerance of the search for the wall motion of `photoelastic-packing`: largest deviation of F_H/F_V from its target

@@ -6,9 +6,9 @@ use grainbench_harness::run::{ExpectedOutcome, Run};
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, folder, unusable};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::RunError;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
 
 /// A run of LAMMPS or LIGGGHTS that a claim reads, stored or not.
 #[derive(Clone)]

@@ -3,10 +3,13 @@
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::checkpoint::Checkpoint;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::Checkpoint;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 
 /// Returns the solver with a name such as `mpm+apic`; `None` if the name or a word after `+` is unknown.
 pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {

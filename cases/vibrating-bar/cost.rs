@@ -5,7 +5,7 @@ use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use crate::registry;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::solver::Method;
+use grainbench_scene::method::Method;
 use std::f64::consts::PI;
 use std::sync::Arc;
 

@@ -5,8 +5,8 @@
 use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
 use grainbench::cases::stage::Stage;
 use grainbench::scene::nalgebra::Vector3;
-use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::Scene;
+use grainbench::solver::record::Snapshot;
 use std::error::Error;
 
 /// Initial speed of the discs (m/s). Before each interval, the velocities are scaled so that the discs have their

@@ -3,8 +3,8 @@
 use super::walls::{Course, drive, run, run_elastic, size, watch};
 use grainbench::cases::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench::scene::motion::Moment;
-use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::{Duration, Scene};
+use grainbench::solver::record::Snapshot;
 use std::error::Error;
 
 /// Ratio F_H/F_V of horizontal to vertical wall force at stage A.

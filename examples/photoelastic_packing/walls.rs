@@ -6,9 +6,10 @@ use grainbench::dem::solver::Dem;
 use grainbench::mpm::solver::Mpm;
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::nalgebra::Vector3;
-use grainbench::scene::record::Snapshot;
 use grainbench::scene::scene::{Duration, Scene, WallShape};
-use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::solver::Solver;
+use grainbench::solver::record::Snapshot;
+use grainbench::solver::resolution::Resolution;
 use std::error::Error;
 
 /// Resolution of runs with spring contacts, the default level of the case.

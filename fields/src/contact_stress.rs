@@ -13,7 +13,7 @@
 //! virial then belongs to the cell that contains the grain's centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
-use grainbench_scene::record::{GrainState, Partner, Snapshot};
+use grainbench_solver::record::{GrainState, Partner, Snapshot};
 use nalgebra::Matrix3;
 
 /// Kind of stress of grains.

@@ -8,8 +8,8 @@ use crate::grid::Grid;
 use crate::mask::{MaskReasons, Masks};
 use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
-use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
+use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
 
 /// Elements of one snapshot.

@@ -29,7 +29,7 @@
 //! ρω²R² for density ρ and angular velocity ω, is not included. Stress diverges as 1/r at a point force; a real contact
 //! has a finite width.
 
-use grainbench_scene::record::{Partner, Snapshot};
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::{Matrix2, Vector2};
 use std::f64::consts::PI;
 

@@ -7,8 +7,8 @@ use crate::motion::{Motion, motion, movers};
 use crate::packing::packing_fraction;
 use crate::tensor;
 use grainbench_scene::file::GrainShape;
-use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Dimension;
+use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
 
 /// Quantities of one cell.

@@ -7,8 +7,8 @@ use crate::grid::Grid;
 use crate::picture::two_digits;
 use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{Raster, level};
-use grainbench_scene::record::Snapshot;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 
 /// Width of a cell in a figure, and largest width of a cell in a film (pixels).

@@ -1,6 +1,6 @@
 //! A regular grid of cells.
 
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 
 /// Equal cells that fill a box. In two dimensions the grid is one cell deep, from z = −½ to z = ½.

@@ -7,7 +7,7 @@
 //! ```
 
 use crate::grid::{Grid, inside};
-use grainbench_scene::record::{GrainState, Snapshot};
+use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
 /// Position, velocity and weight of a grain or material point.

@@ -2,8 +2,8 @@
 
 use crate::grid::{Grid, inside};
 use crate::overlap::{disc_in_box, sphere_in_box};
-use grainbench_scene::record::{GrainState, Snapshot};
 use grainbench_scene::scene::Dimension;
+use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
 /// Returns the packing fraction φ of every cell: the volume of grains and their periodic images within the cell,

@@ -4,7 +4,7 @@ use crate::disc::LoadedDisc;
 use crate::points::{self, Material};
 use crate::quantity::Quantity;
 use grainbench_harness::raster::{RIM, Raster, VOID, level};
-use grainbench_scene::record::{GrainState, Owner, Snapshot};
+use grainbench_solver::record::{GrainState, Owner, Snapshot};
 use nalgebra::{Vector2, Vector3};
 use std::ops::Range;
 
@@ -213,7 +213,7 @@ fn window(spans: impl Iterator<Item = (f64, f64)>) -> (f64, f64) {
 mod tests {
     use super::*;
     use grainbench_harness::raster::{HIGH, LOW};
-    use grainbench_scene::record::PointState;
+    use grainbench_solver::record::PointState;
 
     #[test]
     fn a_disc_that_rolled_away_does_not_shrink_the_others() {

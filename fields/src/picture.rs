@@ -4,7 +4,7 @@ use crate::paint::{Painting, View};
 use crate::quantity::Quantity;
 use grainbench_harness::figure::{Field, Panel, Shades};
 use grainbench_harness::raster::{HIGH, LOW, Raster};
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 
 /// A panel: its title, and a snapshot for each frame.
 pub struct Shot<'a> {

@@ -2,7 +2,7 @@
 
 use crate::grid::inside;
 use crate::paint::View;
-use grainbench_scene::record::{Owner, PointState, Snapshot};
+use grainbench_solver::record::{Owner, PointState, Snapshot};
 
 /// Largest distance from a pixel to its nearest material point, in units of the point's width √V.
 ///

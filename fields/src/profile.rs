@@ -2,7 +2,7 @@
 
 use crate::grid::inside;
 use crate::overlap::disc_in_box;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -86,7 +86,7 @@ fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::record::GrainState;
+    use grainbench_solver::record::GrainState;
 
     fn snapshot(time: f64) -> Snapshot {
         let grain = |id: u32| {

@@ -1,6 +1,6 @@
 //! Quantities of the material inside grains, for figures.
 
-use grainbench_scene::record::PointState;
+use grainbench_solver::record::PointState;
 use nalgebra::{Matrix2, Vector3};
 use serde::{Deserialize, Serialize};
 

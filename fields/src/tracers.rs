@@ -10,7 +10,7 @@
 
 use crate::element::{Element, velocity_at};
 use crate::grid::Grid;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
 /// Element that moves with the flow: its position and its labelled grains.

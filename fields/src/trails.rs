@@ -4,7 +4,7 @@
 use crate::course::Frame;
 use crate::grid::Grid;
 use crate::tracers::{Tracer, hencky, tracers};
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 
 /// Tracers with their past positions.

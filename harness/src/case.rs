@@ -6,8 +6,9 @@ use crate::runner::Runner;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::resolution::Resolution;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 

@@ -9,7 +9,7 @@
 //! # use grainbench_harness::run::Run;
 //! # use grainbench_harness::source::Source;
 //! # use grainbench_harness::tolerance::computed;
-//! # use grainbench_scene::solver::Resolution;
+//! # use grainbench_solver::resolution::Resolution;
 //! let fall = claim("speed after 1 s of free fall", "m/s")
 //!     .run(Run::new("plain", "dem", Resolution::TimeStep(1e-3)))
 //!     .equals(Source::Derived("v = gt"), |done| {

@@ -4,7 +4,8 @@ use crate::reading::Table;
 use crate::run::{Change, Set};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, Resolution};
+use grainbench_solver::Defect;
+use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 

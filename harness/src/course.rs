@@ -10,7 +10,7 @@ use crate::measure::slope;
 use crate::run::{FinishedRun, MissingData};
 use crate::runner::Runner;
 use crate::source::Source;
-use grainbench_scene::solver::RunError;
+use grainbench_solver::failure::RunError;
 use std::sync::Arc;
 
 /// Points (x, y).

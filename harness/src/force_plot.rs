@@ -1,7 +1,7 @@
 //! Force plot of Cundall and Strack for a snapshot in two dimensions.
 
 use crate::figure::{ForceBar, ForcePlot};
-use grainbench_scene::record::{Partner, Snapshot};
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::Vector3;
 
 /// Returns a force plot of a snapshot. Contacts with grains that are not in the snapshot are left out.

@@ -15,4 +15,5 @@ pub use crate::tolerance::{
 };
 pub use grainbench_scene::effect::Effect;
 pub use grainbench_scene::scene::Scene;
-pub use grainbench_scene::solver::{Resolution, RunError};
+pub use grainbench_solver::failure::RunError;
+pub use grainbench_solver::resolution::Resolution;

@@ -1,9 +1,12 @@
 //! Processing of the snapshots of a run while it runs, for runs with too many snapshots to store. A reader receives
 //! each snapshot once, and returns tables at the end.
 
-use grainbench_scene::record::{Record, Snapshot};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, Solver, StorageError};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{RunError, StorageError};
+use grainbench_solver::observer::{Observer, RunOptions};
+use grainbench_solver::record::{Record, Snapshot};
+use grainbench_solver::resolution::Resolution;
 use std::fmt;
 
 /// Named evaluation of the snapshots of a run.

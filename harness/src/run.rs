@@ -2,9 +2,9 @@
 
 use crate::data::Data;
 use crate::reading::{Reading, Table};
-use grainbench_scene::record::{Record, Series};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::record::{Record, Series};
+use grainbench_solver::resolution::Resolution;
 use std::fmt;
 use std::sync::Arc;
 

@@ -1,6 +1,6 @@
 //! Scope of a claim: only the solvers that it names, or all solvers of a kind.
 
-use grainbench_scene::solver::Solver;
+use grainbench_solver::Solver;
 
 /// Solvers to which a claim applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

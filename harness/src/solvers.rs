@@ -4,9 +4,10 @@ use crate::case::Case;
 use crate::claim::Claim;
 use crate::reading::Table;
 use crate::run::{ResultOrigin, Run};
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Defect, RunError, Solver};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
+use grainbench_solver::{Defect, Solver};
 use std::sync::Arc;
 use std::time::Duration;
 

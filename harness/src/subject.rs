@@ -9,7 +9,8 @@ use crate::claim::{Claim, Measure};
 use crate::evidence::Evidence;
 use crate::run::{Change, ExpectedOutcome};
 use crate::scope::Scope;
-use grainbench_scene::solver::{Method, Resolution};
+use grainbench_scene::method::Method;
+use grainbench_solver::resolution::Resolution;
 
 /// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]

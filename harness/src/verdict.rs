@@ -4,7 +4,7 @@ use crate::control::FailureMode;
 use crate::evidence::Evidence;
 use crate::expect::{ExpectedValue, Measurement};
 use crate::tolerance::ToleranceOrigin;
-use grainbench_scene::solver::RunError;
+use grainbench_solver::failure::RunError;
 use serde::{Deserialize, Serialize};
 
 /// Colour of a result. It determines exit codes, pages and summaries.

@@ -6,7 +6,7 @@ use grainbench_harness::conformance::ALL;
 use grainbench_harness::control::FailureMode;
 use grainbench_harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_scene::terms::Terms;
+use grainbench_solver::terms::Terms;
 
 /// Returns the results of the named properties.
 fn rows(solver: SmallDem, properties: &[&str], terms: &Terms) -> Vec<Verdict> {

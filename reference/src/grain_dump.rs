@@ -4,7 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use grainbench_scene::file::GrainShape;
-use grainbench_scene::record::{ContactState, GrainState, Partner, Snapshot};
+use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
 use crate::observer::Names;

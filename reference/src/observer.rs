@@ -1,8 +1,8 @@
 //! Record of a run of an external program, with the probes of the scene that follow from a dump of grains.
 
-use grainbench_scene::record::{GrainState, Series, Snapshot, StepState};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
+use grainbench_solver::record::{GrainState, Series, Snapshot, StepState};
+use grainbench_solver::recorder::Recorder;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 

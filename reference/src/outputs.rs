@@ -2,9 +2,9 @@
 
 use std::path::{Path, PathBuf};
 
-use grainbench_scene::record::{Column, Series};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::{Column, Series};
+use grainbench_solver::recorder::Recorder;
 
 use crate::clock::Clock;
 use crate::observer::{DumpObserver, DumpRecord, Names};

@@ -11,10 +11,12 @@ use std::time::Duration;
 
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::LiveProgram;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 
 const SCENE: &str = r#"title = "A disc in flight"
 dimension = 2

@@ -12,7 +12,7 @@ use flate2::read::GzDecoder;
 use flate2::write::GzEncoder;
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, drift, folder, hash_file};
-use grainbench_scene::record::{Column, Series};
+use grainbench_solver::record::{Column, Series};
 use tempfile::TempDir;
 
 const ID: &str = "oblique-impact-damped";

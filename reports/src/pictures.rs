@@ -3,7 +3,7 @@
 use crate::page::{figures, shell, slug, unique};
 use crate::store::{SaveError, add_figure};
 use grainbench_harness::figure::Figure;
-use grainbench_scene::record::{Provenance, Record};
+use grainbench_solver::record::{Provenance, Record};
 use grainbench_store::StagedDir;
 use maud::{PreEscaped, html};
 use std::collections::BTreeSet;

@@ -10,7 +10,7 @@ use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::force_plot::force_plot;
-use grainbench_scene::record::{Record, Snapshot};
+use grainbench_solver::record::{Record, Snapshot};
 
 /// Number of pixels along the longer side of a picture.
 const PIXELS: u32 = 800;

@@ -2,7 +2,7 @@
 
 use crate::record_figures::NamedRecord;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 
 /// Largest number of curves of a graph. More curves would be hard to distinguish.
 const CURVES: usize = 8;

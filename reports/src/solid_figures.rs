@@ -6,7 +6,7 @@
 use crate::number;
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
 use grainbench_harness::raster::{RIM, Raster, VOID, level, lit};
-use grainbench_scene::record::{Partner, Snapshot, WallState};
+use grainbench_solver::record::{Partner, Snapshot, WallState};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
@@ -251,7 +251,7 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         .filter(|shot| shot.frames.iter().all(|snapshot| snapshot.contacts.is_some()))
         .map(|shot| Shot { title: shot.title.clone(), frames: shot.frames.clone() })
         .collect();
-    let strength = |contact: &grainbench_scene::record::ContactState| {
+    let strength = |contact: &grainbench_solver::record::ContactState| {
         (contact.shear_force - contact.normal * contact.normal_force).norm()
     };
     let all = shots_with_contacts

@@ -9,8 +9,8 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
-use grainbench_scene::record::Series;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
+use grainbench_solver::record::Series;
 
 /// Accepted rounding error of a time that a program prints with few digits, as a fraction of the duration of the run.
 const PRINTED: f64 = 1e-6;

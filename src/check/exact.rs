@@ -8,8 +8,8 @@ use grainbench_harness::run::FinishedRun;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
-use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::{Cost, Provenance, Record, Series};
 use std::sync::Arc;
 
 /// Judges a claim of the case with the output. The tolerance is increased by the effect of the printed digits on the quantity.

@@ -9,8 +9,8 @@ use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
-use grainbench_scene::perturbed::{PARTED, move_one};
 use grainbench_scene::scene::{ProbeTarget, Scene};
+use grainbench_solver::perturbed::{PARTED, move_one};
 
 /// Largest accepted difference of two means, in units of half the 99 % confidence interval. It exceeds 1, because
 /// several columns are compared at once.

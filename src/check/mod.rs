@@ -29,7 +29,7 @@ use grainbench_reference::outputs::{OutputError, Outputs, steps_in_words};
 use grainbench_reports::Section;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 use ours::{Plan, ours};
 use power::CheckInputs;
 use start::{distance, misplaced};

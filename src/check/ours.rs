@@ -9,10 +9,10 @@ use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
-use grainbench_scene::record::Record;
-use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Solver;
+use grainbench_solver::Solver;
+use grainbench_solver::record::Record;
+use grainbench_solver::refined::refined;
 
 /// Contact conventions of our runs, the default first.
 const CONVENTIONS: [Convention; 4] =

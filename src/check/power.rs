@@ -14,9 +14,9 @@ use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::effect::Effect;
-use grainbench_scene::record::Series;
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Series;
+use grainbench_solver::recorder::Recorder;
 
 /// Extent of the search for the power of a check.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]

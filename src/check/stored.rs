@@ -13,7 +13,7 @@ use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 
 /// Ratio of the uncertainty of a stored run to its change due to half the time step. It is the grid convergence index
 /// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). The factor of safety F_s = 3 applies to two steps, whose ratio is

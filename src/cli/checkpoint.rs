@@ -1,7 +1,7 @@
 //! Checkpoint files.
 
 use super::exit::Fault;
-use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::solver::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::store::write_file;
 use std::fs;
 use std::io::ErrorKind;

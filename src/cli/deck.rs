@@ -4,7 +4,7 @@ use super::exit::{Fault, Outcome, check_folder, print};
 use super::subject;
 use super::value::{path_and_value, positive};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
-use grainbench::scene::solver::Resolution;
+use grainbench::solver::resolution::Resolution;
 use grainbench::store::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;

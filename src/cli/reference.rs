@@ -14,7 +14,7 @@ use grainbench::harness::run::Set;
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::stored::{folder, make};
 use grainbench::reports::{Report, Section};
-use grainbench::scene::solver::RunError;
+use grainbench::solver::failure::RunError;
 use grainbench::store::{StagedDir, write_file};
 use grainbench::verify::verify as compare;
 use std::path::PathBuf;

@@ -16,7 +16,7 @@ use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
 use grainbench::reports::study::{STUDY_FILE, Study, load_study, write_study};
 use grainbench::reports::{summary_table, write_pictures, write_report};
-use grainbench::scene::record::Record;
+use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
 use std::path::PathBuf;
 use std::process::ExitCode;

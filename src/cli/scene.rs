@@ -5,7 +5,7 @@ use super::step::Step;
 use super::subject;
 use super::value::{path_and_value, positive};
 use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneFormat};
-use grainbench::scene::solver::Resolution;
+use grainbench::solver::resolution::Resolution;
 use std::process::ExitCode;
 
 #[derive(clap::Args)]

@@ -3,7 +3,7 @@
 use super::exit::Fault;
 use grainbench::cases::solvers;
 use grainbench::reference::outside::ExternalProgram;
-use grainbench::scene::solver::Solver;
+use grainbench::solver::Solver;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -1,7 +1,7 @@
 //! Options that set the time step.
 
 use super::value::positive;
-use grainbench::scene::solver::Resolution;
+use grainbench::solver::resolution::Resolution;
 
 /// Time step, as a fraction of the critical one or in seconds.
 #[derive(clap::Args)]

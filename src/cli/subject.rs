@@ -7,8 +7,8 @@ use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Case and, optionally, a variant of it.

@@ -20,8 +20,9 @@ use driver::{Kind, go};
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::scene::Duration;
-use grainbench::scene::solver::{Resolution, Solver};
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::Solver;
+use grainbench::solver::resolution::Resolution;
 use mistakes::{Mistake, PLANE, SPACE, STRANGE, make, two_grains};
 use std::path::Path;
 

@@ -3,8 +3,8 @@
 // Each test program uses only some of these helpers.
 #![allow(dead_code)]
 
-use grainbench::scene::kept_record;
-use grainbench::scene::record::{Cost, Record};
+use grainbench::solver::kept_record;
+use grainbench::solver::record::{Cost, Record};
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 

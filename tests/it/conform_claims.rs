@@ -6,9 +6,12 @@ use grainbench::harness::control::FailureMode;
 use grainbench::harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench::harness::verdict::{Outcome, Verdict};
 use grainbench::scene::file::GrainShape;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench::solver::Solver;
+use grainbench::solver::failure::RunError;
+use grainbench::solver::observer::Observer;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 use nalgebra::Vector3;
 
 const CASES: [&str; 5] = ["unequal-impact", "rolling-off", "carried-grain", "turning-walls", "rocking"];

@@ -3,10 +3,13 @@
 use grainbench::cases::solvers;
 use grainbench::harness::conformance::ALL;
 use grainbench::harness::verdict::Outcome;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Observer, Resolution, RunError, Solver};
-use grainbench::scene::terms::{Order, Terms};
+use grainbench::solver::Solver;
+use grainbench::solver::failure::RunError;
+use grainbench::solver::observer::Observer;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
+use grainbench::solver::terms::{Order, Terms};
 
 /// Each property detects its own flaw, and does not fail for all flaws.
 #[test]

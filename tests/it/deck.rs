@@ -8,7 +8,7 @@ use grainbench::scene::file::GrainShape;
 use grainbench::scene::function::{Function, FunctionKind};
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::scene::{Scene, WallShape};
-use grainbench::scene::solver::Resolution;
+use grainbench::solver::resolution::Resolution;
 use nalgebra::Vector3;
 use rayon::prelude::*;
 

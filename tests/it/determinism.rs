@@ -3,7 +3,8 @@
 use crate::common::bits;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
-use grainbench::scene::solver::{Resolution, RunOptions};
+use grainbench::solver::observer::RunOptions;
+use grainbench::solver::resolution::Resolution;
 use rayon::prelude::*;
 
 #[test]

@@ -5,9 +5,10 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::contact_law::{ContactLaw, Springs};
 use grainbench::scene::effects::Effects;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::{Duration, Scene};
-use grainbench::scene::solver::{Resolution, Solver};
+use grainbench::solver::Solver;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 
 /// Adds an unused material with friction and rolling resistance. The selected kernels then include both, but they have no effect.
 fn with_idle_friction(scene: &Scene) -> Scene {

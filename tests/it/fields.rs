@@ -5,10 +5,10 @@ use grainbench::cases::solvers;
 use grainbench::fields::element::{elements, whole_stress};
 use grainbench::fields::grid::Grid;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
-use grainbench::scene::record::{Partner, Snapshot};
 use grainbench::scene::scene::Dimension;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::record::{Partner, Snapshot};
+use grainbench::solver::resolution::Resolution;
 use std::fmt::Write;
 use std::path::Path;
 

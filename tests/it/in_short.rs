@@ -2,11 +2,12 @@
 
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
-use grainbench::scene::brief::Brief;
-use grainbench::scene::record::Series;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::brief::Brief;
+use grainbench::solver::observer::RunOptions;
+use grainbench::solver::record::Series;
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Discs on a floor that overlap, slip and rotate. A group on top has prescribed motion.

@@ -4,10 +4,11 @@
 use crate::common::bits;
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Observer, Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::observer::{Observer, RunOptions};
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 use std::fmt::Write as _;
 use std::path::Path;
 

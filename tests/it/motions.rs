@@ -5,8 +5,8 @@
 //! = m A/3 is below μ m g. A is the acceleration of the belt.
 
 use grainbench::cases::solvers;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Final velocity of the belt (m/s).

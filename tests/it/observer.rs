@@ -3,11 +3,12 @@
 // The fuzz tests use only a part of it.
 #![allow(dead_code)]
 
-use grainbench::scene::brief::Brief;
-use grainbench::scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench::scene::end_state::EndState;
-use grainbench::scene::record::Snapshot;
-use grainbench::scene::solver::{Observer, RunOptions, StorageError};
+use grainbench::solver::brief::Brief;
+use grainbench::solver::checkpoint::{Checkpoint, CheckpointError};
+use grainbench::solver::failure::StorageError;
+use grainbench::solver::observer::{Observer, RunOptions};
+use grainbench::solver::record::Snapshot;
 
 /// Observer of a run. The default observer records nothing.
 #[derive(Default)]

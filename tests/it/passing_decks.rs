@@ -2,10 +2,11 @@
 //! or an error names the feature that the external program lacks.
 
 use grainbench::cases::solvers;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunError};
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::failure::RunError;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 const STEP: Resolution = Resolution::TimeStep(1e-3);
@@ -43,7 +44,7 @@ fn apart([ours, theirs]: &[Record; 2], until: f64) -> f64 {
     for (ours, theirs) in ours.snapshots.iter().zip(&theirs.snapshots).filter(|(ours, _)| ours.time <= until) {
         assert_eq!(ours.step, theirs.step);
         let ids =
-            |ids_of: &[grainbench::scene::record::GrainState]| ids_of.iter().map(|grain| grain.id).collect::<Vec<_>>();
+            |ids_of: &[grainbench::solver::record::GrainState]| ids_of.iter().map(|grain| grain.id).collect::<Vec<_>>();
         assert_eq!(ids(&ours.grains), ids(&theirs.grains), "at {}", ours.time);
         for (a, b) in ours.grains.iter().zip(&theirs.grains) {
             worst = worst.max((a.position - b.position).norm());

@@ -3,9 +3,9 @@
 use crate::common::grainbench;
 use grainbench::cases::solvers;
 use grainbench::scene::nalgebra::{Matrix2, SymmetricEigen, Vector2};
-use grainbench::scene::record::Record;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Force on the lid (N).

@@ -4,12 +4,12 @@ use crate::common::grainbench;
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::reports::each_snapshot;
-use grainbench::scene::checkpoint::Checkpoint;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
-use grainbench::scene::record::{GrainState, Partner, Record, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::checkpoint::Checkpoint;
+use grainbench::solver::record::{GrainState, Partner, Record, Snapshot};
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// 1200 colliding spheres of two sizes between two walls and a periodic boundary.

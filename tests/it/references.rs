@@ -9,7 +9,7 @@ use grainbench::harness::run::ExpectedOutcome;
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::deck::Program;
 use grainbench::reference::stored::{StoredRun, folder};
-use grainbench::scene::solver::RunError;
+use grainbench::solver::failure::RunError;
 use serde_json::Value;
 use std::collections::BTreeSet;
 

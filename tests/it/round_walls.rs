@@ -1,10 +1,10 @@
 //! Walls that are cylinders and cones, compared with exact motions of grains in them.
 
 use grainbench::cases::solvers;
-use grainbench::scene::record::Record;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::Resolution;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::record::Record;
+use grainbench::solver::resolution::Resolution;
 use std::f64::consts::TAU;
 use std::path::Path;
 

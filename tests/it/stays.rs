@@ -2,10 +2,11 @@
 
 use crate::common::grainbench;
 use grainbench::cases::solvers;
-use grainbench::scene::record::{Record, Snapshot};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::solver::{Resolution, RunOptions};
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::observer::RunOptions;
+use grainbench::solver::record::{Record, Snapshot};
+use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Common part of the scenes: spheres of mass 1 kg.

@@ -6,21 +6,22 @@ use std::path::{Path, PathBuf};
 
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
-const BUDGETS: [(&str, usize, usize); 15] = [
-    ("solvers/scene", 13_280, 26),
+const BUDGETS: [(&str, usize, usize); 16] = [
+    ("solvers/scene", 9_940, 16),
+    ("solvers/solver", 3_460, 0),
     ("solvers/lanes", 1_500, 0),
-    ("solvers/dem", 9_030, 6),
-    ("solvers/mpm", 11_480, 7),
+    ("solvers/dem", 9_040, 6),
+    ("solvers/mpm", 11_500, 7),
     ("solvers/rigid", 1_620, 0),
-    ("harness", 7_730, 5),
+    ("harness", 7_775, 5),
     ("store", 1_705, 0),
-    ("reference", 14_650, 13),
-    ("cases", 21_200, 14),
+    ("reference", 14_665, 11),
+    ("cases", 21_215, 14),
     ("fields", 3_220, 4),
     ("reports", 14_270, 16),
-    ("studies", 4_038, 0),
-    ("jobs", 2_911, 0),
-    ("src", 9_570, 0),
+    ("studies", 4_065, 0),
+    ("jobs", 2_920, 0),
+    ("src", 9_590, 0),
     ("tests", 10_650, 0),
 ];
 

@@ -19,10 +19,11 @@ use grainbench_harness::run::Run;
 use grainbench_harness::source::{Kind, Source, Work};
 use grainbench_harness::tolerance::{Tolerance, computed, judged};
 use grainbench_reference::read_table;
+use grainbench_scene::method::Method;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Method, Resolution};
 use grainbench_scene::source::SceneSource;
 use grainbench_scene::text::tamed;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 use std::sync::Arc;
 

@@ -8,8 +8,8 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::body::Settle;
 use grainbench_scene::material::{Constitutive, Deformable};
+use grainbench_scene::method::Method;
 use grainbench_scene::scene::Duration;
-use grainbench_scene::solver::Method;
 use nalgebra::Vector3;
 use std::sync::Arc;
 

@@ -7,7 +7,7 @@ use grainbench_fields::grid::Grid;
 use grainbench_fields::mask::MaskReasons;
 use grainbench_fields::tensor::{deviator, principal};
 use grainbench_harness::reading::Table;
-use grainbench_scene::record::{Partner, Snapshot};
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
 /// Columns of the table of axes, one row per block. The three axes of T, from the smallest principal value to the

@@ -5,7 +5,7 @@
 
 use super::pointwise::largest;
 use crate::expect::{Measurement, larger, weight};
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 use std::collections::VecDeque;
 
 /// A run to compare with.
@@ -249,7 +249,7 @@ fn apart(a: &[f64], b: &[f64]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::record::Column;
+    use grainbench_solver::record::Column;
 
     /// Builds a series with one column of lengths (m).
     fn series(values: [f64; 3]) -> Series {

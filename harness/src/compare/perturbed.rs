@@ -16,8 +16,8 @@ use crate::run::{FinishedRun, MissingData, Run};
 use crate::source::Source;
 use crate::statistics::{BLOCKS, difference as of_blocks};
 use crate::tolerance::{computed, one_interval};
-use grainbench_scene::perturbed::PARTED;
 use grainbench_scene::scene::Duration;
+use grainbench_solver::perturbed::PARTED;
 
 /// Allowed difference between two programs up to the horizon, as a fraction of the largest value of the column.
 pub const ALLOWED: f64 = 1e-8;

@@ -1,9 +1,11 @@
 //! Final state of a run, and the difference between two final states.
 
 use crate::expect::larger;
-use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::{GrainState, Record};
+use grainbench_solver::resolution::Resolution;
 
 /// Final state of a run.
 #[derive(Clone, Debug)]

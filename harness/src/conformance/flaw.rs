@@ -1,10 +1,13 @@
 //! Deliberate defects of solvers. Most change one quantity by a fraction of about 1e-9. A larger defect is used if a
 //! property cannot detect a smaller one.
 
-use grainbench_scene::checkpoint::Checkpoint;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::Checkpoint;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -203,7 +206,7 @@ impl Solver for FlawedSolver<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::solver::Resolution;
+    use grainbench_solver::resolution::Resolution;
 
     /// A solver that rejects every scene.
     struct RefusingSolver;

@@ -31,8 +31,8 @@ pub use flaw::{Flaw, FlawedSolver};
 use crate::control::FailureMode;
 use crate::evidence::Evidence;
 use crate::verdict::{Control, Outcome, Verdict};
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
+use grainbench_solver::Solver;
+use grainbench_solver::terms::Terms;
 use std::time::Instant;
 
 /// A property that every solver must satisfy.

@@ -5,8 +5,8 @@ use super::end::NoEnd;
 use super::end::{End, rounding};
 use super::row::PropertyValue;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::Solver;
-use grainbench_scene::terms::Terms;
+use grainbench_solver::Solver;
+use grainbench_solver::terms::Terms;
 use nalgebra::{Matrix3, Vector3};
 
 /// Transformation of a scene: x' = Q x + V t, v' = Q v + V, and ω' = det(Q) Q ω, because the spin ω is a pseudovector.

@@ -9,10 +9,12 @@ use crate::evidence::Evidence;
 use crate::expect::larger;
 use crate::verdict::Verdict;
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::{PointState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver};
-use grainbench_scene::terms::Terms;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::{PointState, Record};
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::terms::Terms;
 use nalgebra::Vector3;
 
 pub(super) const PROPERTY: Property = Property {

@@ -1,8 +1,11 @@
 //! Solver wrapper that does each run once, because several properties use the same run.
 
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::sync::{Mutex, PoisonError};
 
 type CachedRun = (Scene, Resolution, Result<Record, RunError>);

@@ -8,7 +8,7 @@ use crate::evidence::Evidence;
 use crate::expect::{Bound, ExpectedValue, Measurement};
 use crate::tolerance::{ASYMPTOTIC, ToleranceOrigin, asymptotic};
 use crate::verdict::Verdict;
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 
 pub(super) const PROPERTY: Property = Property {
     name: "order",

@@ -10,8 +10,8 @@ use crate::expect::{Bound, ExpectedValue, Measurement, larger};
 use crate::tolerance::ToleranceOrigin;
 use crate::verdict::Verdict;
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::{Duration, Scene};
+use grainbench_solver::record::{GrainState, Record};
 
 pub(super) const PROPERTY: Property = Property {
     name: "passivity",
@@ -274,8 +274,11 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
-    use grainbench_scene::terms::Terms;
+    use grainbench_solver::Solver;
+    use grainbench_solver::failure::RunError;
+    use grainbench_solver::observer::Observer;
+    use grainbench_solver::resolution::Resolution;
+    use grainbench_solver::terms::Terms;
 
     /// A solver that rejects every scene.
     struct IdleSolver;

@@ -5,9 +5,9 @@ use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::kept_record;
-use grainbench_scene::record::{Cost, Record};
-use grainbench_scene::solver::Solver;
+use grainbench_solver::Solver;
+use grainbench_solver::kept_record;
+use grainbench_solver::record::{Cost, Record};
 
 pub(super) const PROPERTY: Property = Property {
     name: "rerun",

@@ -6,8 +6,10 @@ use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;
 use crate::verdict::Verdict;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench_scene::solver::{Observer, RunError, RunOptions, RunOutline, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
 
 pub(super) const PROPERTY: Property = Property {
     name: "restart",

@@ -7,8 +7,9 @@ use crate::expect::Measurement;
 use crate::tolerance::ToleranceOrigin;
 use crate::verdict::{Outcome, Verdict};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::solver::{Resolution, Solver};
-use grainbench_scene::terms::Terms;
+use grainbench_solver::Solver;
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::terms::Terms;
 
 /// Inputs that all results of a property share.
 pub(super) struct Rows<'a> {

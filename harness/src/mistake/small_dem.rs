@@ -7,11 +7,14 @@
 
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
-use grainbench_scene::record::{ContactState, Cost, GrainState, Partner, Provenance, Record, Snapshot, StepState};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::{ContactState, Cost, GrainState, Partner, Provenance, Record, Snapshot, StepState};
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
 use nalgebra::{Rotation3, Vector3};
 
 type V = Vector3<f64>;

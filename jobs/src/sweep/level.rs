@@ -1,7 +1,8 @@
 //! Resolution levels as text, in the notation of reports: `dt=.1`, `dt=1e-5 s`, `substeps=8 iterations=4`,
 //! `cells=8 points=3 courant=.4`.
 
-use grainbench_scene::solver::{Method, Resolution};
+use grainbench_scene::method::Method;
+use grainbench_solver::resolution::Resolution;
 
 /// Expected notation for error messages.
 const EXPECTED: &str =

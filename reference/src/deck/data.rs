@@ -2,9 +2,9 @@
 
 use std::fmt::Write as _;
 
-use grainbench_scene::record::GrainState;
-use grainbench_scene::record::bounds;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::GrainState;
+use grainbench_solver::record::bounds;
 use nalgebra::Vector3;
 
 use super::heading;

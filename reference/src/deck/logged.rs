@@ -1,8 +1,8 @@
 //! Quantities that are read from the log of a run, because dumps of grains do not contain them: forces on walls, mean
 //! stress, coordination number, and displacements of pistons.
 
-use grainbench_scene::record::Series;
 use grainbench_scene::scene::{ProbeTarget, Scene};
+use grainbench_solver::record::Series;
 
 use super::outline::AXES;
 use crate::read::log::Log;

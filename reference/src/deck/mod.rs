@@ -15,9 +15,9 @@ mod schedule;
 
 pub use program::Program;
 
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{ProbeTarget, Scene};
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
 
 use crate::observer::Names;
 

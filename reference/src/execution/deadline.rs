@@ -2,7 +2,7 @@
 
 use std::time::{Duration, Instant};
 
-use grainbench_scene::solver::Failure;
+use grainbench_solver::failure::Failure;
 
 /// Start and duration of a time limit.
 #[derive(Clone, Copy, Debug)]

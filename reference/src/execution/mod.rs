@@ -15,9 +15,12 @@ pub(crate) use worker::Worker;
 use crate::deck::Stepping;
 use crate::observer::DumpRecord;
 use crate::read::read_error::{ReadError, one_line};
-use grainbench_scene::record::{Cost, Provenance, Record, Series};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, RunOutline};
+use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::observer::{Observer, RunOutline};
+use grainbench_solver::record::{Cost, Provenance, Record, Series};
+use grainbench_solver::reduction::reduce;
+use grainbench_solver::resolution::Resolution;
 use process::{Limits, ProcessEnd, ProcessStart, SCREEN};
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -100,7 +103,7 @@ pub(crate) fn run<T>(
         ProgramMessage::Failed(failure) => return Err(fail(failure)),
     };
     let (mut observed, further) = read(folder.path(), launch.limits.deadline).map_err(fail)?;
-    observed.snapshots.iter_mut().for_each(|snapshot| scene.columns.keep(snapshot));
+    observed.snapshots.iter_mut().for_each(|snapshot| reduce(snapshot, &scene.columns));
     complete(&observed.series, *stepping).map_err(|missing| fail(Failure::Output(missing)))?;
     observer.progress(stepping.steps, stepping.steps);
     let (seconds, version) = finish(reported, seconds, further);

@@ -10,7 +10,7 @@ use std::sync::{Arc, OnceLock};
 use std::thread::sleep;
 use std::time::{Duration, Instant};
 
-use grainbench_scene::solver::Failure;
+use grainbench_solver::failure::Failure;
 use tempfile::TempDir;
 
 use super::Deadline;

@@ -1,7 +1,7 @@
 //! Report of a program about its own run, in a JSON file.
 
 use crate::read::read_error::one_line;
-use grainbench_scene::solver::Failure;
+use grainbench_solver::failure::Failure;
 use serde::Deserialize;
 use serde_json::Value;
 use std::fs;

@@ -8,7 +8,7 @@
 use super::process::{self, ERRORS, Limits};
 use super::report::{FailureReport, Seconds};
 use crate::read::read_error::{one_line, quoted};
-use grainbench_scene::solver::Failure;
+use grainbench_solver::failure::Failure;
 use serde::{Deserialize, Serialize};
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Write};

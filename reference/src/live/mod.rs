@@ -8,10 +8,13 @@ use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::{Duration, SystemTime};
 
-use grainbench_scene::record::Record;
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Observer, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::Record;
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
 use crate::execution::process::{Limits, on_path};

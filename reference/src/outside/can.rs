@@ -3,7 +3,7 @@
 use super::manifest::{Capabilities, Manifest, Wall};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{Scene, WallShape};
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 
 /// Returns the reason why a program cannot run a scene at a resolution, or `None` if it declares all required
 /// features.

@@ -6,8 +6,8 @@ use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::recorder::Recorder;
 use std::path::Path;
 
 /// Returns the quantities of a scene from the table at a path, and the snapshots that the scene requests. `name` is the

@@ -1,8 +1,8 @@
 //! Contacts that the probes of a scene request, computed from positions of grains and from forces in dumps.
 
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
-use grainbench_scene::record::{ContactState, GrainState, Partner};
 use grainbench_scene::scene::{ProbeTarget, Scene, WallShape};
+use grainbench_solver::record::{ContactState, GrainState, Partner};
 use nalgebra::Vector3;
 
 use crate::pair_forces::PairForce;

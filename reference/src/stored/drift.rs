@@ -1,6 +1,6 @@
 //! Difference of a rerun from a stored run.
 
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 
 /// Largest difference of one column between a rerun and a stored run.
 #[derive(Debug, Clone, PartialEq)]

@@ -4,11 +4,13 @@ use std::collections::BTreeMap;
 use std::io::Write as _;
 
 use flate2::{Compression, GzBuilder};
-use grainbench_scene::perturbed::{PARTED, move_one};
-use grainbench_scene::record::{Record, Series};
-use grainbench_scene::refined::refined;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::perturbed::{PARTED, move_one};
+use grainbench_solver::record::{Record, Series};
+use grainbench_solver::refined::refined;
+use grainbench_solver::resolution::Resolution;
 
 use super::drift::drift;
 use super::scene_hash::scene_hash;

@@ -13,10 +13,11 @@ mod scene_hash;
 use std::fs;
 use std::path::{Path, PathBuf};
 
-use grainbench_scene::record::{Cost, Record, Series};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Failure, Resolution, RunError};
+use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::record::{Cost, Record, Series};
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
 
 use crate::deck::{Program, Stepping};
 use crate::read::table::{Table, read_table};
@@ -117,7 +118,7 @@ impl StoredRun {
             .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
         let options = vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)];
         Ok(Record {
-            provenance: grainbench_scene::record::Provenance::new(
+            provenance: grainbench_solver::record::Provenance::new(
                 scene,
                 solver,
                 resolution,

@@ -193,8 +193,8 @@ mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
     use super::*;
-    use grainbench_scene::solver::Resolution;
     use grainbench_scene::source::SceneSource;
+    use grainbench_solver::resolution::Resolution;
     use nalgebra::Vector3;
     use proptest::prelude::*;
     use std::path::Path;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 
 /// Columns of every snapshot, named as in LAMMPS.

@@ -12,7 +12,7 @@ pub(crate) mod sample;
 use std::collections::BTreeSet;
 use std::path::PathBuf;
 
-use grainbench_scene::record::{Record, Series};
+use grainbench_solver::record::{Record, Series};
 use serde::Serialize;
 
 use crate::parts::{READABLE, SnapshotStore};
@@ -158,7 +158,7 @@ fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), Write
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::record::Snapshot;
+    use grainbench_solver::record::Snapshot;
     use std::path::Path;
 
     fn written(snapshots: &[Snapshot], formats: &[Format], target: &Path) {

@@ -4,7 +4,7 @@ use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
-use grainbench_scene::record::{Cost, Provenance, Record, Series};
+use grainbench_solver::record::{Cost, Provenance, Record, Series};
 use serde::ser::{Error, SerializeSeq};
 use serde::{Serialize, Serializer};
 
@@ -70,7 +70,7 @@ pub fn load(dir: &Path) -> Result<Record, LoadError> {
 mod tests {
     use super::*;
     use crate::export::sample;
-    use grainbench_scene::record::Snapshot;
+    use grainbench_solver::record::Snapshot;
 
     #[test]
     fn reads_back_the_same() {

@@ -1,6 +1,6 @@
 //! A small record for tests: two discs and a wall, with one contact across a periodic boundary.
 
-use grainbench_scene::record::{
+use grainbench_solver::record::{
     Column, ContactState, Cost, GrainState, Owner, Partner, PointState, Provenance, Record, Series, Snapshot, WallState,
 };
 use nalgebra::Vector3;

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 
 /// Writes the columns `step,time (s),NAME (unit),…` with one line per sample. Each number is the shortest text that
 /// reads back to the same bits.

@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use grainbench_scene::record::Series;
+use grainbench_solver::record::Series;
 
 use crate::parts::{Values, whole};
 

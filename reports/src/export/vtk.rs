@@ -4,7 +4,7 @@ use std::collections::HashMap;
 use std::fmt::Write as _;
 use std::io::{self, Write};
 
-use grainbench_scene::record::{ContactState, GrainState, Owner, Partner, Snapshot};
+use grainbench_solver::record::{ContactState, GrainState, Owner, Partner, Snapshot};
 use maud::Escaper;
 use nalgebra::Vector3;
 

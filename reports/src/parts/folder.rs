@@ -4,7 +4,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::record::Snapshot;
 
 use super::part::PartReader;
 use crate::export::record_json;

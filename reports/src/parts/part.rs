@@ -5,7 +5,7 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use grainbench_scene::record::{BodyState, ContactState, GrainState, PointState, Snapshot, WallState};
+use grainbench_solver::record::{BodyState, ContactState, GrainState, PointState, Snapshot, WallState};
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 

@@ -1,9 +1,9 @@
 //! Rows of the tables of a part, one for each snapshot, grain, contact, wall, body or material point. Units are SI, as
-//! in [`grainbench_scene::record`].
+//! in [`grainbench_solver::record`].
 
 use super::columns::{Columns as Visit, Row};
 use grainbench_scene::columns::{Chosen, Columns};
-use grainbench_scene::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
+use grainbench_solver::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
 use nalgebra::Vector3;
 
 const PLACE: [&str; 3] = ["x", "y", "z"];

@@ -7,9 +7,9 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use grainbench_scene::brief::Brief;
 use grainbench_scene::columns::Columns;
-use grainbench_scene::record::Snapshot;
+use grainbench_solver::brief::Brief;
+use grainbench_solver::record::Snapshot;
 use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use thiserror::Error;

@@ -1,6 +1,6 @@
 //! Points of a work–precision diagram: error and computing cost.
 
-use grainbench_scene::record::Cost;
+use grainbench_solver::record::Cost;
 use serde::{Deserialize, Serialize};
 
 /// Status of a point.

@@ -7,10 +7,10 @@
 //! tangential springs release when their stiffness changes. The energy left in the tangential spring at the end of a
 //! contact is not counted. It is zero if the surfaces slip at the end, as they do with finite friction.
 
-use grainbench_scene::budget::Budget;
 use grainbench_scene::effects::Effects;
-use grainbench_scene::record::GrainState;
 use grainbench_scene::scene::{Driven, Grain, Scene};
+use grainbench_solver::budget::Budget;
+use grainbench_solver::record::GrainState;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

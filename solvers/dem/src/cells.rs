@@ -112,7 +112,7 @@ impl Cells {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
 
     /// In a lattice whose spacing is nearly the width of a cell, each cell has one grain, wherever the lattice lies. Only
     /// the last cells of a row or column also contain the grains on the border of the grid. The number of candidate pairs

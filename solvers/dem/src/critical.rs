@@ -4,7 +4,7 @@ use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
 use crate::walls::MovingWall;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
-use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
+use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
 
 /// Contact whose critical time step is checked.
 struct CheckedContact<'a> {

@@ -3,12 +3,12 @@
 
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
-use grainbench_scene::brief::Brief;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_scene::end_state::EndState;
-use grainbench_scene::record::{Counts, StepState};
-use grainbench_scene::recorder::Recorder;
-use grainbench_scene::solver::SimulationFailure;
+use grainbench_solver::brief::Brief;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_solver::failure::SimulationFailure;
+use grainbench_solver::record::{Counts, StepState};
+use grainbench_solver::recorder::Recorder;
 
 /// Simulation as the solver uses it, in two or three dimensions and with any contact laws.
 pub trait Simulation: Send {

@@ -55,7 +55,7 @@ impl<S: Geometry> DemSimulation<S> {
         // The order of the lists depends on the number of threads, so they are sorted.
         springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
         springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
-        let grain = |grain: &grainbench_scene::record::GrainState| StateGrain {
+        let grain = |grain: &grainbench_solver::record::GrainState| StateGrain {
             material: grain.material,
             size: [grain.radius, grain.mass, scene.grains[grain.id as usize - 1].inertia],
             position: grain.position,

@@ -20,7 +20,7 @@ use crate::seen::RecordedContacts;
 use crate::touching::ContactList;
 use crate::walls::{MovingWall, WallView};
 use grainbench_lanes::{Processor, Quad};
-use grainbench_scene::record::Partner;
+use grainbench_solver::record::Partner;
 use std::marker::PhantomData;
 
 /// Parameters common to all contacts of an evaluation.

@@ -2,7 +2,7 @@
 //! a SIMD register.
 
 use grainbench_lanes::{Number, Quad};
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_solver::space::{Plane, Solid, Space};
 use nalgebra::Vector3;
 use std::fmt::Debug;
 use std::ops::{Add, Mul, Neg, Sub};

@@ -1,9 +1,9 @@
 //! Time average of V σ (volume times stress) of every grain between two snapshots. Instantaneous values would be
 //! aliased, because a collision is shorter than the time between snapshots.
 
-use grainbench_scene::record::{ContactState, GrainState};
 use grainbench_scene::scene::Grain;
-use grainbench_scene::virial;
+use grainbench_solver::record::{ContactState, GrainState};
+use grainbench_solver::virial;
 use serde::{Deserialize, Serialize};
 
 /// Sums of V σ (volume times stress) of every grain since the last snapshot.

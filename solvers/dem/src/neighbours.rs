@@ -277,7 +277,7 @@ mod tests {
     use super::*;
     use crate::contact::MEMORY;
     use grainbench_scene::scene::Domain;
-    use grainbench_scene::space::{Plane, Solid};
+    use grainbench_solver::space::{Plane, Solid};
     use std::collections::BTreeSet;
 
     const NOTHING: Layout = Layout { numbers: 0, exchanged: [1.0; MEMORY] };

@@ -4,9 +4,9 @@ use crate::geometry::Geometry;
 use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
 use crate::simulation::DemSimulation;
-use grainbench_scene::brief::Brief;
-use grainbench_scene::record::{self, GrainState, Snapshot, StepState, WallState};
 use grainbench_scene::scene::{Driven, Scene};
+use grainbench_solver::brief::Brief;
+use grainbench_solver::record::{self, GrainState, Snapshot, StepState, WallState};
 use nalgebra::Vector3;
 
 /// Returns the state at this step: grains, contacts, walls and energies. It moves out the recorded contacts, so a

@@ -14,7 +14,7 @@ use crate::listed::Pairs;
 use crate::seen::RecordedContacts;
 use crate::touching::ContactList;
 use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, ScalarBackend, SimdPack, WIDEST};
-use grainbench_scene::record::Partner;
+use grainbench_solver::record::Partner;
 use std::marker::PhantomData;
 
 /// Loop over pairs in contact, for the stages `N`, `T` and `R` of the contact law. The velocity and spin of each grain

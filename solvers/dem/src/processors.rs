@@ -9,7 +9,7 @@ use grainbench_lanes::{Processor, Team};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -214,7 +214,7 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
 #[test]
 fn a_radius_beside_a_spin_is_that_of_its_grain() {
     use crate::grains::Grains;
-    use grainbench_scene::space::Solid;
+    use grainbench_solver::space::Solid;
     let scene = scene(3);
     let mut grains = Grains::<Solid>::new(&scene, true);
     assert!(grains.is_of(&scene, true));

@@ -4,7 +4,7 @@ use crate::contact::chain::Answer;
 use crate::geometry::Geometry;
 use crate::listed::reserve;
 use grainbench_lanes::Number;
-use grainbench_scene::record::{ContactState, Partner};
+use grainbench_solver::record::{ContactState, Partner};
 use nalgebra::Vector3;
 
 /// Contacts of the last force evaluation in which contacts were recorded.

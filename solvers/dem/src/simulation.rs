@@ -23,9 +23,9 @@ use crate::walls::{MovingWall, WallNeighbours};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::overlap::nearest_image;
-use grainbench_scene::record::{ContactState, Counts};
 use grainbench_scene::scene::{Driven, Probe, Scene};
-use grainbench_scene::solver::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
+use grainbench_solver::failure::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
+use grainbench_solver::record::{ContactState, Counts};
 use nalgebra::Vector3;
 
 /// Radius above which a grain has no cell in the search grid, in mean radii. Cells as large as such a grain would contain

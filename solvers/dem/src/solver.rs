@@ -14,18 +14,21 @@ use crate::share::FEWEST;
 use crate::simulation::DemSimulation;
 use crate::stability::damped_step;
 use grainbench_lanes::Team;
-use grainbench_scene::brief::Brief;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
 use grainbench_scene::contact_law::SpringsKind;
-use grainbench_scene::drive::{Course, LoopOutput, Stepper};
 use grainbench_scene::effects::Effects;
 use grainbench_scene::end_state::EndState;
-use grainbench_scene::record::{Counts, Provenance, Record, StepState};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Scene};
-use grainbench_scene::solver::{Defect, Observer, Resolution, RunError, RunOptions, Solver};
-use grainbench_scene::space::{Plane, Solid};
-use grainbench_scene::terms::{Limitation, Terms};
+use grainbench_solver::brief::Brief;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, Run};
+use grainbench_solver::drive::{Course, LoopOutput, Stepper};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::{Observer, RunOptions};
+use grainbench_solver::record::{Counts, Provenance, Record, StepState};
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::space::{Plane, Solid};
+use grainbench_solver::terms::{Limitation, Terms};
+use grainbench_solver::{Defect, Solver};
 
 /// Discrete element method with one contact convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]

@@ -9,10 +9,10 @@ use crate::mean_virial::MeanVirial;
 use crate::neighbours::Neighbours;
 use crate::simulation::DemSimulation;
 use crate::walls::WallMemory;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
-use grainbench_scene::finite::is_finite;
-use grainbench_scene::record::Counts;
-use grainbench_scene::recorder::Recorder;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_solver::finite::is_finite;
+use grainbench_solver::record::Counts;
+use grainbench_solver::recorder::Recorder;
 use serde::{Deserialize, Serialize};
 
 /// Content of a checkpoint. The order of the fields is the order of the bytes in the checkpoint.

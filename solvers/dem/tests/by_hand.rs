@@ -8,9 +8,9 @@ mod support;
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::stability::damped_step;
-use grainbench_scene::record::{Record, Snapshot};
-use grainbench_scene::solver::Resolution;
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::record::{Record, Snapshot};
+use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
 use std::path::Path;

@@ -6,9 +6,9 @@
 mod support;
 
 use grainbench_dem::convention::Convention;
-use grainbench_scene::record::Record;
-use grainbench_scene::solver::Resolution;
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 use support::{MATERIAL, column, last, run, run_at};
 

@@ -5,8 +5,8 @@
 mod support;
 
 use grainbench_dem::convention::Convention;
-use grainbench_scene::record::Record;
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::f64::consts::TAU;
 use support::{column, last, run_at};
 

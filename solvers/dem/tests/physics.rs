@@ -7,8 +7,9 @@ mod support;
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::solver::{Resolution, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 use support::{MATERIAL, last, run, run_as};
 

@@ -6,10 +6,12 @@ mod support;
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Cause, Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
 use std::path::Path;

@@ -8,10 +8,11 @@
 use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::record::Cost;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::record::Cost;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 use std::time::Duration;
 

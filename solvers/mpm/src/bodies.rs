@@ -10,9 +10,9 @@ use crate::transfer::Part;
 use grainbench_scene::body::{Block, BlockShape, Sides};
 use grainbench_scene::manufactured::Medium;
 use grainbench_scene::material::Deformable;
-use grainbench_scene::record::Owner;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
+use grainbench_solver::record::Owner;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 

@@ -8,7 +8,7 @@ use crate::nodes::Grid;
 use crate::state::State;
 use crate::walls::RigidPlane;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 
 /// Walls, fixed or symmetry boundaries of bodies, and driven bodies.
 #[derive(Clone, Debug)]

@@ -9,11 +9,11 @@ use crate::guard::EnergyGuard;
 use crate::ledger::Tally;
 use crate::points::Points;
 use crate::simulation::Simulation;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
-use grainbench_scene::finite::is_finite;
-use grainbench_scene::record::Counts;
-use grainbench_scene::recorder::Recorder;
-use grainbench_scene::space::Space;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_solver::finite::is_finite;
+use grainbench_solver::record::Counts;
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
 
 #[derive(Serialize, Deserialize)]

@@ -17,9 +17,9 @@ use crate::options::{Contact, StressUpdate};
 use crate::scheme::Scheme;
 use crate::state::State;
 use crate::surface::{TracerMotion, Tracers};
-use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
+use grainbench_solver::record::Counts;
+use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 use std::slice;
 

@@ -10,7 +10,7 @@ use crate::grid::{Lattice, Node, Stencil};
 use crate::options::Basis;
 use crate::points::Points;
 use grainbench_scene::scene::{Driven as DrivenGrains, Scene};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 
 /// Group of driven bodies with a common motion.
 #[derive(Clone, Debug)]

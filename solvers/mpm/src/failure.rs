@@ -1,7 +1,7 @@
 //! Description of a failed run.
 
-use grainbench_scene::record::Owner;
-use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
+use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
+use grainbench_solver::record::Owner;
 use nalgebra::Vector3;
 
 /// Failure at a material point, with its cause.

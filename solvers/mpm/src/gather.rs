@@ -26,7 +26,7 @@ use crate::share::ThreadPartition;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
 use grainbench_lanes::{FourKernel, FourLanes, Number, SimdPack, take_off};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 

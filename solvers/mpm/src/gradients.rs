@@ -5,7 +5,7 @@ use crate::patch::{Copies, StencilBlock};
 use crate::runs::Ground;
 use crate::scatter::weighted;
 use grainbench_lanes::{FourKernel, FourLanes, SimdPack};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
 /// Kernel that computes velocity gradients (1/s) at the points of some batches of a body.

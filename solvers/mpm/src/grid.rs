@@ -7,7 +7,7 @@
 
 use crate::basis::{Axis, Basis};
 use grainbench_lanes::Number;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -318,7 +318,7 @@ impl Stencil<f64> {
 mod tests {
     use super::*;
     use crate::basis::{Gimp, Linear, Quadratic};
-    use grainbench_scene::space::Solid;
+    use grainbench_solver::space::Solid;
 
     /// Checks that a field that is linear in position has the same gradient everywhere, with cells of 1, 2 and 3 m. The
     /// gradient is evaluated node by node and row by row.

@@ -9,8 +9,8 @@ use crate::material::{Law, with_law};
 use crate::options::Contact;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Cause, SimulationFailure};
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::{Cause, SimulationFailure};
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

@@ -4,7 +4,7 @@
 use crate::bodies::Body;
 use crate::grid::{Lattice, Node, Window};
 use grainbench_scene::body::Hold;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 
 /// Side of a box that is a fixed or symmetry boundary.
@@ -162,7 +162,7 @@ mod tests {
     use crate::options::{Basis, Setting, Transfer};
     use crate::simulation::Simulation;
     use crate::trial::prepared;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
     /// A box of 2 kg/m² on cells of 1 m moves at (3, 5) m/s before its side on nodes is constrained. Points are at

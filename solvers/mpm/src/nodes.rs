@@ -6,8 +6,8 @@ use crate::grid::{Lattice, Node, Window};
 use crate::share::ThreadPartition;
 use crate::state::State;
 use grainbench_lanes::take_off;
-use grainbench_scene::solver::Cause;
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::Cause;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 
 /// Maximum number of nodes. A grid with more nodes is an error.

@@ -5,12 +5,12 @@ use crate::contact::{ContactPartner, ContactPoint};
 use crate::material::{self, Law, with_law};
 use crate::simulation::Simulation;
 use crate::stress::embed_deformation;
-use grainbench_scene::budget::Budget;
-use grainbench_scene::record::{
+use grainbench_scene::scene::{BodyName, WallShape};
+use grainbench_solver::budget::Budget;
+use grainbench_solver::record::{
     self, BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, StepState, WallState,
 };
-use grainbench_scene::scene::{BodyName, WallShape};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
 /// Motion and moments of a whole body.

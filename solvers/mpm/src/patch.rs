@@ -3,7 +3,7 @@
 
 use crate::basis::Basis;
 use crate::grid::Window;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::ops::Range;
 
 /// Maximum number of nodes that influence a point.

@@ -1,7 +1,7 @@
 //! Material points as a structure of arrays. They are grouped by body and sorted by cell within a body.
 
 use grainbench_lanes::{Team, take_off};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use serde::{Deserialize, Serialize};
 use std::ops::Range;

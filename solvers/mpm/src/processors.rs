@@ -3,7 +3,7 @@
 use crate::options::{Basis, Setting, StressUpdate, Transfer};
 use crate::trial::prepared;
 use grainbench_lanes::{Processor, Team};
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_solver::space::{Plane, Solid, Space};
 
 /// Returns the state of the points, as text, after some steps of a round body. The body spins, crosses the faces of a
 /// periodic domain and shares nodes with its image.

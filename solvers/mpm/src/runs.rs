@@ -6,7 +6,7 @@ use crate::grid::{Lattice, Stencil};
 use crate::points::{Points, PointsMut};
 use crate::transfer::Part;
 use grainbench_lanes::{FourLanes, LANES, Number, SimdPack};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
 use std::array::from_fn;
 use std::ops::Range;
@@ -306,7 +306,7 @@ mod tests {
     use super::*;
     use crate::basis::{Linear, Quadratic};
     use crate::share::{NO_BOX, enclose};
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
     const LATTICE: Lattice = Lattice { cell: [0.5; 3], inverse: [2.0; 3], origin: [0.1; 3], period: [None; 3] };

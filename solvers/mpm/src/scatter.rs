@@ -20,7 +20,7 @@ use crate::scheme::Scheme;
 use crate::state::State;
 use crate::transfer::{Apic, Flip, Spin, Transfer};
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 

@@ -2,7 +2,7 @@
 
 use crate::options::{Contact, Setting, StressUpdate};
 use grainbench_lanes::Processor;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 
 /// Constant parameters of a run.
 #[derive(Clone, Copy, Debug)]

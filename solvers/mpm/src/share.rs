@@ -10,7 +10,7 @@ use crate::grid::{Lattice, Window};
 use crate::ledger::Flow;
 use crate::points::{Points, PointsMut};
 use crate::runs::{self, LONGEST, ParticleBatch};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::ops::Range;
 
 /// Minimum number of points in a partition. With fewer points, threads mostly wait for each other.

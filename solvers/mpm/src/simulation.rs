@@ -24,10 +24,10 @@ use crate::share::{FEWEST, LargestDisplacement, ThreadPartition, cut_nodes};
 use crate::state::State;
 use crate::{stress, transfer};
 use grainbench_lanes::{Processor, Team};
-use grainbench_scene::record::Counts;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::SimulationFailure;
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::SimulationFailure;
+use grainbench_solver::record::Counts;
+use grainbench_solver::space::Space;
 
 /// Bodies, grid, boundaries and contacts of a run, with the current step.
 pub(crate) struct Simulation<S: Space> {

@@ -5,14 +5,18 @@ use crate::limits;
 use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;
 use grainbench_scene::body::{BlockShape, Hold};
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError, Run};
-use grainbench_scene::drive::{Course, LoopOutput, Stepper};
 use grainbench_scene::memory;
-use grainbench_scene::record::{Counts, Provenance, Record, StepState};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::scene::{Dimension, Duration, Scene};
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver, beyond_run, beyond_steps};
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, Run};
+use grainbench_solver::drive::{Course, LoopOutput, Stepper};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::limits::{beyond_run, beyond_steps};
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::{Counts, Provenance, Record, StepState};
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::space::{Plane, Solid, Space};
 use std::f64::consts::PI;
 
 /// The material point method with one setting.

@@ -7,9 +7,9 @@ use crate::scheme::Surroundings;
 use crate::simulation::Simulation;
 use crate::state::State;
 use crate::{stress_at_start, transfer};
-use grainbench_scene::record::Owner;
-use grainbench_scene::solver::SimulationFailure;
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::SimulationFailure;
+use grainbench_solver::record::Owner;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 
 impl<S: Space> Simulation<S> {

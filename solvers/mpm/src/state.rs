@@ -10,8 +10,8 @@ use crate::runs::ParticleBatch;
 use crate::share::{self, BodyBatches, LargestDisplacement, NO_BOX, ThreadPartition, enclose};
 use crate::surface::Tracers;
 use grainbench_lanes::Team;
-use grainbench_scene::solver::Cause;
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::Cause;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 

@@ -16,8 +16,8 @@ use crate::share::{LargestDisplacement, ThreadPartition};
 use crate::state::State;
 use grainbench_lanes::logarithm::ln;
 use grainbench_lanes::{FourKernel, FourLanes};
-use grainbench_scene::solver::Cause;
-use grainbench_scene::space::Space;
+use grainbench_solver::failure::Cause;
+use grainbench_solver::space::Space;
 use nalgebra::Matrix3;
 
 /// Material point with an invalid state, by its index.

@@ -6,9 +6,9 @@ use crate::points::Points;
 use crate::state::State;
 use crate::surface::Tracers;
 use grainbench_scene::body::BlockShape;
-use grainbench_scene::record::Owner;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::space::Space;
+use grainbench_solver::record::Owner;
+use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
 
 /// Returns the reason why a body cannot have the initial stress that the scene gives, or `None` if it can.

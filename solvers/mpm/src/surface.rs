@@ -9,7 +9,7 @@ use crate::seed;
 use crate::share::{NO_BOX, enclose};
 use crate::transfer::Part;
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack, take_off};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::marker::PhantomData;
 use std::ops::Range;
@@ -457,7 +457,7 @@ fn transported<S: Space>(area: S::Vector, gradient: S::Matrix, elapsed: f64) -> 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
     use std::f64::consts::TAU;
 

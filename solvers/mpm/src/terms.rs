@@ -3,8 +3,8 @@
 
 use crate::options::Contact;
 use crate::solver::Mpm;
-use grainbench_scene::solver::Resolution;
-use grainbench_scene::terms::{Limitation, Terms};
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::terms::{Limitation, Terms};
 
 const ANGULAR: &str = "mass is lumped at the nodes, so the momentum of a point acts at nodes and not at the point: \
                        angular momentum is conserved to second order in the cell size";

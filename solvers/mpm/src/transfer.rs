@@ -4,7 +4,7 @@ use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil, Window};
 use crate::points::Points;
 use grainbench_lanes::Number;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::ops::Range;
 
 /// Transfer of velocities between points and nodes.
@@ -198,7 +198,7 @@ pub(crate) fn gather_changes<S: Space, B: Basis>(
 mod tests {
     use super::*;
     use crate::basis::{Gimp, Quadratic};
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::{Matrix2, Vector2};
 
     /// In simple shear x = X + ¾Y, the material lines grow along x by the factor √b_xx = √(1 + ¾²) = 5/4, and not along

@@ -3,9 +3,9 @@
 use crate::options::Setting;
 use crate::simulation::Simulation;
 use crate::solver::{Mpm, Plan};
-use grainbench_scene::solver::Resolution;
 use grainbench_scene::source::SceneSource;
-use grainbench_scene::space::Space;
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::space::Space;
 use std::path::Path;
 
 /// Returns a simulation of a scene before its first step, and the number of steps of the run.

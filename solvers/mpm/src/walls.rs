@@ -2,7 +2,7 @@
 
 use grainbench_scene::motion::Motion;
 use grainbench_scene::scene::{Wall, WallShape};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 
 /// Plane of a wall, with its current position and velocity.
@@ -75,7 +75,7 @@ impl<S: Space> RigidPlane<S> {
 mod tests {
     use crate::options::Setting;
     use crate::trial::prepared;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
     /// A plane rotates at .5 rad/s about a centre that starts at (2, 1) m. A ramp to 1 m/s over 2 s moves the centre

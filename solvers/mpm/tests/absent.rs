@@ -8,9 +8,10 @@ use grainbench_mpm::off::AbsentEffect;
 use grainbench_mpm::options::Transfer;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::effect::Effect;
-use grainbench_scene::record::{Cost, Record};
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::record::{Cost, Record};
+use grainbench_solver::resolution::Resolution;
 use support::{collision, column, incline, run, scene};
 
 const AT: Resolution = Resolution::grid(4.0, 2);

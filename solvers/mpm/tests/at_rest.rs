@@ -4,7 +4,7 @@
 mod support;
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 use support::{column, try_run};
 
 /// Density (kg/m³).

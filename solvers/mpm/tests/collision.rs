@@ -4,8 +4,9 @@
 mod support;
 
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::record::Record;
-use grainbench_scene::solver::{Resolution, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use support::{collision, column, last, run, try_run};
 
 const SPEED: f64 = 0.042_426_406_871_192_85;

@@ -4,8 +4,8 @@
 mod support;
 
 use grainbench_mpm::options::Setting;
-use grainbench_scene::record::Record;
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use support::{column, incline, last, run, try_run};
 
 /// Plane modulus E' = E/(1 − ν²) for E = 100 Pa and ν = .3: 100/.91 Pa.

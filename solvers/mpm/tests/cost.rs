@@ -3,7 +3,7 @@
 
 mod support;
 
-use grainbench_scene::record::Cost;
+use grainbench_solver::record::Cost;
 use support::run;
 
 const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\

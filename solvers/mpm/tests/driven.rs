@@ -3,7 +3,7 @@
 
 mod support;
 
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 use support::{collision, column, last, run, scene, try_run};
 
 /// Returns a collision in which the left disc is driven, so fast that the right disc cannot escape. With `yields`, the
@@ -94,7 +94,7 @@ fn a_grain_that_yields_says_so() {
     assert!(grains[0].plastic_strain == 0.0, "what is driven does not deform");
     let points = &record.snapshots.last().unwrap().points;
     let (mut mass, mut sum) = (0.0, 0.0);
-    for point in points.iter().filter(|point| point.owner == grainbench_scene::record::Owner::Grain(2)) {
+    for point in points.iter().filter(|point| point.owner == grainbench_solver::record::Owner::Grain(2)) {
         mass += 1.0;
         sum += point.plastic_strain;
     }

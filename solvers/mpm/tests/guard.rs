@@ -5,7 +5,8 @@
 mod support;
 
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
-use grainbench_scene::solver::{Cause, Resolution, RunError, SimulationFailure};
+use grainbench_solver::failure::{Cause, RunError, SimulationFailure};
+use grainbench_solver::resolution::Resolution;
 use support::{column, try_run};
 
 const AT: Resolution = Resolution::grid(4.0, 3);

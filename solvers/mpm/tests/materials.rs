@@ -3,7 +3,7 @@
 
 use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VolumeRatio, VonMises};
 use grainbench_mpm::off::AbsentEffect;
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_solver::space::{Plane, Solid, Space};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
 const BULK: f64 = 11.4e9;

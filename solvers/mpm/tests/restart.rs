@@ -4,9 +4,12 @@
 mod support;
 
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
-use grainbench_scene::record::{Cost, Record};
-use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::{Observer, RunOptions};
+use grainbench_solver::record::{Cost, Record};
+use grainbench_solver::resolution::Resolution;
 use support::{collision, incline, scene};
 
 /// Observer that stores every checkpoint of a run, after conversion to and from bytes.

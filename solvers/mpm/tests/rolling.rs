@@ -4,7 +4,7 @@
 mod support;
 
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::record::Cost;
+use grainbench_solver::record::Cost;
 use support::{column, incline, last, run};
 
 /// Returns the error of the displacement relative to a rigid disc (%), and the ratio of rolling to translation.

@@ -5,7 +5,8 @@ mod support;
 
 use grainbench_mpm::options::{Basis, StressUpdate, Transfer};
 use grainbench_scene::manufactured::Medium;
-use grainbench_scene::solver::{Cause, Resolution, RunError};
+use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::resolution::Resolution;
 use support::{column, last, run, scene, try_run};
 
 /// A spinning disc or sphere falls freely. The fall is exact to rounding, and the spin is conserved.

@@ -3,7 +3,7 @@
 
 mod support;
 
-use grainbench_scene::record::Record;
+use grainbench_solver::record::Record;
 use support::{column, last, run};
 
 const SPEED: f64 = 0.042_426_406_871_192_85;

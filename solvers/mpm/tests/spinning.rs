@@ -4,7 +4,7 @@
 
 mod support;
 
-use grainbench_scene::record::{Record, Snapshot};
+use grainbench_solver::record::{Record, Snapshot};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use support::{column, last, run};

@@ -3,7 +3,7 @@
 
 mod support;
 
-use grainbench_scene::solver::Resolution;
+use grainbench_solver::resolution::Resolution;
 use support::{collision, column, last, try_run};
 
 /// Two viscous discs collide. Their viscous dissipation is part of the damping entry, and the budget closes to first

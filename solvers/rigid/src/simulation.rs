@@ -3,9 +3,9 @@
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
 use grainbench_scene::overlap::distance;
-use grainbench_scene::record::{ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState};
 use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
-use grainbench_scene::solver::{Cause, FailedParticle, SimulationFailure};
+use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
+use grainbench_solver::record::{ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState};
 use nalgebra::Vector3;
 
 /// Fraction of the Coulomb limit from which a friction impulse counts as slipping.

@@ -4,11 +4,15 @@ use crate::engine::Stepping;
 use crate::limits;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
-use grainbench_scene::drive::{Course, LoopOutput, Stepper};
-use grainbench_scene::record::{Counts, Provenance, Record, StepState};
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Observer, Resolution, RunError, Solver, beyond_run};
-use grainbench_scene::terms::{Limitation, Terms};
+use grainbench_solver::Solver;
+use grainbench_solver::drive::{Course, LoopOutput, Stepper};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::limits::beyond_run;
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::{Counts, Provenance, Record, StepState};
+use grainbench_solver::resolution::Resolution;
+use grainbench_solver::terms::{Limitation, Terms};
 
 /// Version of rapier and type of its numbers, as stated in records.
 const RAPIER: &str = "rapier 0.36, f64";

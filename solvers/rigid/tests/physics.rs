@@ -4,10 +4,12 @@
 
 use grainbench_rigid::settings::Settings;
 use grainbench_rigid::solver::Rigid;
-use grainbench_scene::record::{Cost, Partner, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Cause, Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::record::{Cost, Partner, Record};
+use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
 use std::path::Path;

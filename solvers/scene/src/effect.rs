@@ -4,9 +4,9 @@
 
 use crate::contact_law::{ContactLaw, Springs};
 use crate::material::Deformable;
+use crate::method::Method;
 use crate::motion::{Moment, Phase};
 use crate::scene::Scene;
-use crate::solver::Method;
 use nalgebra::Vector3;
 
 /// Physical effect that a scene may use.

@@ -8,7 +8,7 @@ const DIGITS: usize = 11;
 
 /// Reason why bytes are not a valid sealed file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SealError {
+pub enum SealError {
     /// Another kind of file.
     Foreign,
     /// Earlier format.
@@ -22,7 +22,8 @@ pub(crate) enum SealError {
 }
 
 /// Returns the bytes of a file with the given kind (`magic`), format and content.
-pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
+#[must_use]
+pub fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
     let mut bytes = [magic, format.to_string().as_bytes(), b"\n"].concat();
     bytes.extend((body.len() as u64).to_le_bytes());
     bytes.extend(blake3::hash(body).as_bytes());
@@ -31,7 +32,10 @@ pub(crate) fn seal(magic: &[u8], format: u32, body: &[u8]) -> Vec<u8> {
 }
 
 /// Returns the content of a file of the given kind (`magic`) and format.
-pub(crate) fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], SealError> {
+///
+/// # Errors
+/// When the bytes are not a valid file of this kind and format.
+pub fn open<'b>(magic: &[u8], format: u32, bytes: &'b [u8]) -> Result<&'b [u8], SealError> {
     let start = &bytes[..bytes.len().min(magic.len() + DIGITS)];
     let line = start.split(|&byte| byte == b'\n').next().unwrap_or_default();
     let number = line.strip_prefix(magic).ok_or(SealError::Foreign)?;

@@ -7,8 +7,8 @@ use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict::{Control, Verdict};
 use grainbench::harness::{case::Physics, conformance};
 use grainbench::reports::Section;
-use grainbench::scene::solver::Solver;
-use grainbench::scene::terms::Terms;
+use grainbench::solver::Solver;
+use grainbench::solver::terms::Terms;
 use std::sync::Arc;
 
 /// Solver whose conformance properties are tested.

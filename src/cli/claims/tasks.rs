@@ -14,7 +14,7 @@ use grainbench::harness::verdict::{self, Control, Verdict};
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::{RunCost, Section};
-use grainbench::scene::solver::RunError;
+use grainbench::solver::failure::RunError;
 use grainbench::store::log::State;
 use grainbench::store::results::TaskResult;
 use grainbench::studies::run_cache::RunCache;

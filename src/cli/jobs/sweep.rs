@@ -15,7 +15,7 @@ use grainbench::jobs::sweep::Sweep;
 use grainbench::jobs::task::Task;
 use grainbench::reports::number;
 use grainbench::reports::sweep::{PointOutput, QuantityResult, sweep_json, write_sweep};
-use grainbench::scene::solver::Solver;
+use grainbench::solver::Solver;
 use grainbench::store::key;
 use grainbench::store::log::State;
 use grainbench::store::results::TaskResult;

@@ -2,8 +2,9 @@
 
 use grainbench_harness::solvers::ExternalSolver;
 use grainbench_harness::subject::SolverSetup;
+use grainbench_scene::method::Method;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Method, Resolution};
+use grainbench_solver::resolution::Resolution;
 
 /// Sweep point: one setting of a solver's parameters.
 #[derive(Clone, Debug, PartialEq)]

@@ -12,8 +12,10 @@ use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::load::{Load, TimingDifference};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 use std::sync::Arc;
 

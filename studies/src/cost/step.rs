@@ -13,10 +13,12 @@ use grainbench_harness::solvers::Solvers;
 use grainbench_lanes::{Processor, Quad, probe};
 use grainbench_reports::study::step::{Model, Probe, TaskCost};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::Cost;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Cost;
+use grainbench_solver::resolution::Resolution;
 use std::hint::black_box;
 use std::path::Path;
 

@@ -2,9 +2,11 @@
 //! forces must not change by a single bit, except for the sign of zero. The additional cost is measured.
 
 use grainbench_scene::effect::Effect;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::{self, Scene};
-use grainbench_scene::solver::{Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::time::{Duration, Instant};
 
 /// Maximum number of steps, enough for contacts to open and close.

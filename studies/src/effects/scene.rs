@@ -3,9 +3,12 @@
 use super::idle::{ratio_of_times, try_idly};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
 use grainbench_scene::effect::Effect;
-use grainbench_scene::record::Record;
+use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Method, Resolution, RunError, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::time::Duration;
 
 /// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.

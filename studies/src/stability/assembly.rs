@@ -22,9 +22,9 @@
 
 use super::failure::{Failure, finite};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::record::Record;
 use nalgebra::Vector3;
 use std::f64::consts::SQRT_2;
 use std::fmt::Write as _;
@@ -87,7 +87,7 @@ impl Assembly {
             }
             Judge::Growth => {
                 let grains = record.snapshots.iter().flat_map(|snapshot| &snapshot.grains);
-                let away = |grain: &grainbench_scene::record::GrainState| {
+                let away = |grain: &grainbench_solver::record::GrainState| {
                     let moved = self.nearest_image(grain.position - self.rest[grain.id as usize - 1]);
                     moved.norm().max(grain.spin.norm())
                 };

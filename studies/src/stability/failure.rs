@@ -1,7 +1,7 @@
 //! Kinds of failure of a run.
 
-use grainbench_scene::record::Snapshot;
-use grainbench_scene::solver::{Cause, RunError};
+use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::record::Snapshot;
 use std::fmt;
 
 /// Failure because of which a time step counts as unstable.

@@ -7,7 +7,10 @@ use super::failure::{Failure, of_error};
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
-use grainbench_scene::solver::{Resolution, RunError, RunOptions, Solver};
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::RunOptions;
+use grainbench_solver::resolution::Resolution;
 
 /// Relative precision of a limit.
 const PRECISION: f64 = 0.005;

@@ -120,7 +120,7 @@ mod tests {
     use crate::contact::{MEMORY, Options};
     use crate::convention::Convention;
     use crate::geometry::Components;
-    use grainbench_scene::space::Solid;
+    use grainbench_solver::space::Solid;
     use nalgebra::Vector3;
     use std::f64::consts::{FRAC_PI_2, PI};
 

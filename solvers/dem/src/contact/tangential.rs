@@ -8,7 +8,7 @@ use super::normal::{Normal, NormalForce};
 use super::{ContactInput, Memory};
 use crate::geometry::{Components, Geometry, Linear};
 use grainbench_lanes::Number;
-use grainbench_scene::space::{Plane, Solid};
+use grainbench_solver::space::{Plane, Solid};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 

@@ -3,9 +3,10 @@
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::record::Record;
-use grainbench_scene::solver::{Resolution, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 
 pub const MATERIAL: &str = r#"

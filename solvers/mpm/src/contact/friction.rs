@@ -6,7 +6,7 @@
 
 use super::ContactPartner;
 use crate::off::AbsentEffect;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// Overlap of a tracer that penetrates another surface.
@@ -215,7 +215,7 @@ impl<S: Space> Friction<S> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
     /// Returns the force along x on a tracer with springs of 200 N/m at a depth of .01 m, after it has slipped by `slip` (m).

@@ -9,7 +9,7 @@
 use crate::basis::Basis;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::transfer::Part;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 
 /// Upper limit of w² m_cell/m for a node, with weight w, mass m and the mass m_cell of a full cell.
 ///
@@ -79,7 +79,7 @@ impl<S: Space> SurfaceShapeFunction<S> {
 mod tests {
     use super::{MOST, bear};
     use crate::grid::Node;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
 
     /// Returns the weight limit of a node with the given mass, in a body with 3 kg per cell.
     fn most(mass: f64) -> f64 {

@@ -8,7 +8,7 @@ pub(crate) mod penalty;
 pub(crate) mod search;
 pub(crate) mod shared;
 
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
 
 /// Contact partner of a body: a second body or a wall, by its index.

@@ -23,7 +23,7 @@ use crate::grid::Lattice;
 use crate::ledger::Ledger;
 use crate::options::Contact;
 use crate::walls::RigidPlane;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 
 /// Safety factor γ of eq. 21.
 const COLLAPSE: f64 = 0.5;
@@ -272,7 +272,7 @@ mod tests {
     use crate::off::AbsentEffect;
     use crate::options::Setting;
     use crate::trial::prepared;
-    use grainbench_scene::space::Plane;
+    use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
     /// Returns the velocities after contact of three bodies of 1, 2 and 3 kg at a node. The first and second body are

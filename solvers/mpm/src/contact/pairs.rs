@@ -2,7 +2,7 @@
 
 use crate::bodies::Body;
 use crate::grid::Lattice;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 
 /// Two bodies with bounding boxes close to each other. Tracers of the first are tested against the surface of the

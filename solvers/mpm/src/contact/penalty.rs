@@ -14,7 +14,7 @@ use crate::ledger::Ledger;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
 use grainbench_lanes::{FourKernel, FourLanes};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
 /// Springs of all tracers, with the results of the contact search.

@@ -10,7 +10,7 @@ use crate::bodies::Body;
 use crate::grid::Node;
 use crate::surface::{NearSurface, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
 /// Largest bulge of a surface beyond the bounding box of its tracers (cells).

@@ -8,7 +8,7 @@ use crate::grid::{Lattice, Node, Stencil, Window};
 use crate::points::Points;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
-use grainbench_scene::space::Space;
+use grainbench_solver::space::Space;
 use std::ops::Range;
 
 /// Velocities of nodes, either after the step or projected from points.

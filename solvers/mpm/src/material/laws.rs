@@ -5,7 +5,7 @@ use super::{Law, State, VolumeRatio, symmetric_root};
 use crate::off::AbsentEffect;
 use grainbench_lanes::logarithm::ln;
 use grainbench_scene::material::{Constitutive, Deformable};
-use grainbench_scene::space::{Solid, Space};
+use grainbench_solver::space::{Solid, Space};
 use nalgebra::Matrix3;
 
 /// Constitutive law of a body.

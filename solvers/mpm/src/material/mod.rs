@@ -9,7 +9,7 @@ pub(crate) use laws::{Material, with_law};
 pub use plastic_strain::PlasticStrain;
 
 use grainbench_lanes::logarithm::ln;
-use grainbench_scene::space::{Solid, Space};
+use grainbench_solver::space::{Solid, Space};
 use nalgebra::Matrix3;
 
 /// State of a material point.

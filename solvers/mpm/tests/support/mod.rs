@@ -3,10 +3,12 @@
 
 use grainbench_mpm::options::Setting;
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Resolution, RunError, Solver};
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 
 pub fn scene(text: &str) -> Scene {

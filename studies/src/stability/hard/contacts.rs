@@ -2,8 +2,8 @@
 
 use super::{HardCase, case, changed, end, kinetic, kinetic_at_start, near};
 use crate::stability::failure::Failure;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Record;
 
 pub(super) fn cases() -> Vec<HardCase> {
     vec![

@@ -2,8 +2,8 @@
 
 use super::{HardCase, case, end, head_on, kinetic, kinetic_at_start, near};
 use crate::stability::failure::Failure;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Record;
 
 /// Elastic head-on impact of two discs.
 struct Impact {

@@ -2,8 +2,8 @@
 
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::failure::Failure;
-use grainbench_scene::record::Record;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Record;
 use std::fmt::Write as _;
 
 /// Duration of the run, in units of a tenth of the critical time step.

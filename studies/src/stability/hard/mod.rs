@@ -10,11 +10,8 @@ use super::failure::{Failure, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::{HardCaseResult, Hardness};
-use grainbench_scene::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::record::{GrainState, Record};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::solver::{Observer, Resolution, RunError, RunOptions, RunOutline, Solver};
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
@@ -302,7 +299,7 @@ mod tests {
                 grain.position += nalgebra::Vector3::new(-3e9, -7e9, -5e9) * grain.radius;
                 grain.velocity += nalgebra::Vector3::new(-1e9, -2e9, 0.0);
             }
-            let snapshot = grainbench_scene::record::Snapshot::of_grains(&scene, 1, 1.0, grains);
+            let snapshot = grainbench_solver::record::Snapshot::of_grains(&scene, 1, 1.0, grains);
             let solver = Dem::new(Convention::DEFAULT);
             let mut short = crate::stability::assembly::all().unwrap().swap_remove(0).scene;
             short.duration = grainbench_scene::scene::Duration::Cycles(1);

@@ -1,7 +1,7 @@
 //! Tests of products of vectors and tensors in two and three dimensions. The numbers are chosen so that any exchange of
 //! components changes a result.
 
-use grainbench_scene::space::{Plane, Solid, Space};
+use grainbench_solver::space::{Plane, Solid, Space};
 use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 
 /// Symmetric tensor in two dimensions, with the components xx, yy, zz, xy.

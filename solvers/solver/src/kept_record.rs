@@ -3,7 +3,7 @@
 //! number.
 
 use crate::record::Record;
-use crate::sealed;
+use grainbench_scene::sealed;
 use serde::{Deserialize, Serialize};
 
 const MAGIC: &[u8] = b"grainbench record ";

@@ -3,11 +3,13 @@
 
 use crate::brief::Brief;
 use crate::checkpoint::{Checkpoint, CheckpointError};
-use crate::end_state::EndState;
+use crate::failure::RunError;
+use crate::observer::{Observer, RunOutline};
 use crate::record::{Cost, Counts, PartialOutput, Series, Snapshot, StepState};
 use crate::recorder::Recorder;
-use crate::scene::Scene;
-use crate::solver::{Observer, RunError, RunOutline};
+use crate::reduction::reduce;
+use grainbench_scene::end_state::EndState;
+use grainbench_scene::scene::Scene;
 use std::time::Instant;
 
 /// State that can be advanced in time.
@@ -135,7 +137,7 @@ impl Course<'_> {
                 _ => None,
             };
             if let Some(mut end) = end {
-                self.scene.columns.keep(&mut end);
+                reduce(&mut end, &self.scene.columns);
                 let (series, snapshots) = recorder.finish();
                 observer.broke(PartialOutput { series, snapshots, end });
             }

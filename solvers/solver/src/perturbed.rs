@@ -1,7 +1,7 @@
 //! Perturbed run, in which one coordinate of one grain is changed by one unit in the last place. It shows how long a
 //! run is predictable.
 
-use crate::scene::Scene;
+use grainbench_scene::scene::Scene;
 
 /// Difference between a run and its perturbed run, relative to the largest value, at which pointwise comparison ends.
 pub const PARTED: f64 = 1e-9;

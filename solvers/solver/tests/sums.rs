@@ -2,10 +2,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_scene::record::{BodyState, ContactState, GrainState, Partner, Snapshot, StepState};
-use grainbench_scene::recorder::Recorder;
 use grainbench_scene::source::SceneSource;
-use grainbench_scene::virial;
+use grainbench_solver::record::{BodyState, ContactState, GrainState, Partner, Snapshot, StepState};
+use grainbench_solver::recorder::Recorder;
+use grainbench_solver::virial;
 use nalgebra::Vector3;
 use std::path::Path;
 

@@ -1,8 +1,8 @@
 //! Repetition of a run with a finer time step and the same sample times.
 
-use crate::motion::Moment;
-use crate::scene::{Duration, Sampling, Scene};
-use crate::solver::Resolution;
+use crate::resolution::Resolution;
+use grainbench_scene::motion::Moment;
+use grainbench_scene::scene::{Duration, Sampling, Scene};
 
 /// Returns a scene and a resolution with `parts` steps for each step of a given run. The given run has `steps` steps of
 /// `time_step` (s), and a sample every `interval` steps.

@@ -1,9 +1,9 @@
 //! Output of a run, which consists of time series, snapshots, cost and provenance.
 
 use crate::budget::Budget;
-use crate::effects::Effects;
-use crate::scene::{Grain, Scene};
-use crate::solver::Resolution;
+use crate::resolution::Resolution;
+use grainbench_scene::effects::Effects;
+use grainbench_scene::scene::{Grain, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 

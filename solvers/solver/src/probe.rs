@@ -1,43 +1,12 @@
 //! Time series of the probes of a scene.
 
-use crate::budget::Budget;
+use crate::probe_columns::{ENERGIES, columns, mean_stresses, stresses};
 use crate::record::{BodyState, Column, ContactState, GrainState, Partner, Series, Snapshot, StepState};
-use crate::scene::{Dimension, Probe, ProbeTarget, Scene, WallShape};
+use grainbench_scene::scene::{Dimension, Probe, ProbeTarget, Scene, WallShape};
 use nalgebra::{Matrix3, Vector3};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Value of a quantity that a solver does not report.
 const UNKNOWN: Vector3<f64> = Vector3::new(f64::NAN, f64::NAN, f64::NAN);
-
-/// Name of an energy, and its value in a budget.
-type Entry = (&'static str, fn(&Budget) -> f64);
-
-/// Entries of an energy budget, by name.
-const ENERGIES: [Entry; 11] = [
-    ("kinetic", |budget| budget.kinetic),
-    ("elastic", |budget| budget.elastic),
-    ("springs", |budget| budget.springs),
-    ("gravitational", |budget| budget.gravitational),
-    ("work", |budget| budget.work),
-    ("plastic", |budget| budget.plastic),
-    ("friction", |budget| budget.friction),
-    ("damping", |budget| budget.damping),
-    ("transfer", |budget| budget.transfer),
-    ("contact", |budget| budget.contact),
-    ("unbalanced", Budget::unbalanced),
-];
-
-/// Components of the stress, in the order of [`crate::record::PointState::stress`].
-const STRESSES: [&str; 6] = ["xx", "yy", "zz", "xy", "yz", "zx"];
-
-/// Returns the number of stress components: four in two dimensions (plane strain), six in three.
-const fn stresses(dimension: Dimension) -> usize {
-    match dimension {
-        Dimension::Two => 4,
-        Dimension::Three => 6,
-    }
-}
 
 /// Returns the columns of all probes of a scene, without samples.
 pub(crate) fn empty_series(scene: &Scene) -> Series {
@@ -64,24 +33,8 @@ pub(crate) fn sample(series: &mut Series, scene: &Scene, look: &StepState) {
     }
 }
 
-impl Probe {
-    /// Returns true if the probe needs individual contacts.
-    #[must_use]
-    pub const fn looks_at_contacts(&self) -> bool {
-        matches!(self.target, ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) | ProbeTarget::Stress)
-    }
-}
-
-/// Returns the recorded components of the mean stress of grains, as pairs of axes.
-const fn mean_stresses(dimension: Dimension) -> &'static [(usize, usize)] {
-    match dimension {
-        Dimension::Two => &[(0, 0), (1, 1), (0, 1)],
-        Dimension::Three => &[(0, 0), (1, 1), (2, 2), (0, 1), (0, 2), (1, 2)],
-    }
-}
-
 /// Returns the mean stress of the grains from the contacts between them, and then the coordination number; see
-/// [`crate::file::ProbeSpec::stress`].
+/// [`grainbench_scene::file::ProbeSpec::stress`].
 fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
     let (low, high) = snapshot.bounds;
     let volume: f64 = (high - low).iter().take(dimension.count()).product();
@@ -98,73 +51,6 @@ fn mean_stress(snapshot: &Snapshot, dimension: Dimension) -> Vec<f64> {
     // Without grains there are no contacts, and the coordination number is zero.
     all.push(2.0 * f64::from(contacts) / snapshot.grains.len().max(1) as f64);
     all
-}
-
-fn axes(dimension: Dimension) -> &'static [&'static str] {
-    &AXES[..dimension.count()]
-}
-
-fn columns(target: ProbeTarget, dimension: Dimension) -> Vec<(String, &'static str)> {
-    let flat = dimension == Dimension::Two;
-    let named = |prefix: &str, unit: &'static str| -> Vec<(String, &'static str)> {
-        axes(dimension).iter().map(|axis| (format!("{prefix}{axis}"), unit)).collect()
-    };
-    let plain = |pairs: &[(&str, &'static str)]| -> Vec<(String, &'static str)> {
-        pairs.iter().map(|&(name, unit)| (name.to_owned(), unit)).collect()
-    };
-    let spins = |name: &str, unit: &'static str| {
-        if flat { plain(&[(name, unit)]) } else { named(&format!("{name}_"), unit) }
-    };
-    match target {
-        ProbeTarget::Grain(_) | ProbeTarget::Body(_) => {
-            let mut all = named("", "m");
-            all.extend(named("v", "m/s"));
-            all.extend(spins("omega", "rad/s"));
-            if flat {
-                all.extend(plain(&[("angle", "rad")]));
-            }
-            all
-        }
-        ProbeTarget::Point(_) => {
-            let mut all = named("u", "m");
-            all.extend(named("v", "m/s"));
-            all.extend(STRESSES[..stresses(dimension)].iter().map(|axes| (format!("sigma_{axes}"), "Pa")));
-            all.extend(plain(&[("plastic_strain", "1")]));
-            all
-        }
-        ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) => {
-            plain(&[("overlap", "m"), ("normal_force", "N"), ("shear_force", "N"), ("slipping", "1")])
-        }
-        ProbeTarget::Wall(_) | ProbeTarget::Driven(_) => named("force_", "N"),
-        ProbeTarget::Budget => {
-            let energies = ENERGIES.map(|(name, _)| (name.to_owned(), "J"));
-            let mut all = Vec::from(energies);
-            all.extend(named("momentum_", "kg m/s"));
-            all.extend(named("impulse_", "N s"));
-            all
-        }
-        ProbeTarget::Stress => {
-            let column = |&(i, j): &(usize, usize)| (format!("sigma_{}{}", AXES[i], AXES[j]), "Pa");
-            let mut all: Vec<_> = mean_stresses(dimension).iter().map(column).collect();
-            all.extend(plain(&[("coordination", "1")]));
-            all
-        }
-        ProbeTarget::Piston(_) => plain(&[("advance", "m")]),
-        ProbeTarget::Count => plain(&[("present", "1"), ("entered", "1"), ("left", "1")]),
-        ProbeTarget::System => {
-            let mut all = plain(&[
-                ("kinetic_energy", "J"),
-                ("rotational_energy", "J"),
-                ("elastic_energy", "J"),
-                ("gravitational_energy", "J"),
-                ("total_energy", "J"),
-            ]);
-            all.extend(named("momentum_", "kg m/s"));
-            all.extend(spins("angular_momentum", "kg m²/s"));
-            all.extend(plain(&[("contacts", "1"), ("slipping_contacts", "1"), ("largest_spin", "rad/s")]));
-            all
-        }
-    }
 }
 
 fn values(probe: &Probe, scene: &Scene, look: &StepState) -> Vec<f64> {

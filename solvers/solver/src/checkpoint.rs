@@ -3,9 +3,9 @@
 //! A file contains the line `grainbench checkpoint <format>`, length and hash (see `sealed`), and a [`Checkpoint`] in
 //! postcard's format, which keeps every bit of a number.
 
-use crate::scene::Scene;
-use crate::sealed::{self, SealError};
-use crate::text::tamed;
+use grainbench_scene::scene::Scene;
+use grainbench_scene::sealed::{self, SealError};
+use grainbench_scene::text::tamed;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
 use std::{fmt, mem};

@@ -1,7 +1,7 @@
 //! Conformance properties of a solver: the resolution in tests, the order of convergence in the time step, and the
 //! limitations with their physical reasons.
 
-use crate::solver::Resolution;
+use crate::resolution::Resolution;
 
 /// Conformance properties of a solver.
 #[derive(Clone, Copy, Debug, PartialEq)]

@@ -1,9 +1,10 @@
 //! Recorder of the time series and snapshots of a run, and of the steps at which they are due.
 
-use crate::memory;
+use crate::limits::interval;
 use crate::probe;
 use crate::record::{Series, Snapshot, StepState};
-use crate::scene::{Sampling, Scene};
+use crate::reduction::reduce;
+use grainbench_scene::scene::Scene;
 use serde::{Deserialize, Serialize};
 
 /// Record of a run in progress.
@@ -115,7 +116,7 @@ impl Recorder {
         self.sample(scene, &look);
         self.is_snapshot(look.snapshot.step).then(|| {
             let mut snapshot = look.snapshot;
-            scene.columns.keep(&mut snapshot);
+            reduce(&mut snapshot, &scene.columns);
             snapshot
         })
     }
@@ -145,40 +146,6 @@ impl Recorder {
     pub fn finish(self) -> (Series, Vec<Snapshot>) {
         (self.series, self.snapshots)
     }
-}
-
-/// Memory of one snapshot in the list of due steps and in the index of stored snapshots (B).
-const BYTES_OF_A_SNAPSHOT: f64 = 200.0;
-/// Memory of a value in a time series (B). A growing list reserves up to twice the memory of its values.
-const BYTES_OF_A_VALUE: f64 = 16.0;
-
-/// Returns the number of steps between samples.
-fn interval(scene: &Scene, time_step: f64, steps: u64) -> u64 {
-    let interval = match scene.sampling {
-        Sampling::Cycles(cycles) => cycles,
-        Sampling::Seconds(time) => (time / time_step).round() as u64,
-        Sampling::Count(count) => steps / count.max(1),
-    };
-    interval.max(1)
-}
-
-/// Returns an error message, with the key of the scene, for output that does not fit into memory; `None` if it fits.
-/// The rows of snapshots do not count, because they can be written to the disk one snapshot after the other.
-pub(crate) fn beyond_memory(scene: &Scene, time_step: f64, steps: f64) -> Option<String> {
-    let samples = steps / interval(scene, time_step, steps as u64) as f64;
-    let key = match scene.sampling {
-        Sampling::Cycles(_) => "output.every_cycles",
-        Sampling::Seconds(_) | Sampling::Count(_) => "output.every",
-    };
-    // Each sample also has a step and a time.
-    let values = samples * (probe::empty_series(scene).columns.len() + 2) as f64;
-    let of_samples = (key, "values of samples", values, BYTES_OF_A_VALUE);
-    let snapshots = f64::from(scene.snapshots).min(steps);
-    let of_snapshots = ("output.snapshots", "snapshots", snapshots, BYTES_OF_A_SNAPSHOT);
-    [of_samples, of_snapshots].into_iter().find_map(|(key, what, count, bytes)| {
-        let found = memory::beyond(count, what, bytes)?;
-        Some(format!("{key}: expected {what} that fit into memory, found {found}"))
-    })
 }
 
 #[cfg(test)]
