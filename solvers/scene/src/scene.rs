@@ -124,7 +124,7 @@ impl WallShape {
         }
     }
 
-    /// Returns the reference points of the shape, and true for a plane (see [`crate::record::WallState`]).
+    /// Returns the reference points of the shape, and true for a plane.
     #[must_use]
     pub fn corners(&self) -> (Vec<Vector3<f64>>, bool) {
         match *self {
