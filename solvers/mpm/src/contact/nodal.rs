@@ -15,7 +15,7 @@
 //! At a wall, n is opposite to the normal of the wall. The normals of two bodies are in general not opposite. Momentum is
 //! conserved only if they are opposite.
 
-use super::shared::{Field, SharedNodes};
+use super::shared::{Field, Member, SharedNodes};
 use super::{ContactPartner, FrictionTable};
 use crate::bodies::Body;
 use crate::driven::Group;
@@ -57,12 +57,135 @@ pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
 ) {
     match rules.contact {
         Contact::Gap => apply_pairs(rules, bodies, shared, felt, field),
-        _ => apply(rules, bodies, shared, felt, field),
+        Contact::NoSlip => apply(&NoSlip, rules, bodies, shared, felt, field),
+        Contact::Traction => apply(&Compression, rules, bodies, shared, felt, field),
+        Contact::Kinematic | Contact::Penalty => apply(&Approach, rules, bodies, shared, felt, field),
     }
 }
 
-/// Applies the no-slip condition, or the contact conditions of the papers, at all shared nodes.
-fn apply<S: Space, F: Field<S>, A: Ledger>(
+/// Contact condition of a body at a shared node.
+trait Condition {
+    /// True if the condition also changes the velocities of driven bodies.
+    const CONSTRAINS_DRIVEN: bool;
+
+    /// Returns the velocity that contact takes from a body; `None` if the body is not in contact. `relative` is its
+    /// velocity relative to the common velocity (m/s). `surface` returns its surface, or `None` if it has none.
+    fn change<'a, S: Space>(
+        &self,
+        rules: &Rules<'_>,
+        relative: S::Vector,
+        surface: impl FnOnce() -> Option<Surface<'a, S>>,
+    ) -> Option<Change<S>>;
+}
+
+/// Velocity that contact takes from a body (m/s).
+struct Change<S: Space> {
+    total: S::Vector,
+    /// Part of `total` that friction causes.
+    friction: S::Vector,
+}
+
+/// Surface of a body at a shared node.
+struct Surface<'a, S: Space> {
+    body: &'a Body,
+    /// Mass of the body at the node (kg), and mass of the other bodies. Walls and driven bodies have infinite mass.
+    masses: [f64; 2],
+    /// Outward unit normal.
+    normal: S::Vector,
+    /// Stress times volume (Pa m³).
+    stress: S::Matrix,
+    /// Coefficient of friction.
+    friction: f64,
+}
+
+impl<S: Space> Surface<'_, S> {
+    /// Returns the tangential part of a relative velocity with the normal component `along`, and the fraction of this
+    /// part that friction takes. For departing bodies Δv_t/Δv_n is negative and therefore below μ.
+    #[inline(always)]
+    fn slide(&self, relative: S::Vector, along: f64) -> (S::Vector, f64) {
+        let tangential = relative - self.normal * along;
+        let size = S::dot(tangential, tangential).sqrt();
+        let limit = self.friction * along;
+        (tangential, if along > 0.0 && size > limit { limit / size } else { 1.0 })
+    }
+}
+
+/// One velocity field for all bodies. A member of a group then represents all bodies, driven ones included.
+struct NoSlip;
+
+impl Condition for NoSlip {
+    const CONSTRAINS_DRIVEN: bool = true;
+
+    #[inline(always)]
+    fn change<'a, S: Space>(
+        &self,
+        _: &Rules<'_>,
+        relative: S::Vector,
+        _: impl FnOnce() -> Option<Surface<'a, S>>,
+    ) -> Option<Change<S>> {
+        Some(Change { total: relative, friction: S::ORIGIN })
+    }
+}
+
+/// Contact while bodies approach (Bardenhagen, Brackbill & Sulsky 2000).
+struct Approach;
+
+impl Condition for Approach {
+    const CONSTRAINS_DRIVEN: bool = false;
+
+    #[inline(always)]
+    fn change<'a, S: Space>(
+        &self,
+        _: &Rules<'_>,
+        relative: S::Vector,
+        surface: impl FnOnce() -> Option<Surface<'a, S>>,
+    ) -> Option<Change<S>> {
+        let surface = surface()?;
+        let along = S::dot(relative, surface.normal);
+        if along <= 0.0 || along.is_nan() {
+            return None;
+        }
+        let (tangential, taken) = surface.slide(relative, along);
+        Some(Change { total: surface.normal * along + tangential * taken, friction: tangential * taken })
+    }
+}
+
+/// Contact under compression, with a scaled impulse (Bardenhagen et al. 2001).
+struct Compression;
+
+impl Condition for Compression {
+    const CONSTRAINS_DRIVEN: bool = false;
+
+    #[inline(always)]
+    fn change<'a, S: Space>(
+        &self,
+        rules: &Rules<'_>,
+        relative: S::Vector,
+        surface: impl FnOnce() -> Option<Surface<'a, S>>,
+    ) -> Option<Change<S>> {
+        let surface = surface()?;
+        let Surface { body, masses, normal, .. } = surface;
+        let along = S::dot(relative, normal);
+        // A traction-free surface counts as in contact while bodies approach. Otherwise contact could not begin.
+        let none = UNSTRESSED * body.deformable.longitudinal_modulus() * masses[0] / body.density;
+        let is_compressed = S::dot(normal, surface.stress * normal) < if along > 0.0 { none } else { 0.0 };
+        if !is_compressed {
+            return None;
+        }
+        let (tangential, taken) = surface.slide(relative, along);
+        let total = normal * along + tangential * taken;
+        let worse = (masses[0] / masses[1]).max(1.0);
+        let rate = (0..S::DIMENSION)
+            .map(|axis| worse * S::component(total, axis).abs() / rules.lattice.cell[axis])
+            .fold(0.0, f64::max);
+        let scale = (COLLAPSE / (rate * rules.time_step)).min(1.0);
+        Some(Change { total: total * scale, friction: tangential * (taken * scale) })
+    }
+}
+
+/// Applies a contact condition at all shared nodes.
+fn apply<S: Space, C: Condition, F: Field<S>, A: Ledger>(
+    condition: &C,
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &SharedNodes<S>,
@@ -87,75 +210,35 @@ fn apply<S: Space, F: Field<S>, A: Ledger>(
         let moved = group.wall.is_some() || mover.is_some();
         let common_before = if moved { common } else { before * (1.0 / mass) };
         for member in members {
-            // Driven bodies keep their velocity. With one velocity field, a member represents all bodies and is
-            // constrained too.
-            if bodies[member.body as usize].driven.is_some() && rules.contact != Contact::NoSlip {
+            let body = &bodies[member.body as usize];
+            if body.driven.is_some() && !C::CONSTRAINS_DRIVEN {
                 continue;
             }
             let velocity = field.velocity(member.slot);
-            let away = velocity - common;
-            let mut rub = S::ORIGIN;
-            let change = if rules.contact == Contact::NoSlip {
-                away
-            } else {
-                let body = &bodies[member.body as usize];
-                let friction = match group.wall {
-                    Some(wall) => rules.friction.between(body.material, walls[wall].material),
-                    None => {
-                        let other = members.iter().find(|other| other.body != member.body);
-                        other.map_or(Some(0.0), |other| {
-                            rules.friction.between(body.material, bodies[other.body as usize].material)
-                        })
-                    }
-                };
-                let Some(friction) = friction else { continue };
+            let surface = || {
                 let face = &shared.faces[member.slot];
-                let own = match group.wall {
-                    Some(wall) => -walls[wall].normal,
-                    None => face.normal,
-                };
-                let length = S::dot(own, own).sqrt();
-                if length == 0.0 {
-                    continue;
-                }
-                let normal = own * (1.0 / length);
-                let along = S::dot(away, normal);
-                let touching = match rules.contact {
-                    Contact::Traction => {
-                        // A traction-free surface counts as in contact while bodies approach. Otherwise contact could
-                        // not begin.
-                        let none = UNSTRESSED * body.deformable.longitudinal_modulus() * member.mass / body.density;
-                        let traction = S::dot(normal, face.stress * normal);
-                        traction < if along > 0.0 { none } else { 0.0 }
-                    }
-                    _ => along > 0.0,
-                };
-                if !touching {
-                    continue;
-                }
-                let tangential = away - normal * along;
-                let size = S::dot(tangential, tangential).sqrt();
-                // For departing bodies Δv_t/Δv_n is negative and therefore below μ.
-                let kept = if along > 0.0 && size > friction * along { friction * along / size } else { 1.0 };
-                let change = normal * along + tangential * kept;
-                let wanted = if rules.contact == Contact::Traction {
-                    let others = if moved { f64::INFINITY } else { mass - member.mass };
-                    let worse = (member.mass / others).max(1.0);
-                    let rate = (0..S::DIMENSION)
-                        .map(|axis| worse * S::component(change, axis).abs() / rules.lattice.cell[axis])
-                        .fold(0.0, f64::max);
-                    (COLLAPSE / (rate * rules.time_step)).min(1.0)
+                let (normal, friction) = if let Some(wall) = group.wall {
+                    (-walls[wall].normal, rules.friction.between(body.material, walls[wall].material))
                 } else {
-                    1.0
+                    let other = members.iter().find(|other| other.body != member.body);
+                    let material = |other: &Member| bodies[other.body as usize].material;
+                    let between = |other| rules.friction.between(body.material, material(other));
+                    (face.normal, other.map_or(Some(0.0), between))
                 };
-                rub = tangential * (kept * wanted);
-                change * wanted
+                let (friction, length) = (friction?, S::dot(normal, normal).sqrt());
+                let masses = [member.mass, if moved { f64::INFINITY } else { mass - member.mass }];
+                let surface =
+                    |size: f64| Surface::<S> { body, masses, normal: normal * size, stress: face.stress, friction };
+                (length != 0.0).then(|| surface(1.0 / length))
             };
-            field.set(member.slot, velocity - change);
+            let Some(Change { total, friction }) = condition.change(rules, velocity - common, surface) else {
+                continue;
+            };
+            field.set(member.slot, velocity - total);
             if F::COUNTS {
-                let impulse = change * member.mass;
+                let impulse = total * member.mass;
                 if let Some(tally) = ledger.tally() {
-                    tally.friction += member.mass * S::dot(rub, field.before(member.slot) - common_before);
+                    tally.friction += member.mass * S::dot(friction, field.before(member.slot) - common_before);
                     if group.wall.is_some() {
                         tally.walls -= S::dot(impulse, common);
                     }
