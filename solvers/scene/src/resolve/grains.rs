@@ -3,7 +3,9 @@
 use super::{Groups, Resolver};
 use crate::end_state::Springs;
 use crate::error::SceneError;
-use crate::file::{FileSpec, GrainShape, GrainsSpec, PackedSpec, SpacingSpec};
+use crate::file::{
+    FileSpec, GrainShape, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, SpacingSpec, StateSpec,
+};
 use crate::generate::{self, NoRoom};
 use crate::memory;
 use crate::overlap::{self, DeepestOverlap};
@@ -25,6 +27,36 @@ pub(super) struct PlacedGrains {
     pub(super) entries: Vec<Entry>,
     /// Initial contact history.
     pub(super) springs: Option<Arc<Springs>>,
+}
+
+/// Placement of a group of grains.
+enum Placement<'a> {
+    Position(&'a [f64]),
+    Lattice(&'a LatticeSpec),
+    Random(&'a RandomSpec),
+    Packed(&'a PackedSpec),
+    Poured(&'a PouredSpec),
+    State(&'a StateSpec),
+    File(&'a FileSpec),
+}
+
+/// Group of grains, with the properties that all its grains have in common.
+struct Group<'a> {
+    name: &'a str,
+    spec: &'a GrainsSpec,
+    shape: GrainShape,
+    material: u16,
+    velocity: Vector3<f64>,
+    spin: Vector3<f64>,
+}
+
+impl Group<'_> {
+    /// Returns a grain of a radius (m) and a density (kg/m³).
+    fn grain(&self, position: Vector3<f64>, radius: f64, density: f64, velocity: Vector3<f64>) -> Grain {
+        let mass = self.shape.mass(radius, density);
+        let inertia = self.shape.inertia_factor() * mass * radius * radius;
+        Grain { material: self.material, radius, mass, inertia, position, velocity, spin: self.spin }
+    }
 }
 
 impl Resolver<'_> {
@@ -52,136 +84,155 @@ impl Resolver<'_> {
     ) -> Result<(), SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("grains.{name}.{part}");
-        check.exactly_one(
-            &format!("grains.{name}"),
-            &[
-                ("position", spec.position.is_some()),
-                ("lattice", spec.lattice.is_some()),
-                ("random", spec.random.is_some()),
-                ("packed", spec.packed.is_some()),
-                ("poured", spec.poured.is_some()),
-                ("state", spec.state.is_some()),
-                ("file", spec.file.is_some()),
-            ],
-        )?;
-        // The grains of a state or of a data file have their own size and motion.
-        let sources = [("state", spec.state.is_some()), ("file", spec.file.is_some())];
-        let keys =
-            [("radius", spec.radius.is_some()), ("velocity", spec.velocity.is_some()), ("spin", spec.spin.is_some())];
-        if let (Some((source, _)), Some((part, _))) =
-            (sources.into_iter().find(|(_, is_given)| *is_given), keys.into_iter().find(|(_, is_given)| *is_given))
-        {
-            return Err(check.error(&key(part), &format!("none, because `{source}` contains it"), "one"));
-        }
+        let placement = self.placement(name, spec)?;
         let material = self.material(&key("material"), &spec.material)?;
         let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
         let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
-        let radius = || match spec.radius {
-            Some(radius) => check.positive(&key("radius"), radius, "radius (m)"),
-            None => Err(check.error(&format!("grains.{name}"), "the key `radius`", "none")),
-        };
-        let density = || {
-            self.file.materials[usize::from(material)]
-                .density
-                .ok_or_else(|| check.error(&format!("materials.{}", spec.material), "the key `density`", "none"))
-        };
-        let grain = |position, radius: f64, density: f64, velocity| {
-            let mass = shape.mass(radius, density);
-            let inertia = shape.inertia_factor() * mass * radius * radius;
-            Grain { material, radius, mass, inertia, position, velocity, spin }
-        };
-        if let Some(position) = &spec.position {
-            grains.push(grain(check.vector(&key("position"), position)?, radius()?, density()?, velocity));
-        }
-        if let Some(lattice) = &spec.lattice {
-            let key = |part: &str| format!("grains.{name}.lattice.{part}");
-            let origin = check.vector(&key("origin"), &lattice.origin)?;
-            let dimensions = check.dimension.count();
-            if lattice.count.len() != dimensions || lattice.count.contains(&0) {
-                let expected = format!("{dimensions} counts of at least one");
-                return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
+        let group = Group { name, spec, shape, material, velocity, spin };
+        match placement {
+            Placement::Position(position) => {
+                let position = check.vector(&key("position"), position)?;
+                grains.push(group.grain(position, self.radius(&group)?, self.density(&group)?, velocity));
             }
-            let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
-            self.refuse_too_many(&key("count"), total)?;
-            let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
-            let (radius, density) = (radius()?, density()?);
-            let mut centres = match (&lattice.spacing, lattice.close_packed) {
-                (SpacingSpec::Along(spacing), false) => {
-                    generate::lattice(origin, check.vector(&key("spacing"), spacing)?, count)
-                }
-                (SpacingSpec::Nearest(spacing), true) => {
-                    generate::close_packed(origin, check.positive(&key("spacing"), *spacing, "distance (m)")?, count)
-                }
-                (SpacingSpec::Nearest(found), false) => {
-                    let expected = format!("{dimensions} distances, or `close_packed = true`");
-                    return Err(check.error(&key("spacing"), &expected, &found.to_string()));
-                }
-                (SpacingSpec::Along(found), true) => {
-                    return Err(check.error(
-                        &key("spacing"),
-                        "one number, the distance of nearest neighbours",
-                        &format!("{found:?}"),
-                    ));
-                }
-            };
-            let perturbation = check.not_negative(&key("perturbation"), lattice.perturbation, "length (m)")?;
-            if perturbation > 0.0 {
-                generate::perturb(&mut centres, perturbation, lattice.seed, check.dimension);
+            Placement::Lattice(lattice) => grains.extend(self.on_lattice(&group, lattice)?),
+            Placement::Random(random) => grains.extend(self.at_random(&group, random, domain)?),
+            Placement::Packed(packed) => {
+                let density = self.density(&group)?;
+                let places = self.packed(name, packed, domain)?;
+                grains
+                    .extend(places.into_iter().map(|(centre, radius)| group.grain(centre, radius, density, velocity)));
             }
-            grains.extend(centres.into_iter().map(|centre| grain(centre, radius, density, velocity)));
-        }
-        if let Some(random) = &spec.random {
-            let key = |part: &str| format!("grains.{name}.random.{part}");
-            self.refuse_too_many(&key("count"), u128::from(random.count))?;
-            let Some(domain) = domain else {
-                return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
-            };
-            let radii = self.radii(&format!("grains.{name}.random"), random, shape, &radius)?;
-            let part = match &random.region {
-                Some(region) => self.region_of(&key("region"), region, domain)?,
-                None => *domain,
-            };
-            let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
-            let density = density()?;
-            let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension).map_err(
-                |NoRoom { share, is_costly }| {
-                    let place = if random.region.is_some() { "region" } else { "domain" };
-                    let found = format!("{} that would fill {share:.2} of it", random.count);
-                    if is_costly {
-                        let expected =
-                            format!("a count and radii for which the search finds room in the {place} within a minute");
-                        return check.error(&key("count"), &expected, &found);
-                    }
-                    let help = "randomly placed equal discs fill at most 0.55, and spheres at most 0.38; `packed` is \
-                                denser";
-                    let expected = format!("grains that find room in the {place}");
-                    check.source.error(&key("count"), &expected, &found, Some(help.to_owned()))
-                },
-            )?;
-            grains.extend(
-                placed.into_iter().map(|place| grain(place.position, place.radius, density, velocity + place.velocity)),
-            );
-        }
-        if let Some(packed) = &spec.packed {
-            let density = density()?;
-            let places = self.packed(name, packed, domain)?;
-            grains.extend(places.into_iter().map(|(centre, radius)| grain(centre, radius, density, velocity)));
-        }
-        if let Some(poured) = &spec.poured {
-            self.refuse_too_many(&format!("grains.{name}.poured.count"), u128::from(poured.count))?;
-            let (radius, density) = (radius()?, density()?);
-            for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
-                entries.push(Entry { grain: grains.len(), time });
-                grains.push(grain(centre, radius, density, velocity));
+            Placement::Poured(poured) => {
+                self.refuse_too_many(&key("poured.count"), u128::from(poured.count))?;
+                let (radius, density) = (self.radius(&group)?, self.density(&group)?);
+                for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
+                    entries.push(Entry { grain: grains.len(), time });
+                    grains.push(group.grain(centre, radius, density, velocity));
+                }
             }
-        }
-        if let Some(state) = &spec.state {
-            self.grains_from_state(name, state, material, (grains, springs))?;
-        }
-        if let Some(file) = &spec.file {
-            self.grains_from_file(name, file, shape, material, grains)?;
+            Placement::State(state) => self.grains_from_state(name, state, material, (grains, springs))?,
+            Placement::File(file) => self.grains_from_file(name, file, shape, material, grains)?,
         }
         Ok(())
+    }
+
+    /// Returns the placement of a group, after checking that there is exactly one. The grains of a state or of a data
+    /// file have their own size and motion.
+    fn placement<'s>(&self, name: &str, spec: &'s GrainsSpec) -> Result<Placement<'s>, SceneError> {
+        let GrainsSpec { position, lattice, random, packed, poured, state, file, .. } = spec;
+        let placements = [
+            ("position", position.as_ref().map(|position| Placement::Position(position))),
+            ("lattice", lattice.as_ref().map(Placement::Lattice)),
+            ("random", random.as_ref().map(Placement::Random)),
+            ("packed", packed.as_ref().map(Placement::Packed)),
+            ("poured", poured.as_ref().map(Placement::Poured)),
+            ("state", state.as_ref().map(Placement::State)),
+            ("file", file.as_ref().map(Placement::File)),
+        ];
+        let key = format!("grains.{name}");
+        let given: Vec<_> = placements.iter().map(|(word, placement)| (*word, placement.is_some())).collect();
+        self.check.exactly_one(&key, &given)?;
+        let keys =
+            [("radius", spec.radius.is_some()), ("velocity", spec.velocity.is_some()), ("spin", spec.spin.is_some())];
+        let first_key = keys.into_iter().find(|(_, is_given)| *is_given);
+        match (placements.into_iter().find_map(|(word, placement)| Some((word, placement?))), first_key) {
+            (Some((source, Placement::State(_) | Placement::File(_))), Some((part, _))) => {
+                let expected = format!("none, because `{source}` contains it");
+                Err(self.check.error(&format!("{key}.{part}"), &expected, "one"))
+            }
+            (Some((_, placement)), _) => Ok(placement),
+            (None, _) => Err(self.check.error(&key, "a placement", "none")),
+        }
+    }
+
+    /// Returns the radius of the grains of a group (m).
+    fn radius(&self, group: &Group<'_>) -> Result<f64, SceneError> {
+        match group.spec.radius {
+            Some(radius) => self.check.positive(&format!("grains.{}.radius", group.name), radius, "radius (m)"),
+            None => Err(self.check.error(&format!("grains.{}", group.name), "the key `radius`", "none")),
+        }
+    }
+
+    /// Returns the density of the material of a group (kg/m³).
+    fn density(&self, group: &Group<'_>) -> Result<f64, SceneError> {
+        let key = || format!("materials.{}", group.spec.material);
+        let density = self.file.materials[usize::from(group.material)].density;
+        density.ok_or_else(|| self.check.error(&key(), "the key `density`", "none"))
+    }
+
+    fn on_lattice(&self, group: &Group<'_>, lattice: &LatticeSpec) -> Result<Vec<Grain>, SceneError> {
+        let check = &self.check;
+        let key = |part: &str| format!("grains.{}.lattice.{part}", group.name);
+        let origin = check.vector(&key("origin"), &lattice.origin)?;
+        let dimensions = check.dimension.count();
+        if lattice.count.len() != dimensions || lattice.count.contains(&0) {
+            let expected = format!("{dimensions} counts of at least one");
+            return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
+        }
+        let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
+        self.refuse_too_many(&key("count"), total)?;
+        let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
+        let (radius, density) = (self.radius(group)?, self.density(group)?);
+        let mut centres = match (&lattice.spacing, lattice.close_packed) {
+            (SpacingSpec::Along(spacing), false) => {
+                generate::lattice(origin, check.vector(&key("spacing"), spacing)?, count)
+            }
+            (SpacingSpec::Nearest(spacing), true) => {
+                generate::close_packed(origin, check.positive(&key("spacing"), *spacing, "distance (m)")?, count)
+            }
+            (SpacingSpec::Nearest(found), false) => {
+                let expected = format!("{dimensions} distances, or `close_packed = true`");
+                return Err(check.error(&key("spacing"), &expected, &found.to_string()));
+            }
+            (SpacingSpec::Along(found), true) => {
+                let expected = "one number, the distance of nearest neighbours";
+                return Err(check.error(&key("spacing"), expected, &format!("{found:?}")));
+            }
+        };
+        let perturbation = check.not_negative(&key("perturbation"), lattice.perturbation, "length (m)")?;
+        if perturbation > 0.0 {
+            generate::perturb(&mut centres, perturbation, lattice.seed, check.dimension);
+        }
+        Ok(centres.into_iter().map(|centre| group.grain(centre, radius, density, group.velocity)).collect())
+    }
+
+    fn at_random(
+        &self,
+        group: &Group<'_>,
+        random: &RandomSpec,
+        domain: Option<&Domain>,
+    ) -> Result<Vec<Grain>, SceneError> {
+        let check = &self.check;
+        let table = format!("grains.{}.random", group.name);
+        let key = |part: &str| format!("{table}.{part}");
+        self.refuse_too_many(&key("count"), u128::from(random.count))?;
+        let Some(domain) = domain else {
+            return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
+        };
+        let radii = self.radii(&table, random, group.shape, &|| self.radius(group))?;
+        let part = match &random.region {
+            Some(region) => self.region_of(&key("region"), region, domain)?,
+            None => *domain,
+        };
+        let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
+        let density = self.density(group)?;
+        let no_room = |NoRoom { share, is_costly }| {
+            let place = if random.region.is_some() { "region" } else { "domain" };
+            let found = format!("{} that would fill {share:.2} of it", random.count);
+            if is_costly {
+                let expected =
+                    format!("a count and radii for which the search finds room in the {place} within a minute");
+                return check.error(&key("count"), &expected, &found);
+            }
+            let help = "randomly placed equal discs fill at most 0.55, and spheres at most 0.38; `packed` is denser";
+            let expected = format!("grains that find room in the {place}");
+            check.source.error(&key("count"), &expected, &found, Some(help.to_owned()))
+        };
+        let placed = generate::random(random.count, random.seed, &radii, speed, &part, check.dimension);
+        let grain = |place: generate::PlacedGrain| {
+            group.grain(place.position, place.radius, density, group.velocity + place.velocity)
+        };
+        Ok(placed.map_err(no_room)?.into_iter().map(grain).collect())
     }
 
     /// Returns the centres and radii of a packing (m).
