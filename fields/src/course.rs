@@ -8,7 +8,7 @@ use crate::grid::Grid;
 use crate::mask::{MaskReasons, Masks};
 use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
-use grainbench_scene::scene::Dimension;
+use grainbench_scene::dimension::Dimension;
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
 

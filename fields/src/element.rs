@@ -6,8 +6,8 @@ use crate::grid::Grid;
 use crate::motion::{Motion, motion, movers};
 use crate::packing::packing_fraction;
 use crate::tensor;
-use grainbench_scene::file::GrainShape;
-use grainbench_scene::scene::Dimension;
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::dimension::GrainShape;
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
 

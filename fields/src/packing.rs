@@ -2,7 +2,7 @@
 
 use crate::grid::{Grid, inside};
 use crate::overlap::{disc_in_box, sphere_in_box};
-use grainbench_scene::scene::Dimension;
+use grainbench_scene::dimension::Dimension;
 use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 

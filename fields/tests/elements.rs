@@ -8,7 +8,7 @@ use grainbench_fields::grid::Grid;
 use grainbench_fields::motion::{Mover, motion, movers_between};
 use grainbench_fields::tensor;
 use grainbench_fields::tracers::{hencky, tracers};
-use grainbench_scene::scene::Dimension;
+use grainbench_scene::dimension::Dimension;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 

@@ -3,7 +3,7 @@
 use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
-use grainbench_scene::file::GrainShape;
+use grainbench_scene::dimension::GrainShape;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 

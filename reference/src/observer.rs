@@ -1,6 +1,7 @@
 //! Record of a run of an external program, with the probes of the scene that follow from a dump of grains.
 
-use grainbench_scene::scene::{Dimension, ProbeTarget, Sampling, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::{ProbeTarget, Sampling, Scene};
 use grainbench_solver::record::{GrainState, Series, Snapshot, StepState};
 use grainbench_solver::recorder::Recorder;
 use nalgebra::Vector3;

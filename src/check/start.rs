@@ -2,8 +2,9 @@
 
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::{Origin, Outputs};
+use grainbench_scene::dimension::Dimension;
 use grainbench_scene::nalgebra::Vector3;
-use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
+use grainbench_scene::scene::{ProbeTarget, Scene};
 
 /// Accepted deviation from the initial state in addition to the printed digits. It is a fraction of the radius for
 /// positions, and of the largest surface speed for velocities.

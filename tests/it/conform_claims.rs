@@ -5,7 +5,7 @@ use grainbench::dem::solver::Dem;
 use grainbench::harness::control::FailureMode;
 use grainbench::harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench::harness::verdict::{Outcome, Verdict};
-use grainbench::scene::file::GrainShape;
+use grainbench::scene::dimension::GrainShape;
 use grainbench::scene::scene::Scene;
 use grainbench::solver::Solver;
 use grainbench::solver::failure::RunError;

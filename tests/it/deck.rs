@@ -4,7 +4,7 @@ use crate::common::{files, grainbench};
 use grainbench::cases::registry::{CASES, by_name};
 use grainbench::harness::case::Case;
 use grainbench::reference::deck::{DeckError, Program, write_deck};
-use grainbench::scene::file::GrainShape;
+use grainbench::scene::dimension::GrainShape;
 use grainbench::scene::function::{Function, FunctionKind};
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::scene::{Scene, WallShape};

@@ -7,10 +7,10 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 16] = [
-    ("solvers/scene", 9_940, 16),
+    ("solvers/scene", 10_070, 0),
     ("solvers/solver", 3_460, 0),
     ("solvers/lanes", 1_500, 0),
-    ("solvers/dem", 9_040, 6),
+    ("solvers/dem", 9_055, 0),
     ("solvers/mpm", 11_500, 7),
     ("solvers/rigid", 1_620, 0),
     ("harness", 7_775, 5),

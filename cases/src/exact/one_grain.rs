@@ -14,7 +14,8 @@
 
 use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_scene::contact_law::Springs;
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Scene;
 use std::f64::consts::PI;
 
 /// One grain, its plane and their contact law.

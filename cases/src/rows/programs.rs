@@ -4,7 +4,7 @@
 use crate::rows::incline::{DAMPING, at_overlap};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
-use grainbench_scene::file::GrainShape;
+use grainbench_scene::dimension::GrainShape;
 
 /// Pairs of solvers: our solver in the contact convention of a program, and the program.
 pub const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];

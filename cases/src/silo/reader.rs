@@ -11,7 +11,8 @@ use grainbench_fields::motion::{motion, movers_between};
 use grainbench_fields::tensor::{deviator, principal};
 use grainbench_fields::trails::Trails;
 use grainbench_harness::reading::{Reader, Reading, Table};
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
 

@@ -1,7 +1,8 @@
 //! Deliberate defects of solvers. Most change one quantity by a fraction of about 1e-9. A larger defect is used if a
 //! property cannot detect a smaller one.
 
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::checkpoint::Checkpoint;
 use grainbench_solver::failure::RunError;

@@ -1,7 +1,8 @@
 //! Scenes of the conformance suite, written as scene files.
 
+use grainbench_scene::dimension::Dimension;
 use grainbench_scene::error::SceneError;
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 

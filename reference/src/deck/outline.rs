@@ -1,9 +1,10 @@
 //! Checks and properties of a scene that decks for both programs share.
 
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
-use grainbench_scene::file::GrainShape;
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Dimension, Driven, Scene, Wall, WallShape};
+use grainbench_scene::scene::{Driven, Scene, Wall, WallShape};
 use nalgebra::Vector3;
 
 /// Contact laws that decks can express. Scenes with other laws are refused.

@@ -4,7 +4,7 @@ use std::fmt::Write as _;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 
 use grainbench_scene::end_state::Springs;
-use grainbench_scene::grains::Grains;
+use grainbench_scene::scene::Grains;
 use grainbench_scene::scene::{Driven, Grain, Scene, Wall};
 
 use crate::deck::Stepping;

@@ -4,7 +4,8 @@ use crate::contact::Options;
 use crate::convention::Convention;
 use crate::laws::damping_ratio;
 use grainbench_scene::contact_law::ContactLaw;
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Scene;
 
 /// Returns a fraction f of the critical step `2√(m/k_n)` at which every packing of equal grains is stable.
 ///

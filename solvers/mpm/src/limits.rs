@@ -1,7 +1,7 @@
 //! Scenes that the method does not support, each with its reason.
 
 use grainbench_scene::body::Block;
-use grainbench_scene::file::GrainShape;
+use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Scene, WallShape};

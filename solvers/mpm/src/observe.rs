@@ -324,6 +324,7 @@ fn nearest_turn(angle: f64, expected: f64) -> f64 {
     angle + ((expected - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
+/// Returns the mean of the states of several points, with the sum of their volumes; `None` without points.
 fn mean(found: &[(u32, PointState)]) -> Option<PointState> {
     let mut all = found.iter().map(|(_, point)| *point);
     let first = all.next()?;

@@ -2,8 +2,9 @@
 
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
 use crate::pairs::{Pairs, Side};
+use grainbench_scene::dimension::Dimension;
 use grainbench_scene::overlap::distance;
-use grainbench_scene::scene::{Dimension, Scene, Wall, WallShape};
+use grainbench_scene::scene::{Scene, Wall, WallShape};
 use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
 use grainbench_solver::record::{ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState};
 use nalgebra::Vector3;

@@ -1,8 +1,7 @@
 //! Checks of single values of a scene. Each error states the key.
 
+use crate::dimension::Dimension;
 use crate::error::{SceneError, did_you_mean};
-use crate::file::SpinSpec;
-use crate::scene::Dimension;
 use crate::shape;
 use crate::source::SceneSource;
 use nalgebra::{Matrix3, Vector3};
@@ -76,22 +75,6 @@ impl Checker<'_> {
             return Err(self.error(key, "a symmetric tensor, the same above and below its diagonal", &found()));
         }
         Ok(tensor)
-    }
-
-    pub(crate) fn spin(&self, key: &str, spin: Option<&SpinSpec>) -> Result<Vector3<f64>, SceneError> {
-        match (spin, self.dimension) {
-            (None, _) => Ok(Vector3::zeros()),
-            (Some(SpinSpec::About(rate)), Dimension::Two) => {
-                Ok(Vector3::new(0.0, 0.0, self.finite(key, *rate, "angular velocity (rad/s)")?))
-            }
-            (Some(SpinSpec::Vector(rates)), Dimension::Three) => self.vector(key, rates),
-            (Some(SpinSpec::About(rate)), Dimension::Three) => {
-                Err(self.error(key, "a vector of three numbers", &rate.to_string()))
-            }
-            (Some(SpinSpec::Vector(rates)), Dimension::Two) => {
-                Err(self.error(key, "one number, the spin about z", &format!("{rates:?}")))
-            }
-        }
     }
 
     /// Returns the index of a name in a list of known names.

@@ -4,8 +4,8 @@
 //! decks and external programs that do not support the new law reject it by its kind.
 
 use crate::check::Checker;
+use crate::dimension::GrainShape;
 use crate::error::SceneError;
-use crate::file::GrainShape;
 use crate::material::MaterialSpec;
 use indexmap::IndexMap;
 use schemars::JsonSchema;

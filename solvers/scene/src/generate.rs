@@ -1,8 +1,9 @@
 //! Generation of grains on lattices and at random positions from a seed.
 
+use crate::dimension::Dimension;
 use crate::packing::filled;
 use crate::radii::Radii;
-use crate::scene::{Dimension, Domain};
+use crate::scene::Domain;
 use nalgebra::Vector3;
 use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;

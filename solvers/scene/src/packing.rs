@@ -6,8 +6,9 @@
 //! to the squared radii. The algorithm has no friction, so packings can be denser than packings of grains that come to
 //! rest with friction.
 
+use crate::dimension::Dimension;
 use crate::near::near_pairs;
-use crate::scene::{Dimension, Domain};
+use crate::scene::Domain;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

@@ -1,7 +1,8 @@
 //! Poured grains, which are inserted one after the other at a given rate. Their positions in a box are random numbers
 //! from a seed, so that every solver inserts the same grains.
 
-use crate::scene::{Dimension, Domain};
+use crate::dimension::Dimension;
+use crate::scene::Domain;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64;

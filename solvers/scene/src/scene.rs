@@ -5,57 +5,16 @@ pub use crate::body::Block;
 use crate::body::Start;
 use crate::columns::{Chosen, Columns};
 use crate::contact_law::ContactLaw;
+use crate::dimension::{Dimension, GrainShape};
 use crate::end_state::Springs;
-use crate::file::GrainShape;
-use crate::grains::Grains;
 use crate::material::Deformable;
 use crate::mesh::Mesh;
 use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;
-use std::f64::consts::PI;
+use std::fmt;
+use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
-
-/// Number of dimensions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dimension {
-    /// Two dimensions (x, y).
-    Two,
-    /// Three dimensions (x, y, z).
-    Three,
-}
-
-impl Dimension {
-    /// Returns the number of dimensions, 2 or 3.
-    #[must_use]
-    pub const fn count(self) -> usize {
-        match self {
-            Self::Two => 2,
-            Self::Three => 3,
-        }
-    }
-}
-
-impl GrainShape {
-    /// Returns the mass of a grain of this shape, of a radius (m) and a density (kg/m³): kg/m for discs (per metre of
-    /// depth), kg for spheres.
-    #[must_use]
-    pub fn mass(self, radius: f64, density: f64) -> f64 {
-        match self {
-            Self::Disc => density * PI * radius * radius,
-            Self::Sphere => density * (4.0 / 3.0) * PI * radius.powi(3),
-        }
-    }
-
-    /// Returns I/(mR²): 1/2 for a disc, 2/5 for a sphere.
-    #[must_use]
-    pub const fn inertia_factor(self) -> f64 {
-        match self {
-            Self::Disc => 0.5,
-            Self::Sphere => 0.4,
-        }
-    }
-}
 
 /// Initial state of a grain.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -74,6 +33,77 @@ pub struct Grain {
     pub velocity: Vector3<f64>,
     /// Angular velocity (rad/s).
     pub spin: Vector3<f64>,
+}
+
+/// List of the grains of a scene. Copies share the same list. A copy that changes gets its own list.
+#[derive(Clone, Default, PartialEq)]
+pub struct Grains(Arc<Vec<Grain>>);
+
+impl Grains {
+    /// Returns all data of the grains as bytes, one grain after the other.
+    #[must_use]
+    pub fn bits(&self) -> Vec<u8> {
+        let mut bits = Vec::with_capacity(self.len() * size_of::<Grain>());
+        for Grain { material, radius, mass, inertia, position, velocity, spin } in self {
+            bits.extend(material.to_le_bytes());
+            let vectors = [position, velocity, spin].into_iter().flat_map(|vector| vector.iter());
+            for number in [radius, mass, inertia].into_iter().chain(vectors) {
+                bits.extend(number.to_le_bytes());
+            }
+        }
+        bits
+    }
+}
+
+impl From<Vec<Grain>> for Grains {
+    fn from(grains: Vec<Grain>) -> Self {
+        Self(Arc::new(grains))
+    }
+}
+
+impl FromIterator<Grain> for Grains {
+    fn from_iter<I: IntoIterator<Item = Grain>>(grains: I) -> Self {
+        grains.into_iter().collect::<Vec<_>>().into()
+    }
+}
+
+impl Deref for Grains {
+    type Target = Vec<Grain>;
+
+    fn deref(&self) -> &Vec<Grain> {
+        &self.0
+    }
+}
+
+impl DerefMut for Grains {
+    fn deref_mut(&mut self) -> &mut Vec<Grain> {
+        Arc::make_mut(&mut self.0)
+    }
+}
+
+impl<'g> IntoIterator for &'g Grains {
+    type Item = &'g Grain;
+    type IntoIter = std::slice::Iter<'g, Grain>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.0.iter()
+    }
+}
+
+impl<'g> IntoIterator for &'g mut Grains {
+    type Item = &'g mut Grain;
+    type IntoIter = std::slice::IterMut<'g, Grain>;
+
+    fn into_iter(self) -> Self::IntoIter {
+        self.iter_mut()
+    }
+}
+
+/// Prints the grains as a list.
+impl fmt::Debug for Grains {
+    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
+        self.0.fmt(formatter)
+    }
 }
 
 /// Initial shape of a wall.

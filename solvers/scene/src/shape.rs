@@ -1,7 +1,7 @@
 //! Expected forms ("shapes") of values in scene files, for error messages. Keys that exist only in three dimensions
 //! always show three components.
 
-use crate::scene::Dimension;
+use crate::dimension::Dimension;
 
 /// Keys, and the shapes of their values. `@` is replaced by a vector, `%` by its components, and `#` by a symmetric
 /// tensor. `table.key` distinguishes keys of the same name.

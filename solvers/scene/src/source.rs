@@ -1,9 +1,6 @@
 //! Text of a scene file: parsing, variants, overrides, and line numbers of keys.
 
 use crate::error::{SceneError, did_you_mean, expected_and_found};
-use crate::file::SceneFile;
-use crate::scene::Dimension;
-use crate::shape;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -22,47 +19,6 @@ pub struct SceneSource {
 }
 
 impl SceneSource {
-    /// Reads a scene file.
-    ///
-    /// # Errors
-    /// When the file cannot be read or is not UTF-8, or a variant has an unknown key or a value of the wrong type.
-    pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|cause| SceneError {
-            place: name.clone(),
-            key: String::new(),
-            expected: "a readable scene file".to_owned(),
-            found: cause.to_string(),
-            help: None,
-        })?;
-        let text = String::from_utf8(bytes).map_err(|cause| SceneError {
-            place: name.clone(),
-            key: String::new(),
-            expected: "UTF-8 text".to_owned(),
-            found: format!("other bytes after byte {}", cause.utf8_error().valid_up_to()),
-            help: None,
-        })?;
-        if let Some(at) = text.find('\0') {
-            return Err(SceneError {
-                place: format!("{name}:{}", line_of(&text, at)),
-                key: String::new(),
-                expected: "a text file".to_owned(),
-                found: format!("a zero byte after byte {at}"),
-                help: None,
-            });
-        }
-        let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let source = Self { name, directory, text, read: Arc::default(), variant: None, overrides: Vec::new() };
-        // All variants are checked, so that an error in an unused variant is found too.
-        let table = source.parse()?;
-        let mut varied = source.clone();
-        for variant in variant_names(table) {
-            varied.variant = Some(variant);
-            varied.scene_file_of(table)?;
-        }
-        Ok(source)
-    }
-
     /// Creates a scene source from text in memory.
     #[must_use]
     pub fn from_text(name: &str, directory: &Path, text: &str) -> Self {
@@ -105,14 +61,6 @@ impl SceneSource {
         Ok(variant_names(self.parse()?))
     }
 
-    /// Returns the scene file with its variant and overrides applied.
-    ///
-    /// # Errors
-    /// When the text is not TOML, the variant is unknown, or a key is unknown, missing or of the wrong type.
-    pub fn scene_file(&self) -> Result<SceneFile, SceneError> {
-        self.scene_file_of(self.parse()?)
-    }
-
     /// Returns the table with its variant and overrides applied. Its keys and types are not checked.
     ///
     /// # Errors
@@ -132,16 +80,7 @@ impl SceneSource {
         Ok(files)
     }
 
-    /// Deserialises a scene file from its table, with the variant and the overrides applied.
-    fn scene_file_of(&self, text: &toml::Table) -> Result<SceneFile, SceneError> {
-        let table = self.laid_over(text)?;
-        serde_path_to_error::deserialize(toml::Value::Table(table.clone())).map_err(|error| {
-            let path = error.path().to_string();
-            self.explain(&path, error.inner().message(), &table)
-        })
-    }
-
-    fn laid_over(&self, text: &toml::Table) -> Result<toml::Table, SceneError> {
+    pub(crate) fn laid_over(&self, text: &toml::Table) -> Result<toml::Table, SceneError> {
         let plain = text.iter().filter(|(key, _)| *key != "variants");
         let mut table: toml::Table = plain.map(|(key, value)| (key.clone(), value.clone())).collect();
         if let Some(variant) = &self.variant {
@@ -182,7 +121,7 @@ impl SceneSource {
         }
     }
 
-    fn parse(&self) -> Result<&toml::Table, SceneError> {
+    pub(crate) fn parse(&self) -> Result<&toml::Table, SceneError> {
         if let Some(table) = self.read.get() {
             return Ok(table);
         }
@@ -190,11 +129,12 @@ impl SceneSource {
             let line = error.span().map_or(1, |span| line_of(&self.text, span.start));
             let there = error.span().and_then(|span| self.text.get(span)).map(str::trim).unwrap_or_default();
             let at = if there.is_empty() { String::new() } else { format!(" at `{}`", shortened(there)) };
+            let (expected, found) = expected_and_found(error.message());
             SceneError {
                 place: format!("{}:{line}", self.name),
                 key: String::new(),
-                expected: "TOML".to_owned(),
-                found: error.message().replace('\n', ", ") + &at,
+                expected,
+                found: found + &at,
                 help: None,
             }
         })?;
@@ -269,41 +209,6 @@ impl SceneSource {
         }
         line
     }
-
-    /// Converts an error message of serde to a scene error.
-    fn explain(&self, path: &str, message: &str, table: &toml::Table) -> SceneError {
-        let message = message.trim();
-        let path = if path == "." { "" } else { path };
-        let dimension = match table.get("dimension").and_then(toml::Value::as_integer) {
-            Some(3) => Dimension::Three,
-            _ => Dimension::Two,
-        };
-        let shape = shape::expected(path, dimension);
-        let word = message.split('`').nth(1).unwrap_or_default();
-        let (expected, found) = expected_and_found(message);
-        if message.starts_with("unknown variant") {
-            return self.error(path, &expected, &found, None);
-        }
-        if message.starts_with("unknown field") {
-            let is_last = path == word || path.ends_with(&format!(".{word}"));
-            let key = if path.is_empty() || is_last { path.to_owned() } else { format!("{path}.{word}") };
-            return self.error(if key.is_empty() { word } else { &key }, &expected, &found, None);
-        }
-        if message.starts_with("missing field") {
-            let key = if path.is_empty() { word.to_owned() } else { format!("{path}.{word}") };
-            let help = shape.filter(|(_, shape)| shape.starts_with('{')).map(|(_, shape)| format!("as in {shape}"));
-            return self.error(&key, &expected, &found, help);
-        }
-        if let Some((key, shape)) = shape {
-            let found = value_at(table, key).map_or_else(|| message.to_owned(), describe);
-            return self.error(key, &shape, &found, None);
-        }
-        if message.contains(", expected ") {
-            return self.error(path, &expected, &found, None);
-        }
-        let found = value_at(table, path).map_or_else(|| "something else".to_owned(), describe);
-        self.error(path, message, &found, None)
-    }
 }
 
 /// Returns the existing files whose paths are string values in a table. The paths are relative to `directory`.
@@ -337,7 +242,7 @@ fn with_zeros(value: &str) -> String {
 }
 
 /// Returns the value at a dotted path; `None` if there is none.
-fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
+pub(crate) fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
     let mut parts = path.split(['.', '[']);
     let first = table.get(parts.next()?)?;
     parts.try_fold(first, |value, part| match part.strip_suffix(']') {
@@ -346,7 +251,7 @@ fn value_at<'a>(table: &'a toml::Table, path: &str) -> Option<&'a toml::Value> {
     })
 }
 
-fn describe(value: &toml::Value) -> String {
+pub(crate) fn describe(value: &toml::Value) -> String {
     format!("{} `{}`", value.type_str(), shortened(value.to_string().trim()))
 }
 
@@ -365,7 +270,7 @@ fn within(key: &str, set: &str) -> bool {
     key.strip_prefix(set).is_some_and(|rest| rest.is_empty() || rest.starts_with(['.', '[']))
 }
 
-fn variant_names(table: &toml::Table) -> Vec<String> {
+pub(crate) fn variant_names(table: &toml::Table) -> Vec<String> {
     variant_tables(table).map(|tables| tables.keys().cloned().collect()).unwrap_or_default()
 }
 
@@ -388,6 +293,6 @@ fn merge(base: &mut toml::Table, overlay: toml::Table) {
     }
 }
 
-fn line_of(text: &str, offset: usize) -> usize {
+pub(crate) fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes().iter().take(offset).filter(|byte| **byte == b'\n').count() + 1
 }

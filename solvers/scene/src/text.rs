@@ -13,10 +13,11 @@ const MOST: u64 = 1 << 20;
 /// When the file cannot be read, is not a regular file, is larger than 1 MiB, or is not UTF-8. The error is the
 /// expected and the found value.
 pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
-    let readable = |reason: io::Error| ("a file that can be read", reason.to_string());
+    let readable = |reason: io::Error| ("a readable file", reason.to_string());
     let found = fs::metadata(path).map_err(readable)?;
     if !found.is_file() || found.len() > MOST {
-        return Err(("a plain file of at most a megabyte", "something else".to_owned()));
+        let found = if found.is_file() { format!("{} bytes", found.len()) } else { "a folder or a device".to_owned() };
+        return Err(("a plain file of at most 1 MiB", found));
     }
     let text = fs::read(path).map_err(readable)?;
     String::from_utf8(text).map_err(|_| ("UTF-8", "other bytes".to_owned()))

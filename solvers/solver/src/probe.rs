@@ -2,7 +2,8 @@
 
 use crate::probe_columns::{ENERGIES, columns, mean_stresses, stresses};
 use crate::record::{BodyState, Column, ContactState, GrainState, Partner, Series, Snapshot, StepState};
-use grainbench_scene::scene::{Dimension, Probe, ProbeTarget, Scene, WallShape};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::{Probe, ProbeTarget, Scene, WallShape};
 use nalgebra::{Matrix3, Vector3};
 
 /// Value of a quantity that a solver does not report.

@@ -1,7 +1,8 @@
 //! Names and units of the columns of probes.
 
 use crate::budget::Budget;
-use grainbench_scene::scene::{Dimension, ProbeTarget, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::{ProbeTarget, Scene};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 

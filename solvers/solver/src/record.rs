@@ -329,8 +329,8 @@ pub struct StepState {
     pub uneven_angular_momentum: Vector3<f64>,
     /// Material at the positions of point probes, in the order of [`Scene::spots`].
     pub spots: Vec<PointState>,
-    /// Force of the free grains on each group of grains with prescribed motion (N), in the order of [`Scene::driven`];
-    /// empty if unknown.
+    /// Sum of the contact forces on each group of grains with prescribed motion (N), from free grains and walls, in the
+    /// order of [`Scene::driven`]; empty if unknown.
     pub driven: Vec<Vector3<f64>>,
     /// Energy budget, if a probe requests it and the solver computes it.
     pub budget: Option<Budget>,

@@ -1,6 +1,8 @@
 //! Keys of `driven`: grains with prescribed motion.
 
-use super::{MotionSpec, SideSpec, SpinSpec};
+use super::bodies::SideSpec;
+use super::grains::{RegionSpec, SpinSpec};
+use super::walls::MotionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -39,14 +41,4 @@ pub struct DrivenSpec {
     /// End of the prescribed motion (s). Default: the end of the run.
     #[serde(default)]
     pub stop: Option<f64>,
-}
-
-/// Axis-aligned box.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
-pub struct RegionSpec {
-    /// Lower corner (m).
-    pub low: Vec<f64>,
-    /// Upper corner (m).
-    pub high: Vec<f64>,
 }

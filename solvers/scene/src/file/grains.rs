@@ -1,6 +1,5 @@
 //! Keys of `grains` (groups of grains and their placement) and of `removal`.
 
-use super::driven::RegionSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -217,4 +216,14 @@ pub struct FileSpec {
     /// Names of the materials of atom types 1, 2, …. Default: `material` of the group for all types.
     #[serde(default)]
     pub types: Vec<String>,
+}
+
+/// Axis-aligned box.
+#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[serde(deny_unknown_fields)]
+pub struct RegionSpec {
+    /// Lower corner (m).
+    pub low: Vec<f64>,
+    /// Upper corner (m).
+    pub high: Vec<f64>,
 }

@@ -13,10 +13,10 @@ mod walls;
 pub use crate::contact_law::{ContactSpec, LawKind};
 pub use crate::material::{ConstitutiveKind, MaterialSpec};
 pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
-pub use driven::{DrivenSpec, RegionSpec};
+pub use driven::DrivenSpec;
 pub use grains::{
-    FileSpec, GrainsSpec, LatticeSpec, LogNormalSpec, PackedSpec, PouredSpec, RadiiSpec, RandomSpec, RemovalSpec,
-    SpacingSpec, SpinSpec, StateSpec,
+    FileSpec, GrainsSpec, LatticeSpec, LogNormalSpec, PackedSpec, PouredSpec, RadiiSpec, RandomSpec, RegionSpec,
+    RemovalSpec, SpacingSpec, SpinSpec, StateSpec,
 };
 pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use output::OutputSpec;
@@ -26,6 +26,7 @@ pub use walls::{
 };
 
 use crate::body::InitialPressure;
+use crate::dimension::GrainShape;
 use indexmap::IndexMap;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -113,16 +114,6 @@ pub struct SceneFile {
 
 const fn default_largest_initial_overlap() -> f64 {
     0.1
-}
-
-/// Shape of the grains.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum GrainShape {
-    /// Cylinder one metre deep that moves in the plane.
-    Disc,
-    /// Sphere.
-    Sphere,
 }
 
 /// Gravity, as a vector or as magnitude and slope.

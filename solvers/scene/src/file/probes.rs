@@ -35,7 +35,8 @@ pub struct ProbeSpec {
     /// Name of a wall with `piston` and without `until`. Column advance (m): displacement of the wall along its normal.
     #[serde(default)]
     pub piston: Option<String>,
-    /// Name of a group in `driven`. Columns force_x, … (N): force of the free grains on the group.
+    /// Name of a group in `driven`. Columns force_x, … (N): sum of the contact forces on the
+    /// group, from free grains and walls.
     #[serde(default)]
     pub driven: Option<String>,
     /// If true, energy budget of the run. Columns (J): kinetic, elastic, springs, gravitational, work, plastic,

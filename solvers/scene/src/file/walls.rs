@@ -1,6 +1,6 @@
 //! Keys of `walls`, and the prescribed motion of a wall.
 
-use super::SpinSpec;
+use super::grains::SpinSpec;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 

@@ -3,7 +3,7 @@
 
 use super::flaw::Flaw;
 use super::geometry::{Part, nearest};
-use super::groups::Groups;
+use super::groups::{Edge, Groups};
 use super::stl::Facet;
 use super::tree::Tree;
 use nalgebra::Vector3;
@@ -24,23 +24,6 @@ pub struct Reading {
     pub open: bool,
     /// True if the normals must point into the enclosed volume.
     pub inward: bool,
-}
-
-/// Edge between two corners.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Edge {
-    pub(super) ends: [u32; 2],
-    /// Adjacent triangles. An open edge has one, which is stored twice.
-    pub(super) faces: [u32; 2],
-    /// For each triangle in `faces`, the unit vector in the plane of the triangle that is perpendicular to the edge and
-    /// points into the triangle.
-    pub(super) into: [Vector3<f64>; 2],
-}
-
-impl Edge {
-    pub(super) fn is_open(&self) -> bool {
-        self.faces[0] == self.faces[1]
-    }
 }
 
 /// Surface of triangles.
@@ -90,20 +73,20 @@ impl Surface {
     pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, Flaw> {
         let (corners, faces) = merged(facets, reading);
         let triangles: Vec<_> = faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
-        let name = |face: usize| format!("facet {} ({})", face + 1, facets[face].place);
-        let normals = normals(facets, &faces, &triangles, &name)?;
-        refuse_twice(&faces, &name)?;
-        let (edges, sides) = edges(&faces, &corners, &normals, &name)?;
+        let names = Names(facets);
+        let normals = normals(facets, &faces, &triangles, names)?;
+        refuse_twice(&faces, names)?;
+        let (edges, sides) = edges(&faces, &corners, &normals, names)?;
         let tree = Tree::new(&triangles);
         let open: Vec<&Edge> = edges.iter().filter(|edge| edge.is_open()).collect();
         if let Some(edge) = open.first().filter(|_| !reading.open) {
-            return Err(open_flaw(edge, open.len(), &corners, &name));
+            return Err(open_flaw(edge, open.len(), &corners, names));
         }
         let (from_corner, directions) = directions(&corners, &edges);
         let groups = Groups::new(&corners, &faces, &normals, &edges, &sides);
         let surface = Self { corners, faces, triangles, normals, sides, edges, from_corner, directions, groups, tree };
         if reading.open {
-            surface.refuse_corners_on_edges(reading.merge, &name)?;
+            surface.refuse_corners_on_edges(reading.merge, names)?;
         } else {
             surface.refuse_wrong_side(reading.inward)?;
         }
@@ -152,7 +135,7 @@ impl Surface {
 
     /// Rejects a surface if a corner of an open edge lies on another open edge, between its ends. The surface seems to
     /// be closed there but has two rims, and a grain would be in contact with both rims.
-    fn refuse_corners_on_edges(&self, merge: f64, name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
+    fn refuse_corners_on_edges(&self, merge: f64, names: Names<'_>) -> Result<(), Flaw> {
         let (low, high) = self.bounds();
         let near = merge.max(1e-9 * (high - low).norm());
         for edge in self.edges.iter().filter(|edge| edge.is_open()) {
@@ -179,11 +162,12 @@ impl Surface {
                 if let Some(face) = on {
                     let found = format!(
                         "one of {} on a side of {}: {:?}",
-                        name(edge.faces[0] as usize),
-                        name(face as usize),
+                        names.name(edge.faces[0] as usize),
+                        names.name(face as usize),
                         corner.as_slice()
                     );
-                    return Err(Flaw::new("corners only at the ends of edges", &found)
+                    return Err(names
+                        .flaw(edge.faces[0], "corners only at the ends of edges", &found)
                         .help("divide the neighbouring triangle at this corner, or separate the edges"));
                 }
             }
@@ -264,11 +248,26 @@ fn merged(facets: &[Facet], reading: Reading) -> (Vec<Vector3<f64>>, Vec<[u32; 3
     (corners, faces)
 }
 
+/// Names of facets in error messages.
+#[derive(Clone, Copy)]
+struct Names<'a>(&'a [Facet]);
+
+impl Names<'_> {
+    fn name(self, face: usize) -> String {
+        format!("facet {} ({})", face + 1, self.0[face].place)
+    }
+
+    /// Returns an error at the position of a facet.
+    fn flaw(self, face: u32, expected: &str, found: &str) -> Flaw {
+        Flaw::new(expected, found).at(self.0[face as usize].place)
+    }
+}
+
 fn normals(
     facets: &[Facet],
     faces: &[[u32; 3]],
     triangles: &[[Vector3<f64>; 3]],
-    name: &dyn Fn(usize) -> String,
+    names: Names<'_>,
 ) -> Result<Vec<Vector3<f64>>, Flaw> {
     let triangle_normal = |number: usize| {
         let ([a, b, c], [i, j, k]) = (triangles[number], faces[number]);
@@ -276,13 +275,14 @@ fn normals(
         let longest = (b - a).norm().max((c - b).norm()).max((a - c).norm());
         let height = across.norm() / longest;
         if i == j || j == k || k == i || height.is_nan() || height <= FLAT * longest {
-            let found = format!("{}: {:?}, {:?}, {:?}", name(number), a.as_slice(), b.as_slice(), c.as_slice());
-            return Err(Flaw::new("triangles with an area", &found));
+            let found = format!("{}: {:?}, {:?}, {:?}", names.name(number), a.as_slice(), b.as_slice(), c.as_slice());
+            return Err(names.flaw(number as u32, "triangles with an area", &found));
         }
         let normal = across.normalize();
         if normal.dot(&facets[number].normal) < 0.0 {
-            let found = format!("{}, whose normal points to the opposite side", name(number));
-            return Err(Flaw::new("normals on the side from which the corners run counter-clockwise", &found)
+            let found = format!("{}, whose normal points to the opposite side", names.name(number));
+            return Err(names
+                .flaw(number as u32, "normals on the side from which the corners run counter-clockwise", &found)
                 .help("the triangle is inverted, or its normal is wrong"));
         }
         Ok(normal)
@@ -290,14 +290,14 @@ fn normals(
     (0..facets.len()).map(triangle_normal).collect()
 }
 
-fn refuse_twice(faces: &[[u32; 3]], name: &dyn Fn(usize) -> String) -> Result<(), Flaw> {
+fn refuse_twice(faces: &[[u32; 3]], names: Names<'_>) -> Result<(), Flaw> {
     let mut known = BTreeMap::new();
     for (number, face) in faces.iter().enumerate() {
         let mut sorted = *face;
         sorted.sort_unstable();
         if let Some(first) = known.insert(sorted, number) {
-            let found = format!("{} and {} with the same corners", name(first), name(number));
-            return Err(Flaw::new("each triangle only once", &found));
+            let found = format!("{} and {} with the same corners", names.name(first), names.name(number));
+            return Err(names.flaw(first as u32, "each triangle only once", &found));
         }
     }
     Ok(())
@@ -308,7 +308,7 @@ fn edges(
     faces: &[[u32; 3]],
     corners: &[Vector3<f64>],
     normals: &[Vector3<f64>],
-    name: &dyn Fn(usize) -> String,
+    names: Names<'_>,
 ) -> Result<(Vec<Edge>, Vec<[u32; 3]>), Flaw> {
     let (mut edges, mut sides): (Vec<Edge>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
     let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
@@ -330,14 +330,27 @@ fn edges(
             let edge = &mut edges[at as usize];
             let first = edge.faces[0] as usize;
             if !edge.is_open() {
-                let found =
-                    format!("{}, {} and {} {}", name(first), name(edge.faces[1] as usize), name(number), between());
-                return Err(Flaw::new("no more than two triangles at an edge", &found)
+                let found = format!(
+                    "{}, {} and {} {}",
+                    names.name(first),
+                    names.name(edge.faces[1] as usize),
+                    names.name(number),
+                    between()
+                );
+                return Err(names
+                    .flaw(first as u32, "no more than two triangles at an edge", &found)
                     .help("split a branching surface into several walls"));
             }
             if edge.ends == ends {
-                let found = format!("{} and {} {}, which face different sides", name(first), name(number), between());
-                return Err(Flaw::new("neighbours that face the same side", &found).help("one of them is inverted"));
+                let found = format!(
+                    "{} and {} {}, which face different sides",
+                    names.name(first),
+                    names.name(number),
+                    between()
+                );
+                return Err(names
+                    .flaw(first as u32, "neighbours that face the same side", &found)
+                    .help("one of them is inverted"));
             }
             (edge.faces[1], edge.into[1]) = (number as u32, into);
         }
@@ -346,11 +359,11 @@ fn edges(
     Ok((edges, sides))
 }
 
-fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(usize) -> String) -> Flaw {
+fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], names: Names<'_>) -> Flaw {
     let [a, b] = edge.ends.map(|end| corners[end as usize]);
     let found = format!(
         "{count} edges of one triangle, the first of {} between {:?} and {:?}",
-        name(edge.faces[0] as usize),
+        names.name(edge.faces[0] as usize),
         a.as_slice(),
         b.as_slice()
     );
@@ -363,7 +376,7 @@ fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], name: &dyn Fn(
     } else {
         "if this is intended, as for a funnel, set `open = true`".to_owned()
     };
-    Flaw::new("two triangles at every edge", &found).help(&help)
+    names.flaw(edge.faces[0], "two triangles at every edge", &found).help(&help)
 }
 
 /// Returns the start of the range of each corner, and the unit vectors from the corners along their edges.

@@ -1,6 +1,5 @@
 //! Patches, ridges and corners of a surface, independent of its triangulation.
 
-use super::build::Edge;
 use nalgebra::Vector3;
 
 /// Sine of the largest angle between a triangle and the first triangle of its patch, or between an edge and the first
@@ -9,6 +8,23 @@ use nalgebra::Vector3;
 const STRAIGHT: f64 = 1e-4;
 /// Value for a triangle, edge or corner without a group.
 const NONE: u32 = u32::MAX;
+
+/// Edge between two corners.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Edge {
+    pub(super) ends: [u32; 2],
+    /// Adjacent triangles. An open edge has one, which is stored twice.
+    pub(super) faces: [u32; 2],
+    /// For each triangle in `faces`, the unit vector in the plane of the triangle that is perpendicular to the edge and
+    /// points into the triangle.
+    pub(super) into: [Vector3<f64>; 2],
+}
+
+impl Edge {
+    pub(super) fn is_open(&self) -> bool {
+        self.faces[0] == self.faces[1]
+    }
+}
 
 /// Group of every triangle, edge and corner of a surface. A group is a patch, a ridge or a corner. Patches have the
 /// lowest numbers, then ridges, then corners.

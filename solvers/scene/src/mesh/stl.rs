@@ -1,12 +1,8 @@
 //! Reader of STL files in text or binary form. It stores the position of each triangle in the file for error messages.
 
-use super::Flaw;
+use super::flaw::Flaw;
+use super::place::{EACH, HEAD, Place};
 use nalgebra::Vector3;
-
-/// Number of bytes before the first triangle in the binary form.
-const HEAD: usize = 84;
-/// Number of bytes of a triangle in the binary form.
-const EACH: usize = 50;
 
 /// Triangle as stored in a file.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -17,24 +13,6 @@ pub struct Facet {
     pub normal: Vector3<f64>,
     /// Start of the facet: line number from 1 in text form, byte offset from 0 in binary form.
     pub place: Place,
-}
-
-/// Position in a file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Place {
-    /// Line of text, from 1.
-    Line(usize),
-    /// Byte offset, from 0.
-    Byte(usize),
-}
-
-impl std::fmt::Display for Place {
-    fn fmt(&self, formatter: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
-        match self {
-            Self::Line(line) => write!(formatter, "line {line}"),
-            Self::Byte(byte) => write!(formatter, "byte {byte}"),
-        }
-    }
 }
 
 /// Reads the triangles of a file. A file that begins with `solid` may have text or binary form. It is binary if its
@@ -82,9 +60,7 @@ fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
             let corners = [at + 12, at + 24, at + 36].map(vector);
             let facet_is = Facet { corners, normal: vector(at), place: Place::Byte(at) };
             match corners.iter().flatten().find(|number| !number.is_finite()) {
-                Some(number) => {
-                    Err(Flaw::new("finite coordinates", &format!("{number} in facet {} (byte {at})", facet + 1)))
-                }
+                Some(number) => Err(Flaw::new("finite coordinates", &number.to_string()).at(facet_is.place)),
                 None => Ok(facet_is),
             }
         })
@@ -118,10 +94,9 @@ impl<'a> Words<'a> {
         match found {
             Some((word, line)) => {
                 let word: String = word.chars().take(40).collect();
-                Flaw::new(expected, &format!("`{word}` in line {line}"))
+                Flaw::new(expected, &format!("`{word}`")).at(Place::Line(line))
             }
-            None => Flaw::new(expected, &format!("the end of the file after line {}", self.line))
-                .help("the file is truncated"),
+            None => Flaw::new(expected, "the end of the file").at(Place::Line(self.line)).help("the file is truncated"),
         }
     }
 

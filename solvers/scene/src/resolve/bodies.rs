@@ -2,9 +2,10 @@
 
 use super::Resolver;
 use crate::body::{Block, BlockShape, Hold, InitialStress, Sides, Wave};
+use crate::dimension::Dimension;
 use crate::error::SceneError;
 use crate::file::{BodySpec, SideSpec};
-use crate::scene::{Dimension, Grain};
+use crate::scene::Grain;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
 
@@ -39,7 +40,7 @@ impl Resolver<'_> {
             density,
             shape,
             velocity: check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?,
-            spin: check.spin(&key("spin"), spec.spin.as_ref())?,
+            spin: self.spin(&key("spin"), spec.spin.as_ref())?,
             stretch: check.vector_or_zero(&key("stretch"), spec.stretch.as_ref())?,
             stress: self.initial_stress(name, spec, material)?,
             sides: self.sides(name, spec)?,

@@ -32,7 +32,7 @@ impl Resolver<'_> {
                 }
                 taken[grain] = true;
             }
-            let spin = self.check.spin(&format!("{key}.spin"), spec.spin.as_ref())?;
+            let spin = self.spin(&format!("{key}.spin"), spec.spin.as_ref())?;
             let motion = self.motion(&format!("{key}.motion"), &spec.motion)?;
             if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
                 let expected = "a motion without spin (the key `spin` next to `motion` rotates each grain about its \

@@ -1,11 +1,10 @@
 //! Grains of a scene file.
 
 use super::{Groups, Resolver};
+use crate::dimension::GrainShape;
 use crate::end_state::Springs;
 use crate::error::SceneError;
-use crate::file::{
-    FileSpec, GrainShape, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, SpacingSpec, StateSpec,
-};
+use crate::file::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, SpacingSpec, StateSpec};
 use crate::generate::{self, NoRoom};
 use crate::memory;
 use crate::overlap::{self, DeepestOverlap};
@@ -87,7 +86,7 @@ impl Resolver<'_> {
         let placement = self.placement(name, spec)?;
         let material = self.material(&key("material"), &spec.material)?;
         let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
-        let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
+        let spin = self.spin(&key("spin"), spec.spin.as_ref())?;
         let group = Group { name, spec, shape, material, velocity, spin };
         match placement {
             Placement::Position(position) => {

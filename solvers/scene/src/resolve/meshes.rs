@@ -1,10 +1,11 @@
 //! Walls of triangles, read from STL files.
 
 use super::Resolver;
+use crate::dimension::Dimension;
 use crate::error::SceneError;
 use crate::file::{LengthUnit, MeshSpec};
-use crate::mesh::{Flaw, Mesh, Reading, Surface, stl};
-use crate::scene::{Dimension, Domain, Grain, Wall, WallShape};
+use crate::mesh::{Flaw, Mesh, Place, Reading, Surface, stl};
+use crate::scene::{Domain, Grain, Wall, WallShape};
 use nalgebra::Vector3;
 
 /// Largest size of a file (B). A binary file of this size has about ten million triangles.
@@ -43,8 +44,11 @@ impl Resolver<'_> {
         };
         let reading = Reading { unit, merge, open: spec.open, inward: spec.inward };
         let read = stl::read(&bytes).and_then(|facets| Surface::new(&facets, reading));
-        let surface = read.map_err(|Flaw { expected, found, help }| {
-            check.source.error(&key(".file"), &format!("{expected} in `{}`", spec.file), &found, help)
+        let surface = read.map_err(|Flaw { expected, found, place, help }| {
+            let (key, file) = (key(".file"), &spec.file);
+            let in_file = place.map(Place::after_name).unwrap_or_default();
+            let place = format!("{}: {key}: {file}{in_file}", check.source.place(&key));
+            SceneError { place, key: String::new(), expected, found, help }
         })?;
         Ok(WallShape::Mesh(Mesh::at_rest(surface)))
     }

@@ -4,10 +4,12 @@
 use crate::body::{Settle, Start};
 use crate::check::Checker;
 use crate::columns::{Chosen, Columns};
+use crate::dimension::Dimension;
+use crate::dimension::GrainShape;
 use crate::error::SceneError;
-use crate::file::{DomainSpec, GrainShape, GravitySpec, ManufacturedSpec, PeriodicSpec, SceneFile, SettleSpec};
+use crate::file::{DomainSpec, GravitySpec, ManufacturedSpec, PeriodicSpec, SceneFile, SettleSpec};
 use crate::manufactured::Manufactured;
-use crate::scene::{Dimension, Domain, Duration, Sampling, Scene, Wall};
+use crate::scene::{Domain, Duration, Sampling, Scene, Wall};
 use crate::source::SceneSource;
 use crate::stays::Stays;
 use grains::PlacedGrains;

@@ -1,13 +1,31 @@
 //! Motions of walls and of grains with prescribed motion.
 
 use super::Resolver;
+use crate::dimension::Dimension;
 use crate::error::SceneError;
-use crate::file::MotionSpec;
+use crate::file::{MotionSpec, SpinSpec};
 use crate::function::{Function, FunctionKind};
 use crate::motion::{Moment, Motion, Phase};
 use nalgebra::Vector3;
 
 impl Resolver<'_> {
+    /// Reads an angular velocity (rad/s): a number in two dimensions, a vector in three.
+    pub(super) fn spin(&self, key: &str, spin: Option<&SpinSpec>) -> Result<Vector3<f64>, SceneError> {
+        match (spin, self.check.dimension) {
+            (None, _) => Ok(Vector3::zeros()),
+            (Some(SpinSpec::About(rate)), Dimension::Two) => {
+                Ok(Vector3::new(0.0, 0.0, self.check.finite(key, *rate, "angular velocity (rad/s)")?))
+            }
+            (Some(SpinSpec::Vector(rates)), Dimension::Three) => self.check.vector(key, rates),
+            (Some(SpinSpec::About(rate)), Dimension::Three) => {
+                Err(self.check.error(key, "a vector of three numbers", &rate.to_string()))
+            }
+            (Some(SpinSpec::Vector(rates)), Dimension::Two) => {
+                Err(self.check.error(key, "one number, the spin about z", &format!("{rates:?}")))
+            }
+        }
+    }
+
     pub(super) fn motion(&self, key: &str, specs: &[MotionSpec]) -> Result<Motion, SceneError> {
         let check = &self.check;
         let mut motion = Motion::default();
@@ -18,7 +36,7 @@ impl Resolver<'_> {
             if self.in_other_form(&part, spec, &mut motion)? {
                 continue;
             }
-            let spin = check.spin(&key("spin"), spec.spin.as_ref())?;
+            let spin = self.spin(&key("spin"), spec.spin.as_ref())?;
             if spec.spin.is_some() {
                 let Some(centre) = &spec.centre else {
                     return Err(check.error(&key("centre"), "a centre to rotate about", "none"));

@@ -1,8 +1,9 @@
 //! Radii and region of randomly placed grains.
 
 use super::Resolver;
+use crate::dimension::GrainShape;
 use crate::error::SceneError;
-use crate::file::{GrainShape, RandomSpec, RegionSpec};
+use crate::file::{RandomSpec, RegionSpec};
 use crate::radii::Radii;
 use crate::scene::Domain;
 
@@ -52,9 +53,10 @@ impl Resolver<'_> {
         let is_whole =
             curve.first().is_some_and(|first| first.1 == 0.0) && curve.last().is_some_and(|last| last.1 == 1.0);
         if !(rises && is_whole && curve.iter().all(|(radius, _)| radius.is_finite() && *radius > 0.0)) {
-            let expected = "pairs [radius (m), mass fraction of grains up to this radius], both increasing, the fraction from 0 \
-                 to 1";
-            return Err(check.error(&key, expected, &format!("{curve:?}")));
+            let expected = "pairs [radius (m), mass fraction of the grains up to this radius] in increasing order, with \
+                            fractions from 0 to 1";
+            let pairs: Vec<[f64; 2]> = curve.iter().map(|&(radius, fraction)| [radius, fraction]).collect();
+            return Err(check.error(&key, expected, &format!("{pairs:?}")));
         }
         Ok(Radii::by_mass(curve, if shape == GrainShape::Disc { 2 } else { 3 }))
     }

@@ -1,10 +1,11 @@
 //! Walls and their motion.
 
 use super::Resolver;
+use crate::dimension::Dimension;
 use crate::error::SceneError;
 use crate::file::{PistonSpec, WallSpec};
 use crate::motion::Motion;
-use crate::scene::{Dimension, Piston, Wall, WallShape};
+use crate::scene::{Piston, Wall, WallShape};
 
 impl Resolver<'_> {
     pub(super) fn wall(&self, name: &str, spec: &WallSpec) -> Result<Wall, SceneError> {
