@@ -6,39 +6,22 @@
 //! by one instead of in SIMD registers if contacts are recorded.
 
 use crate::contact::at_wall::WallContact;
-use crate::contact::chain::{Evaluation, Layout};
+use crate::contact::chain::Layout;
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
-use crate::contact::{MEMORY, Memory, Options};
+use crate::contact::{MEMORY, Memory};
 use crate::geometry::Geometry;
 use crate::grains::{GrainTables, Grains, Sums};
-use crate::laws::Laws;
 use crate::listed::Pairs;
 use crate::pairs::PairLoop;
 use crate::seen::RecordedContacts;
+use crate::terms::Terms;
 use crate::touching::ContactList;
 use crate::walls::{MovingWall, WallView};
 use grainbench_lanes::{Processor, Quad};
 use grainbench_solver::record::Partner;
 use std::marker::PhantomData;
-
-/// Parameters common to all contacts of an evaluation.
-#[derive(Clone, Copy)]
-pub(crate) struct Terms<'a> {
-    /// Contact laws of the scene.
-    pub(crate) laws: &'a Laws,
-    /// Options of the convention.
-    pub(crate) options: &'a Options,
-    /// Time since the last evaluation (s).
-    pub(crate) elapsed: f64,
-}
-
-impl<'a> Terms<'a> {
-    pub(crate) fn evaluation(&self, record: bool) -> Evaluation<'a> {
-        Evaluation { options: self.options, elapsed: self.elapsed, record }
-    }
-}
 
 /// Loops over contacts for any combination of contact laws.
 pub(crate) trait Forces<S: Geometry>: Send + Sync {

@@ -1,6 +1,6 @@
 //! Contact laws of a scene in the form that kernels read. There is one set of constants per pair of materials.
 
-use crate::contact::Options;
+use crate::contact::options::Options;
 use grainbench_lanes::{Lanes, Quad, SimdPack, WIDEST};
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::release::no_tension_ratio;

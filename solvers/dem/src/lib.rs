@@ -35,6 +35,7 @@ mod skin;
 pub mod solver;
 pub mod stability;
 mod state;
+mod terms;
 mod touching;
 mod walls;
 

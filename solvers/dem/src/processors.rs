@@ -127,7 +127,7 @@ fn simulated<S: Geometry>(
     forces: Box<dyn crate::forces::Forces<S>>,
     team: Team,
 ) -> DemSimulation<S> {
-    let options = crate::contact::Options::from_convention(convention);
+    let options = crate::contact::options::Options::from_convention(convention);
     DemSimulation::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }
 

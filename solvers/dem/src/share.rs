@@ -6,11 +6,12 @@
 //! depend on the number of partitions.
 
 use crate::contact::chain::Layout;
-use crate::forces::{Forces, Terms};
+use crate::forces::Forces;
 use crate::geometry::Geometry;
 use crate::grains::{GrainTables, Sums};
 use crate::listed::{BLOCK, Pairs};
 use crate::seen::RecordedContacts;
+use crate::terms::Terms;
 use crate::touching::{ContactList, blocks};
 use grainbench_lanes::Processor;
 use serde::{Deserialize, Serialize};

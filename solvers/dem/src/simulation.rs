@@ -5,8 +5,9 @@
 //! ([`crate::forces`]).
 
 use crate::accounts::{Accounts, Step};
-use crate::contact::{MEMORY, Options};
-use crate::forces::{Forces, Terms};
+use crate::contact::MEMORY;
+use crate::contact::options::Options;
+use crate::forces::Forces;
 use crate::geometry::Geometry;
 use crate::grains::{ABSENT, Grains};
 use crate::joints::Joints;
@@ -19,6 +20,7 @@ use crate::seen::{Energies, RecordedContacts};
 use crate::share::{Evaluation, FEWEST, ThreadPartition};
 use crate::skin;
 use crate::stability::stable_fraction;
+use crate::terms::Terms;
 use crate::walls::{MovingWall, WallNeighbours};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::columns::{Chosen, Columns};

@@ -1,8 +1,8 @@
 //! Discrete element method as a solver. It selects the compiled loops over contacts before the first step, runs the
 //! simulation and produces the record.
 
-use crate::contact::Options;
 use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
+use crate::contact::options::Options;
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
 use crate::contact::tangential::{Coulomb, Frictionless, Projected, Tangential, Turned};
 use crate::convention::{Convention, History, VelocityNormal};

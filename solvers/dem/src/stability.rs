@@ -1,6 +1,6 @@
 //! Stable time steps of packings of equal grains and of contacts with dashpots.
 
-use crate::contact::Options;
+use crate::contact::options::Options;
 use crate::convention::Convention;
 use crate::laws::damping_ratio;
 use grainbench_scene::contact_law::ContactLaw;

@@ -1,11 +1,11 @@
 //! Contact between a grain and a wall, prepared for the chain of stages.
 
-use super::chain::{Answer, BodyRotations, Evaluation, stages};
+use super::chain::{Answer, BodyRotations, stages};
 use super::normal::Normal;
 use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, ContactRotation, MEMORY, Memory, MidStepNormal, stiffness_ratio};
+use super::{ContactInput, ContactRotation, Evaluation, MEMORY, Memory, MidStepNormal, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 

@@ -3,7 +3,7 @@
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, MEMORY, Memory, Options};
+use super::{ContactInput, Evaluation, MEMORY, Memory};
 use crate::geometry::Geometry;
 use grainbench_lanes::Number;
 
@@ -60,17 +60,6 @@ pub(crate) struct Answer<S: Geometry, X: Number> {
     /// Energy released by the tangential spring in the step because its stiffness changes (J); computed only if
     /// contacts are recorded.
     pub(crate) released: X,
-}
-
-/// Parameters of an evaluation.
-#[derive(Clone, Copy)]
-pub(crate) struct Evaluation<'a> {
-    /// Options of the convention.
-    pub(crate) options: &'a Options,
-    /// Time since the last evaluation (s).
-    pub(crate) elapsed: f64,
-    /// True if energies are computed.
-    pub(crate) record: bool,
 }
 
 /// Evaluates the stages for one contact, or for several contacts at a time. `arms` holds the lever arms of both bodies

@@ -7,15 +7,15 @@
 pub(crate) mod at_wall;
 pub(crate) mod chain;
 pub(crate) mod normal;
+pub(crate) mod options;
 pub(crate) mod pair;
 pub(crate) mod rolling;
 pub(crate) mod tangential;
 
-use crate::convention::{CapNormal, Convention, CoulombCap, History, Tension, TorqueArm, VelocityNormal, WallRolling};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
-pub(crate) use tangential::Cap;
+use options::Options;
 
 /// Length of the history array of a contact. The values of the tangential stage come first, then those of the rolling
 /// stage. A contact with a wall also stores its normal, in the last three values.
@@ -136,66 +136,13 @@ pub(crate) fn stiffness_ratio<X: Number>(inverse_overlap: X, approach: X, elapse
     ratio.at_least(approach.like(0.0)).sqrt()
 }
 
-/// Options of a convention as numbers for the compiled loops. The option `Convention::history` also selects which loop
-/// runs.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Options {
-    /// Fraction of the overlap that is subtracted from the lever arm: 0 or 1/2.
-    pub(crate) arm_reduction: f64,
-    /// Smallest normal force (N): zero if the dashpot must not pull, otherwise −∞.
-    pub(crate) least_normal_force: f64,
-    /// Weight of the dashpot in the normal force of the Coulomb limit: 0 or 1.
-    pub(crate) dashpot_in_cap: f64,
-    /// Weight of the magnitude of an attractive normal force in the Coulomb limit: 0 or 1.
-    pub(crate) pull_in_cap: f64,
-    /// Force to which the Coulomb limit applies.
-    pub(crate) cap: Cap,
-    /// True if rolling resistance at walls uses the surface velocity divided by the distance from the wall, instead of
-    /// the spin.
-    pub(crate) rolls_by_surface: bool,
-    /// Weight of the wall's spin in the rolling velocity: 0 or 1.
-    pub(crate) wall_spin: f64,
-    /// True if velocities are decomposed along the mid-step normal.
-    pub(crate) mid_step: bool,
-}
-
-impl Options {
-    /// Returns true if a normal dashpot may pull.
-    pub(crate) const fn may_pull(&self) -> bool {
-        self.least_normal_force < 0.0
-    }
-
-    /// Returns the options of a convention.
-    #[must_use]
-    pub(crate) const fn from_convention(convention: &Convention) -> Self {
-        Self {
-            arm_reduction: match convention.torque_arm {
-                TorqueArm::Radius => 0.0,
-                TorqueArm::ContactPoint => 0.5,
-            },
-            least_normal_force: match convention.tension {
-                Tension::Allowed => f64::NEG_INFINITY,
-                Tension::Clipped => 0.0,
-            },
-            dashpot_in_cap: match convention.cap_normal {
-                CapNormal::Spring => 0.0,
-                CapNormal::Total | CapNormal::Pushing => 1.0,
-            },
-            pull_in_cap: match convention.cap_normal {
-                CapNormal::Spring | CapNormal::Total => 1.0,
-                CapNormal::Pushing => 0.0,
-            },
-            cap: match (convention.coulomb_cap, convention.history) {
-                (CoulombCap::Spring, _) => Cap::Spring,
-                (CoulombCap::SpringAndDashpot, History::Turned) => Cap::Total,
-                (CoulombCap::SpringAndDashpot, History::Projected) => Cap::TotalAsLammps,
-            },
-            rolls_by_surface: matches!(convention.wall_rolling, WallRolling::Surface),
-            wall_spin: match convention.wall_rolling {
-                WallRolling::RelativeSpin => 1.0,
-                WallRolling::Spin | WallRolling::Surface => 0.0,
-            },
-            mid_step: matches!(convention.velocity_normal, VelocityNormal::MidStep),
-        }
-    }
+/// Parameters of an evaluation.
+#[derive(Clone, Copy)]
+pub(crate) struct Evaluation<'a> {
+    /// Options of the convention.
+    pub(crate) options: &'a Options,
+    /// Time since the last evaluation (s).
+    pub(crate) elapsed: f64,
+    /// True if energies are computed.
+    pub(crate) record: bool,
 }

@@ -1,6 +1,7 @@
 //! First stage of a contact law. It computes the normal force, and the stiffness that the other stages need.
 
-use super::{ContactInput, Options};
+use super::ContactInput;
+use super::options::Options;
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;

@@ -1,10 +1,10 @@
 //! Contact between two grains, prepared for the chain of stages.
 
-use super::chain::{Answer, BodyRotations, Evaluation, stages};
+use super::chain::{Answer, BodyRotations, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, ContactRotation, Memory, MidStepNormal, stiffness_ratio};
+use super::{ContactInput, ContactRotation, Evaluation, Memory, MidStepNormal, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
@@ -114,10 +114,11 @@ pub(crate) fn harmonic<X: Number>(inverse: X) -> X {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::MEMORY;
     use crate::contact::normal::Spring;
+    use crate::contact::options::Options;
     use crate::contact::rolling::FreeRolling;
     use crate::contact::tangential::{Coulomb, Projected};
-    use crate::contact::{MEMORY, Options};
     use crate::convention::Convention;
     use crate::geometry::Components;
     use grainbench_solver::space::Solid;

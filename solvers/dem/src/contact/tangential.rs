@@ -3,9 +3,9 @@
 //! The contact history is the displacement s of the tangential spring (m). It grows by the slip velocity times the time
 //! step, and rotates with the contact ([`SpringTransport`]). The Coulomb limit reduces it ([`Cap`]).
 
-use super::chain::Evaluation;
 use super::normal::{Normal, NormalForce};
-use super::{ContactInput, Memory};
+use super::options::Cap;
+use super::{ContactInput, Evaluation, Memory};
 use crate::geometry::{Components, Geometry, Linear};
 use grainbench_lanes::Number;
 use grainbench_solver::space::{Plane, Solid};
@@ -96,20 +96,6 @@ impl<S: Geometry> Tangential<S> for Frictionless {
     fn energy<X: Number>(_memory: &Memory<X>, stiffness: X) -> X {
         stiffness.like(0.0)
     }
-}
-
-/// Force to which the Coulomb limit applies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Cap {
-    /// Force of the spring. The dashpot is added only while the contact sticks.
-    Spring,
-    /// Force of spring and dashpot together. The spring displacement is reset so that this force equals the limit
-    /// (Luding 2008, Granular Matter 10, 235, eq. 22). If the dashpot alone exceeds the limit, the displacement is set
-    /// to zero, so that the spring never acts in the sliding direction.
-    Total,
-    /// Force of spring and dashpot together, as in LAMMPS. The spring may act in the sliding direction. If the spring
-    /// has no displacement yet, as at the start, a force beyond the limit is set to zero.
-    TotalAsLammps,
 }
 
 /// Tangential spring and dashpot of a contact, with the Coulomb limit.
