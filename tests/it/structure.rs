@@ -11,7 +11,7 @@ const BUDGETS: [(&str, usize, usize); 16] = [
     ("solvers/solver", 3_460, 0),
     ("solvers/lanes", 1_500, 0),
     ("solvers/dem", 9_055, 0),
-    ("solvers/mpm", 11_500, 7),
+    ("solvers/mpm", 11_640, 0),
     ("solvers/rigid", 1_620, 0),
     ("harness", 7_775, 5),
     ("store", 1_705, 0),

@@ -1,5 +1,6 @@
 //! Creation of bodies from a scene, with seeding of material points and surface tracers.
 
+use crate::body::Body;
 use crate::grid::Lattice;
 use crate::material::Material;
 use crate::options::Setting;
@@ -8,46 +9,11 @@ use crate::seed::{self, Patch, Seed};
 use crate::surface::Tracers;
 use crate::transfer::Part;
 use grainbench_scene::body::{Block, BlockShape, Sides};
-use grainbench_scene::manufactured::Medium;
 use grainbench_scene::material::Deformable;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
-use std::ops::Range;
-
-/// Deformable body with its points, surface and material.
-#[derive(Clone, Debug)]
-pub(crate) struct Body {
-    pub(crate) owner: Owner,
-    /// Points of the body, and the window of nodes that they influence.
-    pub(crate) part: Part,
-    /// Range of the tracers on the surface.
-    pub(crate) tracers: Range<usize>,
-    /// Range of the chunks of these tracers.
-    pub(crate) chunks: Range<usize>,
-    /// Index of the material in the scene.
-    pub(crate) material: u16,
-    pub(crate) law: Material,
-    pub(crate) density: f64,
-    pub(crate) deformable: Deformable,
-    /// Bounding box of points and tracers (m).
-    pub(crate) bounds: [Vector3<f64>; 2],
-    /// Rotation since the start at the last observation (rad).
-    pub(crate) angle: f64,
-    /// For a box with fixed or symmetry boundaries, its sides and corners (m).
-    pub(crate) held: Option<(Sides, [Vector3<f64>; 2])>,
-    /// Index of the group of driven grains that contains the body.
-    pub(crate) driven: Option<u16>,
-}
-
-impl Body {
-    /// Returns the properties that a manufactured solution needs.
-    pub(crate) fn medium(&self) -> Medium {
-        let Self { density, deformable, .. } = self;
-        Medium { density: *density, lame: deformable.lame(), shear_modulus: deformable.shear_modulus }
-    }
-}
 
 /// Description of a body before it is seeded.
 struct Blank {

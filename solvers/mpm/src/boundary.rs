@@ -1,6 +1,6 @@
 //! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::driven::DrivenGroups;
 use crate::grid::Lattice;
 use crate::held::FixedBoundaries;

@@ -4,7 +4,7 @@
 //! these nodes also move the points of other bodies that they influence.
 
 use crate::basis::with_basis;
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node, Stencil};
 use crate::options::Basis;

@@ -1,7 +1,7 @@
 //! Fixed or symmetry boundaries of boxes. Beyond such a side the body continues as its mirror image, so the side keeps
 //! its position to the order of the basis functions. The side is moved to the nearest nodes.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::grid::{Lattice, Node, Window};
 use grainbench_scene::body::Hold;
 use grainbench_solver::space::Space;

@@ -21,8 +21,10 @@
 mod accounts;
 mod basis;
 mod bodies;
+mod body;
 mod boundary;
 mod checkpoint;
+mod checks;
 mod contact;
 mod contacts;
 mod damping;

@@ -1,6 +1,6 @@
 //! Lattice, windows and node values of the grid.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::damping::Damping;
 use crate::grid::{Lattice, Node, Window};
 use crate::share::ThreadPartition;

@@ -1,6 +1,6 @@
 //! Output of a simulation at a step: bodies, contacts, material points and energies.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::contact::{ContactPartner, ContactPoint};
 use crate::material::{self, Law, with_law};
 use crate::simulation::Simulation;

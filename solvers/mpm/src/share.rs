@@ -4,7 +4,7 @@
 //! node, in the order of the batches. Results are therefore equal to the bit for any number of threads.
 
 use crate::basis::Basis;
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::failure::Failure;
 use crate::grid::{Lattice, Window};
 use crate::ledger::Flow;

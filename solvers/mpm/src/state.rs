@@ -1,7 +1,7 @@
 //! State of a simulation: bodies and their material points.
 
 use crate::basis::with_basis;
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::failure::Failure;
 use crate::grid::{Lattice, Stencil};
 use crate::options::Basis;

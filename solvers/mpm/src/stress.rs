@@ -1,7 +1,7 @@
 //! Deformation and stress from velocity gradients, material by material.
 
 use crate::basis::with_basis;
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::failure::Failure;
 use crate::gradients::Gradients;
 use crate::grid::Node;

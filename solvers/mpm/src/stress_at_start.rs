@@ -1,6 +1,6 @@
 //! Initial stress of bodies: a hydrostatic pressure or a stress given by the scene.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::material::{Law, Material, State as Material3, with_law};
 use crate::points::Points;
 use crate::state::State;

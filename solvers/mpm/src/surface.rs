@@ -1,7 +1,7 @@
 //! Tracers: massless points on the surface of bodies. They move with the velocity of the grid.
 
 use crate::basis::Basis;
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::grid::{Lattice, Stencil};
 use crate::patch::{Copies, StencilBlock};
 use crate::runs;

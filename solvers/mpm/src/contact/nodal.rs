@@ -17,7 +17,7 @@
 
 use super::shared::{Field, Member, SharedNodes};
 use super::{ContactPartner, FrictionTable};
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::driven::Group;
 use crate::grid::Lattice;
 use crate::ledger::Ledger;

@@ -1,6 +1,6 @@
 //! Search for pairs of bodies that may be in contact.
 
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::grid::Lattice;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;

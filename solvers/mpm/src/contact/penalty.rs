@@ -5,11 +5,11 @@
 
 use super::friction::{Friction, Overlap, Tangential};
 use super::grip::SurfaceShapeFunction;
-use super::search::{PenetratingPoint, SearchResults};
-use super::{ContactPartner, ContactPoint, FrictionTable};
+use super::search::{PenetratingPoint, Rules, SearchResults};
+use super::{ContactPartner, ContactPoint};
 use crate::basis::Basis;
-use crate::bodies::Body;
-use crate::grid::{Lattice, Node};
+use crate::body::Body;
+use crate::grid::Node;
 use crate::ledger::Ledger;
 use crate::surface::Tracers;
 use crate::walls::RigidPlane;
@@ -39,16 +39,6 @@ impl<S: Space> Springs<S> {
         self.friction.begin();
         self.touched = 0;
     }
-}
-
-/// Parameters of all springs.
-#[derive(Clone, Copy)]
-pub(crate) struct Rules<'a> {
-    pub(crate) lattice: &'a Lattice,
-    pub(crate) friction: &'a FrictionTable,
-    /// Stiffness per area in units of E'/h, with E' = E/(1 − ν²) and the cell length h.
-    pub(crate) penalty: f64,
-    pub(crate) time_step: f64,
 }
 
 /// Outputs of the springs in a step.

@@ -4,14 +4,24 @@
 use super::friction::Overlap;
 use super::grip::SurfaceShapeFunction;
 use super::pairs::Pair;
-use super::penalty::Rules;
 use crate::basis::Basis;
-use crate::bodies::Body;
-use crate::grid::Node;
+use crate::body::Body;
+use crate::contact::FrictionTable;
+use crate::grid::{Lattice, Node};
 use crate::surface::{NearSurface, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;
+
+/// Parameters of all springs.
+#[derive(Clone, Copy)]
+pub(crate) struct Rules<'a> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) friction: &'a FrictionTable,
+    /// Stiffness per area in units of E'/h, with E' = E/(1 − ν²) and the cell length h.
+    pub(crate) penalty: f64,
+    pub(crate) time_step: f64,
+}
 
 /// Largest bulge of a surface beyond the bounding box of its tracers (cells).
 const BULGE: f64 = 0.25;

@@ -3,7 +3,7 @@
 use super::ContactPartner;
 use super::pairs::Pair;
 use crate::basis::{Basis, Linear, Quadratic};
-use crate::bodies::Body;
+use crate::body::Body;
 use crate::grid::{Lattice, Node, Stencil, Window};
 use crate::points::Points;
 use crate::surface::Tracers;

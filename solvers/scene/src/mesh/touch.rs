@@ -95,7 +95,8 @@ impl Surface {
 mod tests {
     use super::*;
     use crate::mesh::Reading;
-    use crate::mesh::stl::{Facet, Place};
+    use crate::mesh::place::Place;
+    use crate::mesh::stl::Facet;
 
     fn surface(triangles: &[[[f64; 3]; 3]], open: bool) -> Surface {
         let facet = |corners: &[[f64; 3]; 3]| Facet {
