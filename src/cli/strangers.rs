@@ -10,6 +10,7 @@ use grainbench::harness::solvers::{ExternalSolver, Solvers, StoredResult};
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::scene::scene::Scene;
 use grainbench::solver::failure::RunError;
+use grainbench::solver::record::Record;
 use grainbench::solver::{Defect, Solver};
 use grainbench::store::key;
 use std::collections::BTreeMap;

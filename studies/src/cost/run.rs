@@ -12,6 +12,7 @@ use grainbench_reports::study::point::{Counts, Diagram, Point, PointStatus, Timi
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
 use grainbench_store::key::Id;
 use std::collections::BTreeMap;
 use std::sync::{Arc, OnceLock};

@@ -13,6 +13,12 @@ use grainbench_reports::study::stability::{HardCaseResult, Hardness};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::Solver;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_solver::failure::RunError;
+use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
+use grainbench_solver::record::{GrainState, Record};
+use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 
 /// Function that checks the condition at the end of a run.
