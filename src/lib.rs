@@ -3,6 +3,7 @@
 //! This crate is the public interface for authors of solvers. [`judge`] tests a solver with the claims of cases, and
 //! [`conform`] tests it with the conformance properties. `examples/own_solver.rs` shows a complete solver.
 
+pub mod adapt;
 pub mod check;
 pub mod kept;
 pub mod own;

@@ -10,6 +10,7 @@ mod clock;
 pub mod comparison;
 pub mod deck;
 mod execution;
+mod first_sample;
 pub mod grain_dump;
 pub mod live;
 pub mod observer;
@@ -22,6 +23,7 @@ mod run_files;
 pub mod stored;
 
 pub use execution::process::{end_programs_at, has_ended_programs};
+pub use first_sample::read_start;
 pub use read::atom::Atom;
 pub use read::data_file::{DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;

@@ -69,6 +69,8 @@ pub struct DumpObserver<'s> {
     known: KnownQuantities,
     /// Forces between grains, from a dump of contacts if there is one.
     pairs: PairForces,
+    /// Names of the columns with wall forces in dumps of our decks.
+    names_of_decks: Names,
     /// Remaining steps at which snapshots are requested, in order.
     due: &'s [u64],
     snapshots: Vec<Snapshot>,
@@ -132,7 +134,13 @@ impl<'s> DumpObserver<'s> {
         };
         let (pairs, due, heights) = (PairForces::default(), snapshot_steps, BTreeMap::new());
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
-        Self { scene, sampled, recorders, known, pairs, due, snapshots, shifted_start, heights, last }
+        let names_of_decks = Names::default();
+        Self { scene, sampled, recorders, known, pairs, names_of_decks, due, snapshots, shifted_start, heights, last }
+    }
+
+    /// Adds names of columns in dumps of our decks. They apply to wall forces without a name of the user.
+    pub(crate) fn with_names_of_decks(self, names: Vec<(String, String)>) -> Self {
+        Self { names_of_decks: Names(names), ..self }
     }
 
     /// Adds forces between grains.
@@ -279,7 +287,12 @@ impl<'s> DumpObserver<'s> {
             }
         }
         let vector = |names: [&str; 3]| names.map(column);
-        let of_wall = |name: &str| ["x", "y", "z"].map(|axis| column(&format!("{name}.force_{axis}")));
+        let of_deck = |name: &str| {
+            let mut theirs = self.names_of_decks.0.iter().filter(|(ours, _)| ours == name);
+            theirs.find_map(|(_, theirs)| snapshot.column(theirs))
+        };
+        let force = |name: String| column(&name).or_else(|| of_deck(&name).filter(|_| names.in_file(&name) == name));
+        let of_wall = |name: &str| ["x", "y", "z"].map(|axis| force(format!("{name}.force_{axis}")));
         Ok(Columns {
             id,
             position,

@@ -5,12 +5,14 @@ use std::path::{Path, PathBuf};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::{Column, Series};
 use grainbench_solver::recorder::Recorder;
+use grainbench_solver::resolution::Resolution;
 
 use crate::clock::Clock;
+use crate::deck::{Deck, Program, logged, write_deck};
 use crate::observer::{DumpObserver, DumpRecord, Names};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
-use crate::read::log::read_log;
+use crate::read::log::{Log, read_log};
 use crate::read::numbers::quoted_names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
@@ -145,6 +147,8 @@ pub struct Outputs {
     /// Digits of the columns of each file, from all of its snapshots.
     digits: Vec<Vec<Digits>>,
     table: Option<Table>,
+    /// Log of the run, if there is one.
+    log: Option<Log>,
     /// Times of the steps, if they are known.
     clock: Option<Clock>,
     /// First and last step.
@@ -185,6 +189,7 @@ impl Outputs {
             files: Vec::new(),
             digits: Vec::new(),
             table: None,
+            log: None,
             clock: None,
             ends: [0; 2],
             origin: Origin { step: 0, time: None },
@@ -194,6 +199,7 @@ impl Outputs {
             sources,
         };
         let of_log = log.as_ref().and_then(Clock::of_log);
+        outputs.log.clone_from(&log);
         if let [file] = &outputs.sources.files[..]
             && kind(file)?.is_table()
         {
@@ -351,7 +357,10 @@ impl Outputs {
         if let Some(table) = &self.table {
             return self.observe_table(scene, table);
         }
-        let mut observer = DumpObserver::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
+        let decks = self.decks(scene);
+        let names = decks.first().map(|deck| &deck.names).into_iter().chain(decks.get(1).map(|deck| &deck.names));
+        let observer = DumpObserver::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
+        let mut observer = observer.with_names_of_decks(names.flat_map(|names| names.0.clone()).collect());
         // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
@@ -394,7 +403,35 @@ impl Outputs {
             }
         }
         let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
-        if last.is_some() { Ok(observer.finish()) } else { Err(OutputError::NoGrains(named)) }
+        if last.is_none() {
+            return Err(OutputError::NoGrains(named));
+        }
+        let mut observed = observer.finish();
+        self.add_logged(scene, &decks, &mut observed);
+        Ok(observed)
+    }
+
+    /// Returns our decks for the scene at the time step of the files. Their names of columns apply if one of them wrote
+    /// the files.
+    fn decks(&self, scene: &Scene) -> Vec<Deck> {
+        let Some(step) = self.time_step() else { return Vec::new() };
+        let deck = |program| write_deck(scene, &Resolution::TimeStep(step), program).ok();
+        Program::ALL.into_iter().filter_map(deck).collect()
+    }
+
+    /// Adds the quantities that our deck writes to the log, such as forces on walls. In LIGGGHTS, the force on a mesh is
+    /// missing in the first sample, so a deck with meshes is skipped.
+    fn add_logged(&self, scene: &Scene, decks: &[Deck], observed: &mut DumpRecord) {
+        let is_mesh = |(name, _): &(String, String)| name.ends_with(".stl");
+        let Some(log) = &self.log else { return };
+        let Some(deck) = decks.iter().find(|deck| !deck.files.iter().any(is_mesh)) else { return };
+        let mut series = observed.series.clone();
+        series.step.iter_mut().for_each(|step| *step += self.origin.step);
+        for (column, values) in logged::read(&deck.logged, log, &series) {
+            if values.iter().all(|value| value.is_finite()) {
+                observed.add(scene, &column, values);
+            }
+        }
     }
 
     /// Reads the next snapshot. Returns false at the end of the file, or where it is truncated if truncation is

@@ -37,6 +37,22 @@ const FORCE: [&str; 3] = ["force_x", "force_y", "force_z"];
 /// Our names for the columns of a separate tangential force.
 const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
 
+/// Columns of the contact dumps that our decks write: those of LAMMPS, with separate normal and tangential forces, and
+/// those of LIGGGHTS, whose column 3 is a flag for pairs across a periodic boundary.
+const OF_DECKS: [&[&str]; 2] = [
+    &[
+        "c_pairs[1]",
+        "c_pairs[2]",
+        "c_forces[1]",
+        "c_forces[2]",
+        "c_forces[3]",
+        "c_forces[4]",
+        "c_forces[5]",
+        "c_forces[6]",
+    ],
+    &["c_pairs[1]", "c_pairs[2]", "c_pairs[4]", "c_pairs[5]", "c_pairs[6]"],
+];
+
 /// Indices of columns in a dump of contacts: ids of two grains, and parts of the force on the first grain.
 pub(crate) struct PairColumns {
     pub(crate) ids: [usize; 2],
@@ -45,6 +61,9 @@ pub(crate) struct PairColumns {
 
 impl PairColumns {
     pub(crate) fn find(file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Self, ReadError> {
+        if let Some(columns) = Self::of_deck(snapshot, names) {
+            return Ok(columns);
+        }
         let column = |name: &str| snapshot.column(names.in_file(name));
         let missing = |what: &str| {
             let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
@@ -58,6 +77,16 @@ impl PairColumns {
             return Err(missing("`force_x` and `force_y`"));
         }
         Ok(Self { ids: [first, second], parts: [force, TANGENTIAL.map(column)] })
+    }
+
+    /// Returns the columns of a dump that one of our decks wrote, unless the ids have other names.
+    fn of_deck(snapshot: &DumpSnapshot, names: &Names) -> Option<Self> {
+        let has_names = names.in_file("id1") != "id1" || names.in_file("force_x") != "force_x";
+        let is_of =
+            |deck: &&&[&str]| snapshot.columns.iter().map(|column| column.name.as_str()).eq(deck.iter().copied());
+        let deck = OF_DECKS.iter().find(is_of).filter(|_| !has_names)?;
+        let part = |first: usize| [0, 1, 2].map(|axis| Some(first + axis).filter(|&at| at < deck.len()));
+        Some(Self { ids: [0, 1], parts: [part(2), part(5)] })
     }
 }
 

@@ -104,6 +104,17 @@ impl Headline {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
+    /// Returns the passed results out of all results, such as `3/5`; `not judged` if no result has a judgement.
+    #[must_use]
+    pub fn passed(self) -> String {
+        let unjudged = self.no_reference + self.unsupported + self.not_available;
+        if self.rows() > 0 && unjudged == self.rows() {
+            "not judged".to_owned()
+        } else {
+            format!("{}/{}", self.pass, self.rows())
+        }
+    }
+
     /// Returns the number of amber results: those that are inconclusive or have a documented error.
     #[must_use]
     pub fn amber(self) -> usize {

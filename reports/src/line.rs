@@ -90,7 +90,13 @@ fn place(case: &str, variant: &str) -> String {
 }
 
 fn within_case(verdict: &Verdict) -> String {
-    let mut line = format!("{} {} · {}", verdict.solver, verdict.resolution, verdict.quantity);
+    format!("{} {} · {}", verdict.solver, verdict.resolution, quantity(verdict))
+}
+
+/// Returns the line of a result without case, variant, solver and resolution: `quantity value, exact expected …`.
+#[must_use]
+pub fn quantity(verdict: &Verdict) -> String {
+    let mut line = verdict.quantity.clone();
     if verdict.outcome == Outcome::Broken {
         line.push_str(": broken");
     } else {

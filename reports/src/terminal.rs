@@ -78,7 +78,7 @@ fn row(section: &Section) -> [String; 6] {
     [
         section.name.clone(),
         headline::solvers(section).join(", "),
-        format!("{}/{}", counts.pass, counts.rows()),
+        counts.passed(),
         counts.amber().to_string(),
         worst,
         format!("{}/{}", counts.controls_red, counts.controls),
@@ -95,6 +95,22 @@ fn push_line(text: &mut String, cells: &[String; 6], widths: &[usize; 6]) {
 mod tests {
     use super::*;
     use crate::sample;
+    use grainbench_harness::verdict::Outcome;
+
+    /// A section without any judged result does not read as a failure.
+    #[test]
+    fn a_section_without_judgement_says_so() {
+        let passed = |outcomes: &[Outcome]| {
+            let row =
+                |outcome: &Outcome| Verdict { outcome: *outcome, ..sample::verdict("a", "lammps", "x", 1.0, 1.0, 0.1) };
+            let section =
+                Section { name: "a".to_owned(), verdicts: outcomes.iter().map(row).collect(), ..Section::default() };
+            super::row(&section)[2].clone()
+        };
+        assert_eq!(passed(&[Outcome::NotAvailable, Outcome::NoReference]), "not judged");
+        assert_eq!(passed(&[Outcome::NotAvailable, Outcome::Fail]), "0/2");
+        assert_eq!(passed(&[]), "0/0");
+    }
 
     #[test]
     fn reads_well() {

@@ -1,7 +1,7 @@
-//! Predictability horizon of a run. After it, means over time are compared, for quantities of the whole system and of walls.
+//! Predictability horizon of a run. After it, means over time are compared, for quantities of the whole system, of walls and for
+//! numbers of grains.
 
-use super::ours::{Plan, is_compared};
-use grainbench_dem::convention::Convention;
+use super::ours::{Plan, convention, is_compared, is_count};
 use grainbench_harness::compare::peers::{Peer, WIDE, together};
 use grainbench_harness::expect::Measurement;
 use grainbench_harness::statistics::{BLOCKS, difference};
@@ -11,6 +11,7 @@ use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_solver::perturbed::{PARTED, move_one};
+use grainbench_solver::record::Series;
 
 /// Largest accepted difference of two means, in units of half the 99 % confidence interval. It exceeds 1, because
 /// several columns are compared at once.
@@ -22,16 +23,29 @@ pub(super) fn find(scene: &Scene, plan: &Plan, ours: &[Peer]) -> Result<Option<f
     let Some(ours) = ours.first().filter(|_| scene.grains.len() > 1) else { return Ok(None) };
     let mut perturbed = scene.clone();
     move_one(&mut perturbed);
-    let perturbed = plan.run(&perturbed, Convention::DEFAULT, 1)?.series;
-    let parted = |at: &usize| -> Option<usize> {
-        let values = &ours.series.values[*at];
-        let others = perturbed.column(&ours.series.columns[*at].name)?;
-        let scale = PARTED * values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs()));
-        values.iter().zip(others).position(|(a, b)| (a - b).abs() > scale)
+    let perturbed = plan.run(&perturbed, convention(ours), 1)?.series;
+    Ok(parted(&ours.series, &perturbed, PARTED, false))
+}
+
+/// Returns the horizon (s), shortened to the last time at which a run agrees with the run at smaller time steps. In a run
+/// that amplifies rounding errors, the error of the time step grows in the same way, and no longer gives a tolerance.
+pub(super) fn shortened(horizon: f64, run: &Peer) -> f64 {
+    let apart = run.half_step.as_ref().and_then(|half| parted(&run.series, half, WIDE, true));
+    apart.map_or(horizon, |time| time.min(horizon))
+}
+
+/// Returns the time (s) of the last sample before a compared column of two runs differs by more than a fraction of its
+/// largest value, or of its largest displacement if `moved` is true; `None` if none differs.
+fn parted(run: &Series, other: &Series, fraction: f64, moved: bool) -> Option<f64> {
+    let first = |at: usize| -> Option<usize> {
+        let (column, values) = (&run.columns[at], &run.values[at]);
+        let start = values.first().copied().filter(|_| moved && column.unit == "m").unwrap_or_default();
+        let scale = fraction * values.iter().fold(0.0, |largest: f64, value| largest.max((value - start).abs()));
+        values.iter().zip(other.column(&column.name)?).position(|(a, b)| (a - b).abs() > scale)
     };
-    let compared = (0..ours.series.columns.len()).filter(|&at| is_compared(&ours.series.columns[at].name));
-    let first = compared.filter_map(|at| parted(&at)).min();
-    Ok(first.and_then(|first| ours.series.time.get(first.saturating_sub(1)).copied()))
+    let compared = (0..run.columns.len()).filter(|&at| is_compared(&run.columns[at].name));
+    let first = compared.filter_map(first).min()?;
+    run.time.get(first.saturating_sub(1)).copied()
 }
 
 /// Compares means over the time after the horizon (s). Only columns of the whole system and of walls are compared.
@@ -45,9 +59,15 @@ pub(super) fn beyond(
     let Some(ours) = ours.first() else { return Vec::new() };
     let columns = observed.series.columns.iter().zip(&observed.series.values);
     let rows = columns.filter(|(column, _)| is_of_all(scene, &column.name)).filter_map(|(column, values)| {
-        let (times, found, expected) = together(&observed.series, values, &ours.series, &column.name)?;
-        let from = times.partition_point(|&time| time <= horizon);
-        let quantity = format!("{}, mean after t = {} s", column.name, number::significant(horizon, 6));
+        let (times, mut found, mut expected) = together(&observed.series, values, &ours.series, &column.name)?;
+        let mut from = times.partition_point(|&time| time <= horizon);
+        let (mut mean, mut unit) = ("mean", column.unit.as_str());
+        if is_count(&column.name) {
+            // The mean of the rates is the flow rate.
+            (found, expected) = (rates(&times, &found), rates(&times, &expected));
+            (from, mean, unit) = (from.min(found.len()), "mean rate", "1/s");
+        }
+        let quantity = format!("{}, {mean} after t = {} s", column.name, number::significant(horizon, 6));
         let row = Verdict {
             source: format!("{}, after the predictability horizon", ours.name),
             tolerance: ToleranceOrigin::Interval,
@@ -56,11 +76,17 @@ pub(super) fn beyond(
                 "in units of half the 99 % confidence interval of the difference, from the means over {BLOCKS} blocks \
                  of time; {INTERVALS} units are allowed, because several columns are judged at once"
             ),
-            ..row(quantity, &column.unit)
+            ..row(quantity, unit)
         };
         Some(judged(row, &expected[from..], &found[from..]))
     });
     rows.collect()
+}
+
+/// Returns the rate of change between samples (1/s).
+fn rates(times: &[f64], values: &[f64]) -> Vec<f64> {
+    let steps = times.windows(2).zip(values.windows(2));
+    steps.map(|(time, value)| (value[1] - value[0]) / (time[1] - time[0])).collect()
 }
 
 /// Judges a mean. The result is amber if the confidence interval is too wide or there are too few samples.
@@ -87,6 +113,8 @@ fn judged(row: Verdict, expected: &[f64], found: &[f64]) -> Verdict {
 /// Returns true if a column is compared and belongs to the whole system or to a wall.
 fn is_of_all(scene: &Scene, name: &str) -> bool {
     let probe = name.rsplit_once('.').and_then(|(probe, _)| scene.probes.iter().find(|other| other.name == probe));
-    let is_of_all = |target: ProbeTarget| matches!(target, ProbeTarget::System | ProbeTarget::Wall(_));
+    let is_of_all = |target: ProbeTarget| {
+        matches!(target, ProbeTarget::System | ProbeTarget::Wall(_) | ProbeTarget::Stress | ProbeTarget::Count)
+    };
     is_compared(name) && probe.is_some_and(|probe| is_of_all(probe.target))
 }

@@ -18,8 +18,19 @@ pub(super) struct ErrorAllowance {
     pub(super) floor: f64,
     /// Factor for the change due to half the time step.
     pub(super) times: f64,
-    /// Description of the runs whose difference determines the allowed error.
-    pub(super) conventions: &'static str,
+    /// Treatment of the difference between the runs.
+    pub(super) between: Between,
+}
+
+/// Treatment of the difference between the nearest run and the other runs.
+#[derive(Clone, Copy, PartialEq)]
+pub(super) enum Between {
+    /// The difference is part of the allowed error; with the name of the runs.
+    Allowed(&'static str),
+    /// The difference is not allowed, because each run is a different convention.
+    Refused,
+    /// An error above the allowed error but within the difference is inconclusive.
+    Inconclusive,
 }
 
 /// Largest fraction of samples with an allowed error above [`WIDE`]. If the fraction is larger, the result is inconclusive.
@@ -32,17 +43,24 @@ pub(super) fn judged_in_time(
     beside: &ErrorAllowance,
     outputs: &Outputs,
 ) -> Verdict {
-    let allowed = |sample: &Sample| beside.floor + sample.between + beside.times * sample.halved;
+    let own = |sample: &Sample| beside.floor + beside.times * sample.halved;
+    let allowed = |sample: &Sample| match beside.between {
+        Between::Allowed(_) => own(sample) + sample.between,
+        Between::Refused | Between::Inconclusive => own(sample),
+    };
     let Some(decisive) = compared.decisive(|sample| allowed(sample) + compared.open) else {
         return row.left(Outcome::NoReference, "the output has no sample");
     };
     let DecisiveSample { sample, wide, first_outside, .. } = decisive;
-    let times = if beside.times == 1.0 { String::new() } else { format!(", times {}", beside.times) };
+    let times =
+        if beside.times == 1.0 { String::new() } else { format!(", times {}", number::significant(beside.times, 3)) };
+    let runs = match beside.between {
+        Between::Allowed(runs) => format!("{runs} differ by {}, ", number::fraction(sample.between)),
+        Between::Refused | Between::Inconclusive => String::new(),
+    };
     let because = format!(
-        "tolerance near t = {} s: {} differ by {}, halving the step changes {}{times}, plus {}",
+        "tolerance near t = {} s: {runs}halving the step changes {}{times}, plus {}",
         number::significant(sample.time, 6),
-        beside.conventions,
-        number::fraction(sample.between),
         number::fraction(sample.halved),
         number::fraction(beside.floor)
     );
@@ -52,7 +70,18 @@ pub(super) fn judged_in_time(
     match (row.outcome, first_outside) {
         (Outcome::Fail, Some(time)) => {
             let how = if row.error.is_none() { "not a number (NaN) from" } else { "first outside at" };
-            Verdict { detail: Some(format!("{how} t = {time:.6} s")), ..row }
+            let row = Verdict { detail: Some(format!("{how} t = {time:.6} s")), ..row };
+            let within = compared.decisive(|sample| own(sample) + sample.between + compared.open);
+            let is_within = within.is_some_and(|decisive| decisive.first_outside.is_none());
+            if matches!(beside.between, Between::Allowed(_)) || !is_within {
+                return row;
+            }
+            let words = format!("our conventions differ by {}", number::fraction(sample.between));
+            let detail = row.detail.clone().unwrap_or_default();
+            if beside.between == Between::Inconclusive {
+                return row.left(Outcome::NoReference, format!("{detail}; within the tolerance, because {words}"));
+            }
+            Verdict { detail: Some(format!("{detail}; {words} (--convention any makes this result amber)")), ..row }
         }
         (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
             let most = 100.0 * WIDE;

@@ -2,6 +2,7 @@
 //! solvers, and with stored runs of other programs.
 
 mod covered;
+mod error;
 mod exact;
 mod figures;
 mod horizon;
@@ -9,11 +10,16 @@ mod judgement;
 mod ours;
 mod power;
 mod start;
+mod stiffness;
 mod stored;
 mod subject;
+mod summary;
 
+pub use error::CheckError;
+pub use ours::ConventionChoice;
 pub use power::{Power, is_of_power};
-pub use subject::DeclaredScene;
+pub use subject::{DeclaredScene, StartFile};
+pub use summary::sentence;
 
 use covered::Coverage;
 use exact::exact;
@@ -25,67 +31,16 @@ use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::{OutputError, Outputs, steps_in_words};
+use grainbench_reference::outputs::{Outputs, steps_in_words};
 use grainbench_reports::Section;
-use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
-use ours::{Plan, ours};
+use ours::{Plan, nearest_first, ours};
 use power::CheckInputs;
-use start::{distance, misplaced};
+use start::{adopt, distance, misplaced};
 use std::sync::Arc;
 use subject::Candidate;
-use thiserror::Error;
-
-/// Reasons why output cannot be checked.
-#[derive(Debug, Error)]
-pub enum CheckError {
-    /// The files are damaged or incomplete.
-    #[error(transparent)]
-    Output(#[from] OutputError),
-    /// The scene of the case is invalid.
-    #[error(transparent)]
-    Scene(#[from] SceneError),
-    /// The output matches the start of several variants.
-    #[error(
-        "{file}: expected the name of a variant, because several variants of {case} have this start; found none of \
-             {variants}"
-    )]
-    Ambiguous {
-        /// Files of the output.
-        file: String,
-        /// Name of the case.
-        case: String,
-        /// Names of the matching variants.
-        variants: String,
-    },
-    /// A time step of the files is at or above the critical one.
-    #[error(
-        "{file}: expected a time step below the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found {step} s, \
-         {:.3} of it (--allow-unstable permits it)",
-        .step / .critical
-    )]
-    Unstable {
-        /// Files of the output.
-        file: String,
-        /// Critical time step (s).
-        critical: f64,
-        /// Longest time step of the files (s).
-        step: f64,
-    },
-    /// The output belongs to another scene.
-    #[error("{file}: expected the start of a scene of {case}, {expected}; found {found}")]
-    OtherScene {
-        /// Files of the output.
-        file: String,
-        /// Name of the case, with its variant.
-        case: String,
-        /// Value in the scene of the first quantity that differs.
-        expected: String,
-        /// Value of this quantity in the output.
-        found: String,
-    },
-}
 
 /// Options of a check: accepted incompleteness, accepted time steps and extent of the power search.
 #[derive(Clone, Copy, Debug, Default)]
@@ -96,6 +51,8 @@ pub struct Options {
     pub allow_unstable: bool,
     /// Extent of the search for changes of the scene that the output reveals.
     pub power: Power,
+    /// Contact convention with which the output is compared.
+    pub convention: ConventionChoice,
 }
 
 /// Checks output against a case or a scene file. If no variant of a case is named, the first sample selects the variant.
@@ -109,7 +66,7 @@ pub struct Options {
 pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -> Result<Section, CheckError> {
     let mut first_miss = None;
     let mut matching: Vec<(Candidate, DumpRecord)> = Vec::new();
-    for candidate in subject.candidates()? {
+    for mut candidate in subject.candidates()? {
         let observed = outputs.observe(&candidate.scene);
         let observed = match (observed, &first_miss) {
             (Ok(observed), _) => observed,
@@ -120,9 +77,11 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
             }
             (Err(_), Some(_)) => continue,
         };
+        adopt(&mut candidate.scene, &candidate.moved, &observed);
         match misplaced(&candidate.scene, outputs, &observed) {
             None => matching.push((candidate, observed)),
             Some((expected, found)) if first_miss.is_none() => {
+                let found = found + &stiffness::at_start(&candidate.scene, &observed);
                 first_miss =
                     Some(CheckError::OtherScene { file: outputs.name(), case: subject.place(), expected, found });
             }
@@ -207,12 +166,17 @@ fn section(
     let amber = |reason: String| (Outcome::NoReference, reason);
     let unknown = || amber("the files do not contain the time step (--time-step sets it)".to_owned());
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));
-    let of_ours = plan.and_then(|plan| against_ours(&candidate.scene, plan).map_err(amber));
+    let run = |plan| against_ours(&candidate.scene, plan, observed, options.convention).map_err(amber);
+    let of_ours = plan.and_then(run);
     let (verdicts_of_ours, figures) = match of_ours {
         Ok(of_ours) => {
             let made = of_ours.made(candidate, outputs, observed, covered);
             let power = if subject.case().is_some() { Power::Off } else { options.power };
-            (rows_of_ours(&made, power, &row), figures(&of_ours.peers, &file, observed))
+            let mut rows = rows_of_ours(&made, power, &row);
+            let is_red = rows.iter().any(|row| row.outcome == Outcome::Fail);
+            let hint = of_ours.end.as_ref().filter(|_| is_red);
+            rows.extend(hint.and_then(|end| stiffness::at_end(&candidate.scene, observed, end, &row)));
+            (rows, figures(&of_ours.peers, &file, observed))
         }
         Err((Outcome::Fail, reason)) if options.partial => {
             let reason = format!("{reason}; accepted because of --partial");
@@ -233,7 +197,7 @@ fn section(
         Some(case) => (case.derivation, case.weakness),
         None => ("", "A scene without a case has no exact solution here. Our solvers are the only reference."),
     };
-    Section {
+    let section = Section {
         name: subject.name(),
         title: format!("{}: {file}", subject.title()),
         claim: format!(
@@ -247,13 +211,18 @@ fn section(
         figures,
         verdicts,
         ..Section::default()
-    }
+    };
+    Section { claim: format!("{} {}", sentence(&section), section.claim), ..section }
 }
 
 /// Our runs of a scene.
 struct OwnRuns {
     plan: Plan,
+    choice: ConventionChoice,
+    /// Runs, with the nearest or chosen convention first.
     peers: Vec<Peer>,
+    /// Last snapshot of the first run.
+    end: Option<Snapshot>,
     /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
     horizon: Option<f64>,
 }
@@ -267,14 +236,16 @@ impl OwnRuns {
         covered: &'c Coverage,
     ) -> CheckInputs<'c> {
         let (plan, ours, horizon, scene) = (&self.plan, &self.peers, self.horizon, &candidate.scene);
-        CheckInputs { scene, plan, ours, horizon, outputs, observed, covered }
+        CheckInputs { scene, plan, ours, choice: self.choice, horizon, outputs, observed, covered }
     }
 }
 
-fn against_ours(scene: &Scene, plan: Plan) -> Result<OwnRuns, String> {
-    let peers = ours(scene, &plan)?;
+fn against_ours(scene: &Scene, plan: Plan, observed: &DumpRecord, choice: ConventionChoice) -> Result<OwnRuns, String> {
+    let (mut peers, mut ends) = ours(scene, &plan)?;
     let horizon = horizon::find(scene, &plan, &peers)?;
-    Ok(OwnRuns { plan, peers, horizon })
+    let nearest = nearest_first(scene, &plan, &mut peers, observed, horizon, choice)?;
+    let horizon = horizon.map(|horizon| horizon::shortened(horizon, &peers[0]));
+    Ok(OwnRuns { plan, choice, peers, end: ends.swap_remove(nearest), horizon })
 }
 
 /// Compares the output with our runs, sample by sample up to the horizon and by means after it. Adds the results about

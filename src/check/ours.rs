@@ -1,7 +1,7 @@
 //! Comparison of output with our solvers on the same scene.
 
 use super::covered::Coverage;
-use super::judgement::{ErrorAllowance, judged_in_time};
+use super::judgement::{Between, ErrorAllowance, judged_in_time};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::compare::peers::{ColumnComparison, Peer, against};
@@ -11,8 +11,65 @@ use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
-use grainbench_solver::record::Record;
+use grainbench_solver::record::{Record, Series, Snapshot};
 use grainbench_solver::refined::refined;
+
+/// Contact convention with which the output is compared.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum ConventionChoice {
+    /// The nearest of our conventions. An error outside its own tolerance is red.
+    #[default]
+    Nearest,
+    /// The convention of the solver with this name.
+    Named(&'static str),
+    /// The nearest of our conventions. An error outside its own tolerance is amber if our conventions differ as much.
+    Any,
+}
+
+impl ConventionChoice {
+    /// Names on the command line.
+    pub const NAMES: [&'static str; 6] = ["nearest", "any", "dem", "dem:1979", "dem:lammps", "dem:liggghts"];
+
+    /// Returns the choice with a name from [`Self::NAMES`].
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "nearest" => Some(Self::Nearest),
+            "any" => Some(Self::Any),
+            name => CONVENTIONS.iter().find(|other| other.name == name).map(|other| Self::Named(other.name)),
+        }
+    }
+
+    const fn only(self) -> Option<&'static str> {
+        match self {
+            Self::Named(name) => Some(name),
+            Self::Nearest | Self::Any => None,
+        }
+    }
+}
+
+/// Returns the runs up to a time (s).
+pub(super) fn until(runs: &[Peer], time: f64) -> Vec<Peer> {
+    let cut = |series: &Series| {
+        let mut series = series.clone();
+        let keep = series.time.partition_point(|&sample| sample <= time);
+        series.step.truncate(keep);
+        series.time.truncate(keep);
+        series.values.iter_mut().for_each(|values| values.truncate(keep));
+        series
+    };
+    let run = |run: &Peer| Peer {
+        name: run.name.clone(),
+        series: cut(&run.series),
+        half_step: run.half_step.as_ref().map(cut),
+    };
+    runs.iter().map(run).collect()
+}
+
+/// Returns the contact convention of one of our runs.
+pub(super) fn convention(run: &Peer) -> Convention {
+    CONVENTIONS.into_iter().find(|other| other.name == run.name).unwrap_or(Convention::DEFAULT)
+}
 
 /// Contact conventions of our runs, the default first.
 const CONVENTIONS: [Convention; 4] =
@@ -83,43 +140,84 @@ impl Plan {
     }
 }
 
-/// Runs a scene up to the last sample of the output with each of our contact conventions. The run in the LAMMPS
-/// convention is repeated with smaller time steps.
-pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<Vec<Peer>, String> {
+/// Runs a scene up to the last sample of the output with each of our contact conventions. Also returns the last snapshot
+/// of each run.
+pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<(Vec<Peer>, Vec<Option<Snapshot>>), String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {
         return Err(format!("{last} steps of {} s exceed the limit of work for our solvers", plan.step));
     }
-    let peer = |convention: Convention| {
-        let run = |parts: u64| plan.run(scene, convention, parts).map(|record| record.series);
-        let half_step = (convention == Convention::LAMMPS).then(|| run(plan.parts)).transpose()?;
-        Ok(Peer { name: convention.name.to_owned(), series: run(1)?, half_step })
+    let run = |convention: Convention| {
+        let Record { series, mut snapshots, .. } = plan.run(scene, convention, 1)?;
+        Ok((Peer { name: convention.name.to_owned(), series, half_step: None }, snapshots.pop()))
     };
-    CONVENTIONS.map(peer).into_iter().collect()
+    CONVENTIONS.map(run).into_iter().collect::<Result<Vec<_>, String>>().map(|runs| runs.into_iter().unzip())
+}
+
+/// Moves the run in the nearest or chosen convention to the front, and repeats it with smaller time steps. Samples after
+/// the horizon (s) do not count for the nearest convention. Returns the previous index of the run.
+pub(super) fn nearest_first(
+    scene: &Scene,
+    plan: &Plan,
+    peers: &mut [Peer],
+    observed: &DumpRecord,
+    horizon: Option<f64>,
+    choice: ConventionChoice,
+) -> Result<usize, String> {
+    let mut seen = observed.clone();
+    if let Some(horizon) = horizon {
+        seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
+    }
+    let runs = until(peers, horizon.unwrap_or(f64::INFINITY));
+    let name = against_runs(scene, &runs, &seen, choice).map(|(name, _)| name);
+    let nearest = peers.iter().position(|peer| Some(peer.name.as_str()) == name).unwrap_or_default();
+    peers[..=nearest].rotate_right(1);
+    peers[0].half_step = Some(plan.run(scene, convention(&peers[0]), plan.parts)?.series);
+    Ok(nearest)
 }
 
 fn common_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
-/// Returns true if a column is compared: motion, kinetic energy, contact forces or forces on walls.
+/// Returns true if a column is compared: motion, kinetic energy, contact forces, forces on walls, mean stress, or numbers
+/// of grains that are present and that have left.
 pub(super) fn is_compared(name: &str) -> bool {
     let quantity = name.rsplit_once('.').map_or(name, |(_, quantity)| quantity);
     ["x", "y", "z", "vx", "vy", "vz", "kinetic_energy", "normal_force", "shear_force"].contains(&quantity)
         || quantity.starts_with("omega")
         || quantity.starts_with("force_")
+        || quantity.starts_with("sigma_")
+        || is_count(name)
 }
 
-/// Compares all columns with our run in the contact convention nearest to the output. The allowed error contains the
-/// difference between the conventions and the change due to smaller time steps.
+/// Returns true if a column counts grains.
+pub(super) fn is_count(name: &str) -> bool {
+    name.ends_with(".present") || name.ends_with(".left")
+}
+
+/// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the change
+/// of this run due to smaller time steps.
 pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],
+    choice: ConventionChoice,
     outputs: &Outputs,
     observed: &DumpRecord,
     covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Vec<Verdict> {
+    let Some((name, columns)) = against_runs(scene, ours, observed, choice) else { return Vec::new() };
+    columns.into_iter().map(|compared| column(&compared, name, choice, outputs, covered, row)).collect()
+}
+
+/// Compares the columns with the nearest or chosen run. Returns its name and one comparison per column.
+fn against_runs<'a>(
+    scene: &Scene,
+    ours: &'a [Peer],
+    observed: &'a DumpRecord,
+    choice: ConventionChoice,
+) -> Option<(&'a str, Vec<ColumnComparison<'a>>)> {
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     let mass: f64 = scene.grains.iter().map(|grain| grain.mass).sum();
     let end = observed.series.time.last().copied().unwrap_or_default();
@@ -133,31 +231,41 @@ pub(super) fn compare(
             "m" => way,
             "m/s" => speed,
             "rad/s" => extent("rad/s").max(speed / radius),
-            "N" => extent("N"),
+            "N" | "Pa" => extent(unit),
+            "1" => extent("1").max(1.0),
             _ => extent("J").max(0.5 * mass * (1e-3 * speed).powi(2)),
         }
     };
-    let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, ours, is_compared, scale) else {
-        return Vec::new();
-    };
-    columns.into_iter().map(|compared| column(&compared, nearest, outputs, covered, row)).collect()
+    against(&observed.series, &observed.uncertainty, ours, choice.only(), is_compared, scale)
 }
 
 fn column(
     compared: &ColumnComparison<'_>,
-    nearest: &str,
+    name: &str,
+    choice: ConventionChoice,
     outputs: &Outputs,
     covered: &Coverage,
     row: &dyn Fn(String, &str) -> Verdict,
 ) -> Verdict {
     // Programs print forces that depend on velocities half a step later than the velocities that moved the grains. For
     // a dashpot, this difference is twice the change due to half the time step, so three times this change is allowed.
-    let times = if compared.unit == "N" { 3.0 } else { 1.0 };
+    let times = if matches!(compared.unit, "N" | "Pa") { 3.0 } else { 1.0 };
+    // A grain may cross the edge of a box between two samples in one run and after them in the other.
+    let floor = if is_count(compared.name) { 1.0 / compared.scale } else { FLOOR };
     let row = Verdict {
-        source: format!("{nearest}, our nearest convention, at the time step of the file"),
+        source: format!("{name}, {}, at the time step of the file", how_chosen(choice)),
         tolerance: ToleranceOrigin::Computed,
         ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };
-    let beside = ErrorAllowance { floor: FLOOR, times, conventions: "conventions" };
+    let between = if choice == ConventionChoice::Any { Between::Inconclusive } else { Between::Refused };
+    let beside = ErrorAllowance { floor, times, between };
     covered.all(compared.samples.len(), judged_in_time(row, compared, &beside, outputs))
+}
+
+/// Returns the words of a source that say how the convention was chosen.
+pub(super) const fn how_chosen(choice: ConventionChoice) -> &'static str {
+    match choice {
+        ConventionChoice::Named(_) => "the chosen convention",
+        ConventionChoice::Nearest | ConventionChoice::Any => "our nearest convention",
+    }
 }

@@ -3,7 +3,7 @@
 
 use super::covered::Coverage;
 use super::horizon;
-use super::ours::{Plan, compare, is_compared};
+use super::ours::{ConventionChoice, Plan, compare, convention, is_compared, until};
 use grainbench_dem::convention::Convention;
 use grainbench_harness::compare::peers::{Peer, together};
 use grainbench_harness::evidence::Evidence;
@@ -74,6 +74,7 @@ pub(super) struct CheckInputs<'c> {
     pub(super) scene: &'c Scene,
     pub(super) plan: &'c Plan,
     pub(super) ours: &'c [Peer],
+    pub(super) choice: ConventionChoice,
     /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
     pub(super) horizon: Option<f64>,
     pub(super) outputs: &'c Outputs,
@@ -88,7 +89,9 @@ impl CheckInputs<'_> {
         if let Some(horizon) = self.horizon {
             seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
         }
-        let mut rows = compare(self.scene, self.ours, self.outputs, &seen, &self.covered.by(&seen), row);
+        let truncated = self.horizon.map(|horizon| until(self.ours, horizon));
+        let ours = truncated.as_deref().unwrap_or(self.ours);
+        let mut rows = compare(self.scene, ours, self.choice, self.outputs, &seen, &self.covered.by(&seen), row);
         rows.extend(
             self.horizon.into_iter().flat_map(|from| horizon::beyond(self.scene, self.ours, observed, from, row)),
         );
@@ -155,7 +158,8 @@ impl CheckInputs<'_> {
             }
             *left =
                 left.checked_sub(1).ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
-            let record = self.plan.run(scene, Convention::DEFAULT, 1)?;
+            let nearest = self.ours.first().map_or(Convention::DEFAULT, convention);
+            let record = self.plan.run(scene, nearest, 1)?;
             if !self.is_red(&record.series) {
                 return Ok(false);
             }

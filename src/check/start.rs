@@ -11,6 +11,24 @@ use grainbench_scene::scene::{ProbeTarget, Scene};
 const START: f64 = 1e-9;
 const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Largest distance from the position that follows from a changed radius at which the position of the file is used, as a
+/// fraction of the radius. The overlap at rest depends on the stiffness.
+const ADOPTED: f64 = 0.05;
+
+/// Moves grains whose positions follow a changed radius to their positions in the first snapshot, if these are near.
+pub(super) fn adopt(scene: &mut Scene, moved: &[usize], observed: &DumpRecord) {
+    let printed = observed.snapshots.first().map_or(&[][..], |first| &first.grains);
+    for found in printed {
+        let place = found.id as usize - 1;
+        let axes = scene.dimension.count();
+        let Some(grain) = scene.grains.get_mut(place).filter(|_| moved.contains(&place)) else { continue };
+        let near = ADOPTED * grain.radius;
+        if (0..axes).all(|axis| (found.position[axis] - grain.position[axis]).abs() <= near) {
+            (0..axes).for_each(|axis| grain.position[axis] = found.position[axis]);
+        }
+    }
+}
+
 /// A quantity of a grain in the first sample.
 struct Start {
     name: String,

@@ -1,7 +1,7 @@
 //! Comparison of output with stored runs of LAMMPS and LIGGGHTS of the same scene.
 
 use super::covered::Coverage;
-use super::judgement::{ErrorAllowance, judged_in_time};
+use super::judgement::{Between, ErrorAllowance, judged_in_time};
 use super::ours::is_compared;
 use super::subject::Candidate;
 use grainbench_cases::stored;
@@ -23,7 +23,8 @@ const SAFETY: f64 = 6.0;
 const FLOOR: f64 = 1e-6;
 
 /// Compares each column with the stored run that is nearest to the output, at the sample times that both have. The
-/// allowed error contains the difference between the stored runs and the uncertainty of the stored run.
+/// allowed error contains the difference between the stored runs and the uncertainty of the run with the longer time step,
+/// which is the stored run or the output.
 pub(super) fn compare(
     case: &Case,
     candidate: &Candidate,
@@ -34,9 +35,12 @@ pub(super) fn compare(
 ) -> Vec<Verdict> {
     let runs = runs(case, candidate);
     let scale = |extent: &dyn Fn(&str) -> f64, unit: &str| extent(unit);
-    let Some((nearest, columns)) = against(&observed.series, &observed.uncertainty, &runs, is_compared, scale) else {
-        return Vec::new();
-    };
+    let compared = against(&observed.series, &observed.uncertainty, &runs, None, is_compared, scale);
+    let Some((nearest, columns)) = compared else { return Vec::new() };
+    // The discretisation error is of first order, so it is proportional to the time step.
+    let step_of_stored = runs.iter().find(|run| run.name == nearest).and_then(|run| time_step(&run.series));
+    let ratio = outputs.time_step().zip(step_of_stored).map_or(1.0, |(of_files, of_stored)| of_files / of_stored);
+    let coarser = if ratio > 1.0 + 1e-6 { ratio } else { 1.0 };
     let rows = columns.into_iter().map(|compared| {
         let until = number::significant(compared.samples.last().map_or(0.0, |sample| sample.time), 6);
         let row = Verdict {
@@ -47,11 +51,14 @@ pub(super) fn compare(
                 compared.unit,
             )
         };
-        let beside = ErrorAllowance { floor: FLOOR, times: SAFETY, conventions: "stored runs" };
-        covered.dense_in(
-            compared.samples.iter().map(|sample| sample.time),
-            judged_in_time(row, &compared, &beside, outputs),
-        )
+        let times = SAFETY * coarser;
+        let beside = ErrorAllowance { floor: FLOOR, times, between: Between::Allowed("stored runs") };
+        let mut row = judged_in_time(row, &compared, &beside, outputs);
+        if coarser > 1.0 {
+            let steps = number::significant(coarser, 3);
+            row.because.push_str(&format!("; the step of the files is {steps} times that of the stored run"));
+        }
+        covered.dense_in(compared.samples.iter().map(|sample| sample.time), row)
     });
     rows.collect()
 }
@@ -71,6 +78,12 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
             })
         })
         .collect()
+}
+
+/// Returns the mean time step of a series (s).
+fn time_step(series: &Series) -> Option<f64> {
+    let (time, step) = series.time.last().zip(series.step.last())?;
+    (*step > 0).then(|| time / *step as f64)
 }
 
 /// Returns the samples up to the last predictable step.

@@ -1,10 +1,24 @@
 //! Scene with which the output is compared: a case, with or without changed parameters, or a scene file of the user.
 
+use super::error::CheckError;
+use crate::adapt::{AdaptedScene, adapted};
 use grainbench_harness::case::{Case, PLAIN};
 use grainbench_harness::claim::{Claim, ParameterVariation};
 use grainbench_harness::tolerance::computed;
+use grainbench_reference::observer::Names;
+use grainbench_reference::read_start;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
+use std::path::PathBuf;
+
+/// File whose first sample gives sizes, masses and motion of the grains at the start.
+#[derive(Clone, Debug)]
+pub struct StartFile {
+    /// Path of the file.
+    pub path: PathBuf,
+    /// Names of its columns.
+    pub names: Names,
+}
 
 /// Scene that the user states for the output.
 pub enum DeclaredScene<'s> {
@@ -16,6 +30,8 @@ pub enum DeclaredScene<'s> {
         variant: Option<&'s str>,
         /// Changed keys of the scene with their values.
         set: &'s [(String, String)],
+        /// File that gives the start of the scene, if any.
+        like: Option<StartFile>,
     },
     /// A scene file of the user.
     Scene {
@@ -25,6 +41,8 @@ pub enum DeclaredScene<'s> {
         scene: Box<Scene>,
         /// The scene without changed keys; `None` if it is incomplete without them.
         own: Option<Box<Scene>>,
+        /// Indices of the grains whose positions follow a changed radius.
+        moved: Vec<usize>,
     },
 }
 
@@ -40,7 +58,7 @@ impl DeclaredScene<'_> {
     /// Returns the case if none of its parameters is changed, so that its stored runs can be used.
     pub(super) const fn as_stored(&self) -> Option<&'static Case> {
         match self {
-            Self::Case { case, set: [], .. } => Some(case),
+            Self::Case { case, set: [], like: None, .. } => Some(case),
             _ => None,
         }
     }
@@ -69,13 +87,14 @@ impl DeclaredScene<'_> {
     }
 
     /// Returns all scenes to which the output may belong.
-    pub(super) fn candidates(&self) -> Result<Vec<Candidate>, SceneError> {
+    pub(super) fn candidates(&self) -> Result<Vec<Candidate>, CheckError> {
         match *self {
-            Self::Case { case, variant, set: [] } => candidates(case, variant),
-            Self::Case { case, variant, set } => with_other_numbers(case, variant, set),
-            Self::Scene { ref scene, ref own, .. } => {
+            Self::Case { case, variant, set: [], like: None } => Ok(candidates(case, variant)?),
+            Self::Case { case, variant, set, ref like } => with_other_numbers(case, variant, set, like.as_ref()),
+            Self::Scene { ref scene, ref own, ref moved, .. } => {
                 let (scene, own) = ((**scene).clone(), own.as_deref().cloned());
-                Ok(vec![Candidate { variant: PLAIN.to_owned(), scene, own, claims: Vec::new() }])
+                let moved = moved.clone();
+                Ok(vec![Candidate { variant: PLAIN.to_owned(), scene, own, moved, claims: Vec::new() }])
             }
         }
     }
@@ -87,6 +106,8 @@ pub(super) struct Candidate {
     pub(super) scene: Scene,
     /// The scene without changed keys. Its sampling interval determines the longest accepted interval between samples.
     pub(super) own: Option<Scene>,
+    /// Indices of the grains whose positions follow a changed radius.
+    pub(super) moved: Vec<usize>,
     /// Claims about this scene.
     pub(super) claims: Vec<Claim>,
 }
@@ -101,7 +122,13 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
     let mut candidates: Vec<Candidate> = Vec::new();
     for name in names {
         let scene = case.variant(&name)?;
-        candidates.push(Candidate { own: Some(scene.clone()), scene, variant: name, claims: Vec::new() });
+        candidates.push(Candidate {
+            own: Some(scene.clone()),
+            scene,
+            variant: name,
+            moved: Vec::new(),
+            claims: Vec::new(),
+        });
     }
     for claim in (case.claims)() {
         let [run] = &claim.runs[..] else { continue };
@@ -115,7 +142,10 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
         let variant = run.variant.to_owned();
         match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
             Some(candidate) => candidate.claims.push(claim),
-            None => candidates.push(Candidate { variant, own: Some(scene.clone()), scene, claims: vec![claim] }),
+            None => {
+                let (own, moved) = (Some(scene.clone()), Vec::new());
+                candidates.push(Candidate { variant, own, scene, moved, claims: vec![claim] });
+            }
         }
     }
     Ok(candidates)
@@ -126,17 +156,20 @@ fn with_other_numbers(
     case: &'static Case,
     variant: Option<&str>,
     set: &[(String, String)],
-) -> Result<Vec<Candidate>, SceneError> {
+    like: Option<&StartFile>,
+) -> Result<Vec<Candidate>, CheckError> {
     let mut names = case.variants()?;
     names.retain(|name| variant.is_none_or(|variant| variant == name));
     let candidate = |name: String| {
         let source = if name == PLAIN { case.source() } else { case.source().variant(&name) };
-        let source = set.iter().fold(source, |source, (path, value)| source.set(path, value));
-        let scene = source.scene(&case.home.read_grains)?;
+        let AdaptedScene { mut scene, moved, .. } = adapted(&source, set)?;
+        if let Some(StartFile { path, names }) = like {
+            read_start(path, names, &mut scene)?;
+        }
         let claims =
             (case.claims)().into_iter().filter(|claim| matches!(&claim.runs[..], [run] if run.variant == name));
         let claims = claims.filter_map(|claim| elsewhere(claim, &scene)).collect();
-        Ok(Candidate { own: Some(case.variant(&name)?), variant: name, scene, claims })
+        Ok(Candidate { own: Some(case.variant(&name)?), variant: name, scene, moved, claims })
     };
     names.into_iter().map(candidate).collect()
 }

@@ -7,10 +7,15 @@ use super::publish::{Output, add_reasons, is_judged, publish};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
-use grainbench::check::{DeclaredScene, Options, Power, check as judge, is_of_power};
+use grainbench::adapt::AdaptedScene;
+use grainbench::check::{
+    ConventionChoice, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, sentence,
+};
+use grainbench::harness::expect::ExpectedValue;
 use grainbench::harness::verdict::{self, Severity, Verdict};
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
+use grainbench::reference::read_start;
 use grainbench::reports::{Report, Section, line};
 use grainbench::scene::scene::Scene;
 use std::fs;
@@ -20,13 +25,21 @@ use std::time::Instant;
 
 #[derive(Clone, clap::Args)]
 pub(crate) struct Arguments {
-    /// Case, variant of a case, or scene file.
-    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml", required_unless_present = "all")]
+    /// Case, variant of a case, folder of a case, or scene file.
+    #[arg(value_name = "CASE|CASE/VARIANT|FOLDER|SCENE.toml", required_unless_present = "all")]
     scene: Option<String>,
     /// Override one key of the scene, if your run has other parameters than the case. Exact solutions are computed for
-    /// the new value. Repeatable.
+    /// the new value. Positions follow a changed radius, and `law = "hertz"` removes linear stiffness. Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
+    /// Take radii, masses, positions, velocities, spins and periodic bounds from the first sample of this file, for
+    /// example of your dump. The start of the scene is then not tested.
+    #[arg(long, value_name = "FILE")]
+    like: Option<PathBuf>,
+    /// Contact convention with which your output is compared: a solver such as `dem:lammps`, or the `nearest` one.
+    /// `any` takes the nearest one too, but reports differences within those between our conventions as amber.
+    #[arg(long, value_name = "NAME", default_value = "nearest", value_parser = ConventionChoice::NAMES)]
+    convention: String,
     /// Output files, plain or compressed by gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at
     /// the same steps; VTK files (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`); NumPy arrays (`.npz`); CSV tables of
     /// grains from ParaView, one per time or one for all times; one CSV table of probes.
@@ -34,7 +47,7 @@ pub(crate) struct Arguments {
     dump: Vec<PathBuf>,
     /// Check all outputs in this directory. The output of a case is in `DIR/CASE` or `DIR/CASE/VARIANT`. A folder
     /// without output is red.
-    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "dump", "log", "map"])]
+    #[arg(long, value_name = "DIR", conflicts_with_all = ["scene", "set", "like", "dump", "log", "map"])]
     all: Option<PathBuf>,
     /// File name that `--all` ignores, or a quoted pattern such as `'*.log'`. Repeatable. Any other file that is not
     /// output is red.
@@ -86,6 +99,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
             let (section, name) = one(arguments, scene)?;
             words.extend([scene.clone(), name]);
             words.extend(arguments.set.iter().map(|(path, value)| format!("--set {path}={value}")));
+            words.extend(arguments.like.iter().map(|file| format!("--like {}", file.display())));
             vec![section]
         }
         (None, Some(folder)) => {
@@ -104,20 +118,28 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     });
     add_reasons(&mut report, !is_told, arguments.strict);
     let Arguments { out, json, strict, .. } = arguments;
-    publish(&report, &Output { text: Some(rows(&report)), ..Output::new(out, *json, *strict) })
+    publish(&report, &Output { text: Some(text(&report)), ..Output::new(out, *json, *strict) })
 }
 
 /// Checks one output. Returns its section and the name of the output for the page.
 fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
-    let is_file = Path::new(scene).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    let subject = if is_file {
-        let (own, _) = subject::scene(scene, &arguments.set)?;
+    let like = || {
+        let names = Names(arguments.map.clone());
+        arguments.like.clone().map(|path| StartFile { path, names })
+    };
+    let subject = if subject::is_scene_file(scene) {
+        let (adapted, _) = subject::adapted_scene(scene, &arguments.set)?;
+        subject::tell_implied(&adapted.implied);
+        let AdaptedScene { scene: mut own, moved, .. } = adapted;
+        if let Some(StartFile { path, names }) = like() {
+            read_start(&path, &names, &mut own).map_err(Fault::input)?;
+        }
         let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let unchanged = subject::scene(scene, &[]).ok().map(|(unchanged, _)| Box::new(unchanged));
-        DeclaredScene::Scene { name, scene: Box::new(own), own: unchanged }
+        DeclaredScene::Scene { name, scene: Box::new(own), own: unchanged, moved }
     } else {
-        let Variant { case, variant } = Variant::read(scene)?;
-        DeclaredScene::Case { case, variant, set: &arguments.set }
+        let Variant { case, variant } = Variant::read_with_folders(scene)?;
+        DeclaredScene::Case { case, variant, set: &arguments.set, like: like() }
     };
     let beside = || {
         arguments
@@ -142,7 +164,9 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         "full" => Power::Full,
         _ => Power::Limited,
     };
-    let options = Options { partial: arguments.partial, allow_unstable: arguments.allow_unstable, power };
+    let Arguments { partial, allow_unstable, .. } = *arguments;
+    let convention = ConventionChoice::by_name(&arguments.convention).unwrap_or_default();
+    let options = Options { partial, allow_unstable, power, convention };
     let section = judge(&subject, &outputs, options).map_err(Fault::input)?;
     Ok((section, outputs.name()))
 }
@@ -264,15 +288,54 @@ fn most_rows(subject: &DeclaredScene<'_>) -> Result<u64, Fault> {
     Ok(most as u64)
 }
 
-/// Returns a table of all results of a report, followed by the number of results of each colour.
-pub(crate) fn rows(report: &Report) -> String {
+/// Returns the text of a check: for each output, the outcome in words, the files with their time step, and the results.
+/// The number of results of each colour follows.
+fn text(report: &Report) -> String {
+    let mut text = String::new();
+    for section in &report.sections {
+        let Some(first) = section.verdicts.first() else { continue };
+        text.push_str(&format!("{}\n", sentence(section)));
+        let is_one = |row: &Verdict| {
+            (&row.solver, &row.resolution, &row.variant) == (&first.solver, &first.resolution, &first.variant)
+        };
+        let is_of_one_file = section.verdicts.iter().all(is_one) && !first.solver.is_empty();
+        if is_of_one_file {
+            let place =
+                if first.variant.is_empty() { first.case.clone() } else { format!("{}/{}", first.case, first.variant) };
+            text.push_str(&format!("{place} · {} · {}\n", first.solver, first.resolution));
+        }
+        let is_zero = |row: &&Verdict| {
+            row.outcome == verdict::Outcome::Pass
+                && row.value == Some(0.0)
+                && row.expected == Some(ExpectedValue::Value(0.0))
+        };
+        for row in section.verdicts.iter().filter(|row| !is_zero(row)) {
+            let line = if is_of_one_file { line::quantity(row) } else { line::verdict_in_section(row) };
+            text.push_str(&format!("{:<12} {line}\n{:<12} {}\n", row.outcome.word(), "", row.because));
+        }
+        let name = |row: &Verdict| row.quantity.split(", ").next().unwrap_or_default().to_owned();
+        let zeros: Vec<String> = section.verdicts.iter().filter(is_zero).map(name).collect();
+        if !zeros.is_empty() {
+            text.push_str(&format!("{:<12} exactly zero as expected: {}\n", "pass", zeros.join(", ")));
+        }
+    }
+    text + &counts(report)
+}
+
+/// Returns the number of results of each colour.
+fn counts(report: &Report) -> String {
     let rows = report.sections.iter().flat_map(|section| &section.verdicts);
     let count = |severity| rows.clone().filter(|row| row.outcome.severity() == severity).count();
     let [pass, amber, fail] = [Severity::Green, Severity::Amber, Severity::Red].map(count);
+    format!("{pass} pass, {fail} fail, {amber} amber\n")
+}
+
+/// Returns a table of all results of a report, followed by the number of results of each colour.
+pub(crate) fn rows(report: &Report) -> String {
     let mut text = String::new();
-    for row in rows {
+    for row in report.sections.iter().flat_map(|section| &section.verdicts) {
         text.push_str(&format!("{:<12} {}\n", row.outcome.word(), line::verdict_in_section(row)));
         text.push_str(&format!("{:<12} {}\n", "", row.because));
     }
-    text + &format!("{pass} pass, {fail} fail, {amber} amber\n")
+    text + &counts(report)
 }

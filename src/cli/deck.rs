@@ -14,8 +14,8 @@ const USUAL: Resolution = Resolution::CriticalFraction(0.1);
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Case, variant of a case, or scene file.
-    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
+    /// Case, variant of a case, folder of a case, or scene file.
+    #[arg(value_name = "CASE|CASE/VARIANT|FOLDER|SCENE.toml")]
     scene: String,
     /// Program that reads the input: `lammps` or `liggghts`.
     #[arg(long = "for", value_name = "PROGRAM")]
@@ -25,7 +25,8 @@ pub(crate) struct Arguments {
     /// state.
     #[arg(long, conflicts_with = "set")]
     exact: bool,
-    /// Override one key of the scene. Repeatable.
+    /// Override one key of the scene. Positions follow a changed radius, and `law = "hertz"` removes linear stiffness.
+    /// Repeatable.
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Time step as a fraction of the critical one. Default: the default of the case, or 0.1 for a scene file.

@@ -2,8 +2,9 @@
 
 use super::exit::{self, Fault};
 use super::names::variants;
+use grainbench::adapt::{AdaptedScene, adapted};
 use grainbench::cases::folder;
-use grainbench::cases::registry::{CASES, read_grains};
+use grainbench::cases::registry::CASES;
 use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::scene::scene::Scene;
@@ -61,24 +62,44 @@ impl<'a> Variant<'a> {
     }
 }
 
-/// Reads the scene of `CASE`, `CASE/VARIANT` or a file with the extension `.toml`, and overrides the keys in `set`.
-pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Option<&'static Case>), Fault> {
-    let is_file = Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    let (mut source, case) = if is_file {
-        (SceneSource::read(Path::new(text))?, None)
-    } else {
-        let variant = Variant::read(text)?;
-        (variant.source(), Some(variant.case))
-    };
-    for (path, value) in set {
-        source = source.set(path, value);
+/// Returns true if a text names a scene file.
+pub(crate) fn is_scene_file(text: &str) -> bool {
+    Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
+}
+
+/// Reads the scene of `CASE`, `CASE/VARIANT`, the folder of a case or a file with the extension `.toml`. Overrides the
+/// keys in `set`, and the keys that follow from them.
+pub(crate) fn adapted_scene(
+    text: &str,
+    set: &[(String, String)],
+) -> Result<(AdaptedScene, Option<&'static Case>), Fault> {
+    if is_scene_file(text) {
+        return Ok((adapted(&SceneSource::read(Path::new(text))?, set)?, None));
     }
-    Ok((source.scene(&read_grains)?, case))
+    let variant = Variant::read_with_folders(text)?;
+    Ok((adapted(&variant.source(), set)?, Some(variant.case)))
+}
+
+/// Reads a scene as [`adapted_scene`] does, and reports the keys that follow from the keys in `set`.
+pub(crate) fn scene(text: &str, set: &[(String, String)]) -> Result<(Scene, Option<&'static Case>), Fault> {
+    let (AdaptedScene { scene, implied, .. }, case) = adapted_scene(text, set)?;
+    tell_implied(&implied);
+    Ok((scene, case))
+}
+
+/// Reports the keys that follow from the overridden keys.
+pub(crate) fn tell_implied(implied: &[(String, String)]) {
+    let key = |(key, value): &(String, String)| {
+        if value.is_empty() { format!("no {key}") } else { format!("{key} = {value}") }
+    };
+    if !implied.is_empty() {
+        exit::say("note", &format!("--set implies {}", implied.iter().map(key).collect::<Vec<_>>().join(", ")));
+    }
 }
 
 /// Returns the scene and the resolution of the first solver-independent claim of a case or variant.
 pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
-    let named = Variant::read(text)?;
+    let named = Variant::read_with_folders(text)?;
     let fair = |claim: &Claim| claim.scope.is_of_grains() && claim.runs.len() == 1;
     let run = (named.case.claims)()
         .into_iter()

@@ -269,6 +269,26 @@ fn simulate_leaves_its_record() {
     assert_eq!(series.lines().count(), 1 + 11, "{series}");
 }
 
+/// A packing can be unstable below the critical step of one contact. Above this limit, `simulate` warns.
+#[test]
+fn simulate_warns_above_the_stable_fraction() {
+    let scene = "title = 't'\ndimension = 2\nduration_cycles = 2\n[materials.m]\ndensity = 1000.0\n\
+         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1e6\n\
+         [grains.g]\nmaterial = 'm'\nradius = 0.1\nlattice = { origin = [0.0, 0.0], spacing = [0.3, 0.3], count = [2, 2] }\n\
+         [probes]\nall = { system = true }\n";
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("four.toml"), scene).unwrap();
+    fs::write(directory.path().join("two.toml"), scene.replace("[2, 2]", "[2, 1]")).unwrap();
+    // Two grains have only one contact, whose critical step is exact.
+    for (file, fraction, warns) in [("four.toml", "0.9", true), ("four.toml", "0.1", false), ("two.toml", "0.9", false)]
+    {
+        let words = ["simulate", file, "--solver", "dem", "--time-step-fraction", fraction];
+        let answer = grainbench(directory.path(), &words);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        assert_eq!(answer.err.contains("a packing can be unstable"), warns, "{file} {fraction}: {}", answer.err);
+    }
+}
+
 #[test]
 fn simulate_prints_the_run_as_json() {
     let directory = tempfile::tempdir().unwrap();

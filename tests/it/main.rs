@@ -9,6 +9,7 @@ mod cache;
 #[cfg(unix)]
 mod campaign;
 mod check;
+mod check_adapts;
 mod check_own;
 mod choosing;
 mod cli;

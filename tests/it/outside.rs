@@ -33,7 +33,7 @@ fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
 #[test]
 fn a_program_that_lies_is_found_out() {
     let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
-    let lies: [(&str, String, &str, &str); 14] = [
+    let lies: [(&str, String, &str, &str); 15] = [
         ("leaves nothing", "exit 0".to_owned(), "broken", "grains.csv"),
         (
             "garbage",
@@ -54,6 +54,12 @@ fn a_program_that_lies_is_found_out() {
             "setsid sleep 1235 > /dev/null 2>&1 & sleep 1000".to_owned(),
             "broken",
             "not done after 2 s",
+        ),
+        (
+            "names its spins otherwise",
+            format!("printf '{}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > \"$2/grains.csv\"", HEAD.replace("omega", "w")),
+            "broken",
+            "expected the column `omegax`, or its name in `output.grains.map`, found `wx`",
         ),
         ("ends early", table("0,1,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected samples to step"),
         ("hangs", "sleep 1000".to_owned(), "broken", "not done after 2 s"),

@@ -127,6 +127,45 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
     }
 }
 
+/// A constant belongs to one time, so a sample must lie within a time step of it. A formula with `t` takes the time of
+/// the nearest sample. The samples are 2 ms apart.
+#[test]
+fn a_constant_at_a_time_between_samples_has_no_sample() {
+    let acceleration = 5.0 / 7.0 * 9.81 * 0.5;
+    let constant = format!("{}", 0.101 * acceleration);
+    let course = format!("'{acceleration} * t'");
+    for (at, equals, verdict) in [(0.101, &constant, "fail"), (0.101, &course, "pass"), (0.1, &constant, "fail")] {
+        let folder = case("", &[]);
+        let claims = format!(
+            "title = \"A slope\"\n[[claims]]\nquantity = \"velocity\"\nunit = \"m/s\"\nvalue = \"ball.vx\"\nat = {at}\n\
+             equals = {equals}\nderived = \"v = at\"\nallowed = 0.002\nbecause = \"the springs yield\"\n\
+             control = {{ name = \"half the weight\", set = {{ gravity.magnitude = 4.9 }} }}\n"
+        );
+        fs::write(folder.path().join("slope/claims.toml"), claims).unwrap();
+        let (_, verdicts, _) = run(folder.path());
+        let row = &verdicts[0];
+        assert_eq!(row["verdict"], verdict, "{at} {equals}: {row:#?}");
+        let has_no_sample = row["detail"].as_str().unwrap_or_default().contains("has no sample within");
+        assert_eq!(has_no_sample, at == 0.101 && equals == &constant, "{row:#?}");
+    }
+}
+
+/// A misspelt column is an error before the run, for every solver.
+#[test]
+fn a_missing_column_is_found_before_the_run() {
+    for solver in ["dem", "rigid", "mpm"] {
+        let wrong = format!("value = \"ball.vq\"\nsolver = \"{solver}\"");
+        let resolution = if solver == "dem" { "resolution = { time_step_fraction = 0.02 }" } else { "resolution = {}" };
+        let folder = case(
+            "claims.toml",
+            &[("value = \"ball.vx\"", &wrong), ("resolution = { time_step_fraction = 0.02 }", resolution)],
+        );
+        let answer = grainbench(folder.path(), &["run", "slope"]);
+        let message = "value: expected one of the columns of the record, ball.x";
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{solver}: {}{}", answer.out, answer.err);
+    }
+}
+
 /// A folder with the name of a built-in case must be given with `./`. Otherwise a message mentions the folder.
 #[test]
 fn a_folder_named_as_a_case_is_told_of() {

@@ -249,7 +249,8 @@ impl OneGrain {
 
 /// Returns the overlap (m) at which the springs balance a force (N), for a grain of this radius (m) on a plane: F/k_n,
 /// or by Hertz's law (3F/(4E*√R))^{2/3}.
-fn static_overlap(springs: &Springs, force: f64, radius: f64) -> f64 {
+#[must_use]
+pub fn static_overlap(springs: &Springs, force: f64, radius: f64) -> f64 {
     match *springs {
         Springs::Absent => 0.0,
         Springs::Linear { normal, .. } => force / normal,

@@ -65,8 +65,7 @@ impl Reader<'_> {
         let quantity = claim(words, kept(claimed.unit.clone())).run(run);
         let tolerance = tolerance(&claimed, &numbers)?;
         let control = control(&claimed.control, &source, &scene)?;
-        let is_dem = Method::from_name(&claimed.solver) == Some(Method::Dem);
-        let expecting = expecting(quantity, &claimed, course, (&numbers, is_dem))?;
+        let expecting = expecting(quantity, &claimed, course, &numbers)?;
         let claim = expecting.within(tolerance).refuses(control);
         let claim = match (&claim.trace, claim.quantity.clone()) {
             (Some(_), words) if self.plots => {
@@ -109,18 +108,17 @@ impl Reader<'_> {
     }
 }
 
-/// Adds expected value and source to a claim. `knows_columns` is true if a name that is neither a column nor a number of
-/// the scene is an error.
+/// Adds expected value and source to a claim. All solvers record the columns of the scene's probes, so a name that is
+/// neither a column nor a number of the scene is an error before the run.
 fn expecting(
     quantity: Quantity,
     claimed: &ClaimEntry,
     course: Option<Points>,
-    (numbers, knows_columns): (&Arc<Numbers>, bool),
+    numbers: &Arc<Numbers>,
 ) -> Result<ClaimWithExpectation, ClaimError> {
     let value = expression("value", &claimed.value)?;
     let is_new = |name: &&str| numbers.is_of_record(name) && !numbers.columns.iter().any(|column| column == name);
-    let unknown = value.names().into_iter().find(is_new);
-    if let Some(unknown) = unknown.filter(|_| knows_columns) {
+    if let Some(unknown) = value.names().into_iter().find(is_new) {
         let columns = numbers.columns.join(", ");
         return Err(wrong("value", format!("one of the columns of the record, {columns}"), quoted(unknown)));
     }

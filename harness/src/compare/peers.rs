@@ -92,7 +92,8 @@ impl ColumnComparison<'_> {
     }
 }
 
-/// Compares the observed columns that `is_compared` selects and that all runs contain.
+/// Compares the observed columns that `is_compared` selects and that all runs contain. With `only`, the columns are
+/// compared with the run of this name, otherwise with the nearest run.
 ///
 /// `scale` computes the scale of a unit from the largest extent of the columns with that unit. Columns with a scale of
 /// zero are left out. Returns the name of the nearest run and one comparison per column; none if there are no runs.
@@ -100,6 +101,7 @@ pub fn against<'a>(
     observed: &'a Series,
     uncertainty: &[Vec<f64>],
     peers: &'a [Peer],
+    only: Option<&str>,
     is_compared: impl Fn(&str) -> bool,
     scale: impl Fn(&dyn Fn(&str) -> f64, &str) -> f64,
 ) -> Option<(&'a str, Vec<ColumnComparison<'a>>)> {
@@ -121,7 +123,8 @@ pub fn against<'a>(
         });
         parts.sum()
     };
-    let nearest = peers.iter().min_by(|a, b| weight(distance(a)).total_cmp(&weight(distance(b))))?;
+    let candidates = peers.iter().filter(|peer| only.is_none_or(|name| peer.name == name));
+    let nearest = candidates.min_by(|a, b| weight(distance(a)).total_cmp(&weight(distance(b))))?;
     // If the nearest run has no half-step run, the first other run with one is used.
     let with_half = [nearest].into_iter().chain(peers).find_map(|peer| Some((peer, peer.half_step.as_ref()?)));
     let compared = columns.iter().filter_map(|&(at, column)| {
@@ -268,7 +271,7 @@ mod tests {
         let observed = series([0.0, 1.0, 2.0]);
         let against_all = |peers: &[Peer]| {
             let scale = |largest: &dyn Fn(&str) -> f64, unit: &str| largest(unit);
-            let (nearest, compared) = against(&observed, &[vec![0.0; 3]], peers, |_| true, scale)?;
+            let (nearest, compared) = against(&observed, &[vec![0.0; 3]], peers, None, |_| true, scale)?;
             let column = compared.first()?;
             let worst = column.decisive(|_| 1e-6)?.sample;
             let last = column.samples.last()?;

@@ -1,0 +1,103 @@
+//! First sample of the outputs: sizes, masses and motion of the grains, and the box.
+
+use std::path::Path;
+
+use grainbench_scene::scene::{Dimension, Scene};
+
+use crate::observer::Names;
+use crate::outputs::OutputError;
+use crate::read::ids::Ids;
+use crate::read::read_error::ReadError;
+use crate::read::snapshot::{DumpKind, DumpSnapshot};
+use crate::run_files::{Snapshots, in_order, shown};
+
+/// Reads the first sample of a dump into a scene: radii, masses, positions, velocities and spins of the grains, and the
+/// bounds of periodic axes. Quantities that the file lacks stay as in the scene. Returns the names of the quantities read.
+///
+/// # Errors
+/// If the file is damaged, contains no grains, or has another number of grains than the scene.
+pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&'static str>, OutputError> {
+    let name = shown(file);
+    let none = || OutputError::NoGrains(name.clone());
+    let files = in_order(&[file.to_owned()])?;
+    let mut reader = Snapshots::open(files.first().ok_or_else(none)?, u64::MAX)?;
+    let mut snapshot = DumpSnapshot::default();
+    while snapshot.kind != DumpKind::Atoms || snapshot.columns.is_empty() {
+        if !reader.read(&mut snapshot)? {
+            return Err(none());
+        }
+    }
+    let column = |ours: &str| snapshot.column(names.in_file(ours));
+    let id = column("id");
+    if let Some(id) = id {
+        Ids::default().check(&name, &snapshot, id)?;
+    }
+    if snapshot.rows() != scene.grains.len() {
+        let expected = format!("{} grains, the number in the scene", scene.grains.len());
+        return Err(ReadError::at(&name, snapshot.first_line, expected, snapshot.rows().to_string()).into());
+    }
+    let order = snapshot.rows_by(id);
+    let (flat, shape) = (scene.dimension == Dimension::Two, scene.grain_shape);
+    let axes = scene.dimension.count();
+    let mut read = Vec::new();
+    let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));
+    let positive = |ours: &str, at: usize, scale: f64, row: usize| {
+        let value = scale * snapshot.row(row)[at];
+        if value.is_finite() && value > 0.0 {
+            return Ok(value);
+        }
+        let line = snapshot.first_line + row as u64;
+        Err(ReadError::at(&name, line, format!("a positive {ours}"), format!("{value:?}")))
+    };
+    if let Some((at, scale)) = radius {
+        read.push("radii");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            let density = grain.mass / shape.mass(grain.radius, 1.0);
+            grain.radius = positive("radius", at, scale, row)?;
+            grain.mass = shape.mass(grain.radius, density);
+            grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
+        }
+    }
+    if let Some(at) = column("mass") {
+        read.push("masses");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            grain.mass = positive("mass", at, 1.0, row)?;
+            grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
+        }
+    }
+    let positions = [0, 1, 2].map(|axis| names.coordinate(&snapshot, axis));
+    if positions[..axes].iter().all(Option::is_some) {
+        read.push("positions");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            for (axis, at) in positions[..axes].iter().enumerate() {
+                grain.position[axis] = at.map_or(0.0, |at| at.value(snapshot.row(row)));
+            }
+        }
+    }
+    for (words, ours) in [("velocities", ["vx", "vy", "vz"]), ("spins", ["omegax", "omegay", "omegaz"])] {
+        let range = match (flat, words) {
+            (true, "spins") => 2..3,
+            _ => 0..axes,
+        };
+        let columns = ours.map(column);
+        if !columns[range.clone()].iter().all(Option::is_some) {
+            continue;
+        }
+        read.push(words);
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            let vector = if words == "spins" { &mut grain.spin } else { &mut grain.velocity };
+            for axis in range.clone() {
+                vector[axis] = columns[axis].map_or(0.0, |at| snapshot.row(row)[at]);
+            }
+        }
+    }
+    let has_bounds = snapshot.bounds.0 != snapshot.bounds.1;
+    if let Some(domain) = scene.domain.as_mut().filter(|domain| has_bounds && domain.periodic.contains(&true)) {
+        read.push("box");
+        let (low, high) = snapshot.bounds;
+        for axis in (0..axes).filter(|&axis| domain.periodic[axis]) {
+            (domain.low[axis], domain.high[axis]) = (low[axis], high[axis]);
+        }
+    }
+    Ok(read)
+}

@@ -1,0 +1,85 @@
+//! Summary of a check in one sentence.
+
+use super::power::is_of_power;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
+use grainbench_reports::{Section, number};
+
+/// Largest number of quantities that the sentence names.
+const MOST_NAMES: usize = 3;
+
+/// Returns the outcome of a check in words: for each reference, the agreement or the differing quantities with the first
+/// time outside the tolerance.
+#[must_use]
+pub fn sentence(section: &Section) -> String {
+    let Some((coverage, rows)) = section.verdicts.split_first() else { return "Nothing was judged.".to_owned() };
+    let rows: Vec<&Verdict> = rows.iter().filter(|row| !is_of_power(row)).collect();
+    let of = |is_of: &dyn Fn(&Verdict) -> bool| rows.iter().copied().filter(|row| is_of(row)).collect::<Vec<_>>();
+    let mut parts = Vec::new();
+    if coverage.outcome != Outcome::Pass {
+        parts.extend(coverage.detail.as_deref().map(|detail| capital(detail.split("; ").next().unwrap_or(detail))));
+    }
+    let ours = of(&|row| row.source.contains(" convention, at the time step"));
+    let convention = ours.first().map_or("", |row| convention_words(row.source.split(", ").next().unwrap_or_default()));
+    parts.extend(agreement(&ours, convention));
+    parts.extend(agreement(&of(&|row| row.evidence == Evidence::Analytic), "the exact solutions"));
+    parts.extend(agreement(&of(&|row| row.source.contains("stored run")), "the stored run"));
+    parts.extend(agreement(&of(&|row| row.source.contains("predictability horizon")), "the means of our solver"));
+    let is_open = rows.iter().all(|row| row.outcome.severity() == Severity::Amber);
+    if is_open {
+        parts.push("No quantity could be judged".to_owned());
+    }
+    parts.extend(rows.iter().find_map(|row| {
+        row.detail.clone().filter(|words| words.ends_with("is the stiffness yours?")).map(|words| capital(&words))
+    }));
+    parts
+        .iter()
+        .map(|part| if part.ends_with('?') { part.clone() } else { format!("{part}.") })
+        .collect::<Vec<_>>()
+        .join(" ")
+}
+
+/// Returns the contact convention of a solver in words.
+fn convention_words(solver: &str) -> &'static str {
+    match solver {
+        "dem:1979" => "the convention of Cundall & Strack (1979)",
+        "dem:lammps" => "LAMMPS' convention",
+        "dem:liggghts" => "LIGGGHTS' convention",
+        _ => "our default convention",
+    }
+}
+
+/// Returns the agreement of the output with one reference in words; `None` if no quantity was judged.
+fn agreement(rows: &[&Verdict], reference: &str) -> Option<String> {
+    let red: Vec<&&Verdict> = rows.iter().filter(|row| row.outcome.is_red()).collect();
+    let passed: Vec<&&Verdict> = rows.iter().filter(|row| row.outcome == Outcome::Pass).collect();
+    let largest = |rows: &[&&Verdict]| {
+        let errors = rows.iter().filter_map(|row| row.error.map(f64::abs));
+        number::fraction(errors.fold(0.0, f64::max))
+    };
+    let names = || {
+        let name = |row: &&&Verdict| row.quantity.split(", ").next().unwrap_or_default().to_owned();
+        let first: Vec<String> = red.iter().take(MOST_NAMES).map(name).collect();
+        let more = red.len().saturating_sub(first.len());
+        first.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
+    };
+    let time = |row: &&&Verdict| {
+        let detail = row.detail.as_deref()?.split("first outside at t = ").nth(1)?;
+        detail.split(' ').next()?.parse::<f64>().ok()
+    };
+    let first = red.iter().filter_map(|row| time(&row)).min_by(f64::total_cmp);
+    let since =
+        first.map(|time| format!(", first outside at t = {} s", number::significant(time, 6))).unwrap_or_default();
+    match (passed.is_empty(), red.is_empty()) {
+        (true, true) => None,
+        (false, true) => Some(format!("The output agrees with {reference} to {}", largest(&passed))),
+        (_, false) => {
+            Some(format!("The output differs from {reference} by up to {}: {}{since}", largest(&red), names()))
+        }
+    }
+}
+
+fn capital(words: &str) -> String {
+    let mut letters = words.chars();
+    letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}

@@ -1,0 +1,276 @@
+//! `check` adapts to the output: parameters that follow others, the start in a file, and contact conventions.
+
+use crate::common::{Answer, grainbench, root};
+use serde_json::Value;
+use std::fs;
+use std::io::Read;
+use std::path::Path;
+
+fn data(name: &str) -> String {
+    root("tests/data/check").join(name).display().to_string()
+}
+
+fn rows(answer: &Answer) -> Vec<Value> {
+    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    results["verdicts"].as_array().unwrap().clone()
+}
+
+fn count(rows: &[Value], verdict: &str) -> usize {
+    rows.iter().filter(|row| row["verdict"] == verdict).count()
+}
+
+/// Simulates a scene file, and returns the table of its probes.
+fn simulated(directory: &Path, scene: &str, solver: &str, step: &str, set: &[&str]) -> String {
+    let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+    let words = ["simulate", scene, "--solver", solver, "--time-step", step, "--out", "run", "--write", "none"];
+    let answer = grainbench(directory, &[&words[..], &set].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    "run/series.csv".to_owned()
+}
+
+/// Parameters of the LIGGGHTS run of a sphere of 5 mm, as changes of the case.
+const NUMBERS: [&str; 8] = [
+    "--set",
+    "gravity={magnitude=9.81,slope_deg=30}",
+    "--set",
+    "duration=.5",
+    "--set",
+    "materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3}",
+    "--set",
+    "contacts.plane={law=\"hertz\",friction=.5,restitution=.5}",
+];
+
+/// The position follows the radius. The Hertz law removes the linear stiffness, and Young's modulus the bulk modulus.
+#[test]
+fn keys_follow_other_keys() {
+    let directory = tempfile::tempdir().unwrap();
+    let dump = data("liggghts-slope/sphere.dump");
+    let checked = |more: &[&str]| {
+        let words = ["check", "incline-sphere/45deg-mu.495", "--dump", &dump, "--json"];
+        grainbench(directory.path(), &[&words[..], &NUMBERS, more].concat())
+    };
+    let exact = |rows: &[Value], verdict: &str| {
+        rows.iter().filter(|row| row["evidence"] == "analytic" && row["verdict"] == verdict).count()
+    };
+    for start in [&["--set", "grains.sphere.radius=.005"][..], &["--like", &dump]] {
+        let answer = checked(start);
+        let rows = rows(&answer);
+        assert_eq!((answer.code, exact(&rows, "pass")), (Some(0), 3), "{start:?}: {rows:#?}");
+    }
+    // Another radius does not fit the file, and the start of a file does not excuse wrong physics.
+    let answer = checked(&["--set", "grains.sphere.radius=.0052"]);
+    assert!(answer.code == Some(2) && answer.err.contains("radius"), "{}{}", answer.err, answer.out);
+    let answer = checked(&["--like", &dump, "--set", "gravity.slope_deg=31"]);
+    assert!(answer.code == Some(1) && exact(&rows(&answer), "fail") > 0, "{}", answer.out);
+    // A file without grains, and one with another number of grains.
+    fs::write(directory.path().join("empty.dump"), "").unwrap();
+    for (file, message) in
+        [("empty.dump", "empty.dump"), (data("lammps-nine-static.dump.gz").as_str(), "expected 1 grains")]
+    {
+        let answer = checked(&["--like", file]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{file}: {}", answer.err);
+    }
+}
+
+/// A grain on a floor keeps its static overlap, and grains on it move with it.
+#[test]
+fn grains_move_with_a_radius() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = "title = 't'\ndimension = 2\nduration = 0.1\ngravity = [0.0, -10.0]\nmaterials.m.density = 1000.0\n\
+         contacts.m = { between = ['m', 'm'], normal_stiffness = 1e6 }\n\
+         [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+         [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.3]\n\
+         [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.0996858407346410]\n\
+         [grains.d]\nmaterial = 'm'\nradius = 0.1\nposition = [2.0, 0.5]\n\
+         [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
+    fs::write(directory.path().join("s.toml"), scene).unwrap();
+    let heights = |set: &[&str]| -> Vec<f64> {
+        let words = [&["scene", "s.toml"], set].concat();
+        let answer = grainbench(directory.path(), &words);
+        let resolved: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        let grains = resolved["grains"].as_array().unwrap();
+        grains.iter().map(|grain| grain["position"][1].as_f64().unwrap()).collect()
+    };
+    let near = |found: &[f64], expected: [f64; 4]| {
+        let off = found.iter().zip(expected).map(|(a, b)| (a - b).abs()).fold(0.0, f64::max);
+        assert!(off < 1e-12, "{found:?}, expected {expected:?}");
+    };
+    let rest = |radius: f64| radius - 1000.0 * std::f64::consts::PI * radius * radius * 10.0 / 1e6;
+    near(&heights(&[]), [0.1, 0.3, rest(0.1), 0.5]);
+    near(&heights(&["--set", "grains.a.radius=0.2"]), [0.2, 0.5, rest(0.1), 0.5]);
+    near(&heights(&["--set", "grains.c.radius=0.05", "--set", "grains.d.radius=0.05"]), [0.1, 0.3, rest(0.05), 0.5]);
+    // A position of the user stays.
+    near(
+        &heights(&["--set", "grains.a.radius=0.05", "--set", "grains.a.position=[0,.05]"]),
+        [0.05, 0.2, rest(0.1), 0.5],
+    );
+}
+
+/// A sphere that hits a floor obliquely, with friction and dashpots. The contact conventions differ by 12 %.
+const OBLIQUE: &str = "title = 'Oblique impact'\ndimension = 3\nduration = 0.1\ngravity = [0.0, 0.0, -9.81]\n\
+     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e4\n\
+     tangential_stiffness = 5e3\nfriction = 0.5\nnormal_damping = 400.0\ntangential_damping = 200.0\n\
+     [grains.a]\nmaterial = 'g'\nradius = 0.005\nposition = [0.0, 0.0, 0.02]\nvelocity = [1.0, 0.0, -1.0]\n\
+     [walls.floor]\nmaterial = 'g'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
+     [output]\nevery = 0.001\n[probes]\na = { grain = 'a' }\ncontact = { contact = ['a', 'floor'] }\n";
+
+/// The output is compared with the nearest convention, with its own tolerance. The summary names the convention.
+#[test]
+fn the_nearest_convention_is_judged_by_its_own_tolerance() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), OBLIQUE).unwrap();
+    let checked = |more: &[&str]| {
+        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off"];
+        grainbench(directory.path(), &[&words[..], more].concat())
+    };
+    for (solver, words) in [("dem:liggghts", "LIGGGHTS' convention"), ("dem:1979", "Cundall & Strack")] {
+        simulated(directory.path(), "s.toml", solver, "1e-5", &[]);
+        let answer = checked(&[]);
+        assert!(answer.code == Some(0) && answer.out.contains(", 0 fail, 0 amber"), "{solver}: {}", answer.out);
+        let first = answer.out.lines().next().unwrap();
+        assert!(first.starts_with("The output agrees with") && first.contains(words), "{first}");
+        // The file and the time step are named once, and columns of zeros have one line.
+        assert_eq!(answer.out.matches("series.csv · dt=").count(), 1, "{}", answer.out);
+        assert!(answer.out.contains("exactly zero as expected: a.y, a.vy, a.omega_x, a.omega_z"), "{}", answer.out);
+    }
+    simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &[]);
+    let answer = checked(&["--convention", "dem:lammps"]);
+    assert!(answer.code == Some(1) && answer.out.contains("differs from LAMMPS' convention"), "{}", answer.out);
+    // Friction that is wrong by 4 % has less effect than the choice of the convention.
+    simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &["contacts.g.friction=.48"]);
+    let answer = checked(&[]);
+    assert!(answer.code == Some(1) && answer.out.contains("first outside at t = "), "{}", answer.out);
+    let answer = checked(&["--convention", "any"]);
+    assert!(answer.out.contains(", 0 fail, ") && !answer.out.contains(" 0 amber"), "{}", answer.out);
+}
+
+/// Thirty discs fall into a box. After the horizon of the run, only means are compared.
+const THIRTY: &str = "title = 'Thirty discs'\ndimension = 2\nduration = 0.3\ngravity = [0.0, -9.81]\n\
+     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e5\n\
+     tangential_stiffness = 5e4\nfriction = 0.5\nnormal_damping = 60.0\ntangential_damping = 30.0\n\
+     [grains.a]\nmaterial = 'g'\nradius = 0.005\nvelocity = [0.3, 0.0]\n\
+     lattice = { origin = [0.006, 0.01], spacing = [0.0115, 0.0115], count = [6, 5], perturbation = 6e-4, seed = 3 }\n\
+     [walls.floor]\nmaterial = 'g'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+     [walls.left]\nmaterial = 'g'\nplane = { point = [0.0, 0.0], normal = [1.0, 0.0] }\n\
+     [walls.right]\nmaterial = 'g'\nplane = { point = [0.075, 0.0], normal = [-1.0, 0.0] }\n\
+     [output]\nevery = 0.002\n[probes]\nall = { system = true }\nfloor = { wall = 'floor' }\n";
+
+#[test]
+fn a_wrong_friction_of_many_grains_is_red() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), THIRTY).unwrap();
+    for (set, code) in [(&[][..], 0), (&["contacts.g.friction=.1"], 1)] {
+        simulated(directory.path(), "s.toml", "dem:lammps", "2e-5", set);
+        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let rows = rows(&answer);
+        assert_eq!(answer.code, Some(code), "{set:?}: {rows:#?}");
+        assert_eq!(count(&rows, "fail") > 0, code == 1, "{set:?}: {rows:#?}");
+    }
+}
+
+/// An output with another stiffness: the result is red, and the overlap at rest leads to the cause.
+#[test]
+fn an_overlap_at_rest_tells_the_stiffness() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), OBLIQUE).unwrap();
+    let dump = |overlap: f64| {
+        let row = |step: u32| {
+            let time = f64::from(step) * 1e-5;
+            let z = if step == 0 { 0.02 } else { 0.005 - overlap };
+            format!(
+                "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS ff ff ff\n-1 1\n-1 1\n-1 1\n\
+                 ITEM: ATOMS id x y z\n1 {time:?} 0.0 {z:?}\n"
+            )
+        };
+        (0..=10).map(|sample| row(1000 * sample)).collect::<String>()
+    };
+    let checked = |overlap: f64| {
+        fs::write(directory.path().join("d.dump"), dump(overlap)).unwrap();
+        let set = ["--set", "duration=.1", "--set", "output.every=.01", "--set", "gravity=[0,0,-500]"];
+        let words = ["check", "s.toml", "--dump", "d.dump", "--time-step", "1e-5", "--power", "off", "--partial"];
+        grainbench(directory.path(), &[&words[..], &set].concat())
+    };
+    let answer = checked(2e-5);
+    assert!(answer.code == Some(1) && answer.out.contains("is the stiffness yours?"), "{}", answer.out);
+    // The weight of 0.65 N causes an overlap of 65 µm.
+    let answer = checked(6.5e-5);
+    assert!(answer.code == Some(1) && !answer.out.contains("is the stiffness yours?"), "{}", answer.out);
+}
+
+/// A dump of contacts with the columns of our decks needs no `--map`.
+#[test]
+fn contacts_of_a_deck_need_no_names() {
+    let directory = tempfile::tempdir().unwrap();
+    let mut text = String::new();
+    let file = fs::File::open(data("lammps-nine-static.contacts.gz")).unwrap();
+    flate2::read::GzDecoder::new(file).read_to_string(&mut text).unwrap();
+    // The stored dump has the columns distance, two ids and two components of the force.
+    let row = |order: &str, line: &str| match line.split_whitespace().collect::<Vec<_>>()[..] {
+        ["ITEM:", "ENTRIES", ..] => format!("ITEM: ENTRIES {order}\n"),
+        [_, a, b, x, y] => format!("{a} {b} {x} {y} 0\n"),
+        _ => format!("{line}\n"),
+    };
+    let checked = |order: &str| {
+        let contacts: String = text.lines().map(|line| row(order, line)).collect();
+        fs::write(directory.path().join("dump.contacts"), contacts).unwrap();
+        let dump = data("lammps-nine-static.dump.gz");
+        let words = ["check", "nine-discs/static-0", "--dump", &dump, "dump.contacts", "--partial", "--json"];
+        grainbench(directory.path(), &words)
+    };
+    let answer = checked("c_pairs[1] c_pairs[2] c_pairs[4] c_pairs[5] c_pairs[6]");
+    let rows = rows(&answer);
+    let forces =
+        rows.iter().filter(|row| row["evidence"] == "analytic" && row["unit"] == "N" && row["verdict"] == "pass");
+    assert!(answer.code == Some(0) && forces.count() > 0, "{rows:#?}");
+    // Columns in another order are not those of a deck.
+    let answer = checked("c_pairs[2] c_pairs[1] c_pairs[4] c_pairs[5] c_pairs[6]");
+    assert!(answer.code == Some(2) && answer.err.contains("expected columns `id1` and `id2`"), "{}", answer.err);
+}
+
+/// The stored runs of this case have a time step three times as short as a run of its solver-independent claim.
+#[test]
+fn a_longer_step_than_that_of_the_stored_run_passes() {
+    let directory = tempfile::tempdir().unwrap();
+    let scene = root("cases/chung-ooi/scene.toml").display().to_string();
+    for (set, code) in [(None, 0), (Some("materials.sphere.young_modulus=48.5e9"), 1)] {
+        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
+        let words = [
+            "simulate",
+            &scene,
+            "--variant",
+            "1-glass",
+            "--solver",
+            "dem:lammps",
+            "--time-step",
+            "6.5e-8",
+            "--out",
+            "run",
+        ];
+        let answer = grainbench(directory.path(), &[&words[..], &set].concat());
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let answer =
+            grainbench(directory.path(), &["check", "chung-ooi/1-glass", "--dump", "run/series.csv", "--json"]);
+        let rows = rows(&answer);
+        let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run"));
+        let red = stored.clone().filter(|row| row["verdict"] == "fail").count();
+        assert!(stored.count() > 0 && answer.code == Some(code) && (red > 0) == (code == 1), "{rows:#?}");
+    }
+}
+
+/// `check` and `deck` accept the folder of a case.
+#[test]
+fn the_folder_of_a_case_is_accepted() {
+    let directory = tempfile::tempdir().unwrap();
+    let folder = root("examples/case").display().to_string();
+    let scene = root("examples/case/scene.toml").display().to_string();
+    simulated(directory.path(), &scene, "dem", "1e-5", &[]);
+    let answer = grainbench(directory.path(), &["check", &folder, "--dump", "run/series.csv", "--json"]);
+    let rows = rows(&answer);
+    assert_eq!(answer.code, Some(0), "{rows:#?}");
+    assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 2, "{rows:#?}");
+    let answer = grainbench(directory.path(), &["deck", &folder, "--for", "lammps", "--out", "deck"]);
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let answer = grainbench(directory.path(), &["check", "run", "--dump", "run/series.csv"]);
+    assert!(answer.code == Some(2) && answer.err.contains("claims.toml"), "{}", answer.err);
+}
