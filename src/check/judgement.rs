@@ -33,6 +33,14 @@ pub(super) enum Between {
     Inconclusive,
 }
 
+/// Returns true if a sample is outside the tolerance of the convention with which it was compared.
+pub(super) fn is_outside(row: &Verdict) -> bool {
+    row.detail.as_deref().is_some_and(|detail| detail.starts_with(OUTSIDE))
+}
+
+/// First words of the detail of a result with a sample outside the tolerance.
+pub(super) const OUTSIDE: &str = "first outside at t = ";
+
 /// Largest fraction of samples with an allowed error above [`WIDE`]. If the fraction is larger, the result is inconclusive.
 const FEW: f64 = 0.1;
 
@@ -69,19 +77,17 @@ pub(super) fn judged_in_time(
     let count = compared.samples.len();
     match (row.outcome, first_outside) {
         (Outcome::Fail, Some(time)) => {
-            let how = if row.error.is_none() { "not a number (NaN) from" } else { "first outside at" };
-            let row = Verdict { detail: Some(format!("{how} t = {time:.6} s")), ..row };
+            let how = if row.error.is_none() { "not a number (NaN) from t = " } else { OUTSIDE };
+            let row = Verdict { detail: Some(format!("{how}{time:.6} s")), ..row };
             let within = compared.decisive(|sample| own(sample) + sample.between + compared.open);
             let is_within = within.is_some_and(|decisive| decisive.first_outside.is_none());
-            if matches!(beside.between, Between::Allowed(_)) || !is_within {
+            if beside.between != Between::Inconclusive || !is_within {
                 return row;
             }
-            let words = format!("our conventions differ by {}", number::fraction(sample.between));
             let detail = row.detail.clone().unwrap_or_default();
-            if beside.between == Between::Inconclusive {
-                return row.left(Outcome::NoReference, format!("{detail}; within the tolerance, because {words}"));
-            }
-            Verdict { detail: Some(format!("{detail}; {words} (--convention any makes this result amber)")), ..row }
+            let between = number::fraction(sample.between);
+            let words = "inconclusive: our conventions differ by";
+            row.left(Outcome::NoReference, format!("{detail}; {words} {between} (--convention selects one)"))
         }
         (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
             let most = 100.0 * WIDE;

@@ -36,6 +36,7 @@ use grainbench_reports::Section;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
+use judgement::is_outside;
 use ours::{Plan, nearest_first, ours};
 use power::CheckInputs;
 use start::{adopt, distance, misplaced};
@@ -173,8 +174,8 @@ fn section(
             let made = of_ours.made(candidate, outputs, observed, covered);
             let power = if subject.case().is_some() { Power::Off } else { options.power };
             let mut rows = rows_of_ours(&made, power, &row);
-            let is_red = rows.iter().any(|row| row.outcome == Outcome::Fail);
-            let hint = of_ours.end.as_ref().filter(|_| is_red);
+            let is_other = rows.iter().any(|row| row.outcome == Outcome::Fail || is_outside(row));
+            let hint = of_ours.end.as_ref().filter(|_| is_other);
             rows.extend(hint.and_then(|end| stiffness::at_end(&candidate.scene, observed, end, &row)));
             (rows, figures(&of_ours.peers, &file, observed))
         }

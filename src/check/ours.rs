@@ -17,25 +17,23 @@ use grainbench_solver::refined::refined;
 /// Contact convention with which the output is compared.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum ConventionChoice {
-    /// The nearest of our conventions. An error outside its own tolerance is red.
+    /// The nearest of our conventions. An error outside its own tolerance is amber if it is smaller than the difference
+    /// between our conventions, because the output may have a convention that we do not have.
     #[default]
     Nearest,
-    /// The convention of the solver with this name.
+    /// The convention of the solver with this name. Every error outside its own tolerance is red.
     Named(&'static str),
-    /// The nearest of our conventions. An error outside its own tolerance is amber if our conventions differ as much.
-    Any,
 }
 
 impl ConventionChoice {
     /// Names on the command line.
-    pub const NAMES: [&'static str; 6] = ["nearest", "any", "dem", "dem:1979", "dem:lammps", "dem:liggghts"];
+    pub const NAMES: [&'static str; 5] = ["nearest", "dem", "dem:1979", "dem:lammps", "dem:liggghts"];
 
     /// Returns the choice with a name from [`Self::NAMES`].
     #[must_use]
     pub fn by_name(name: &str) -> Option<Self> {
         match name {
             "nearest" => Some(Self::Nearest),
-            "any" => Some(Self::Any),
             name => CONVENTIONS.iter().find(|other| other.name == name).map(|other| Self::Named(other.name)),
         }
     }
@@ -43,7 +41,7 @@ impl ConventionChoice {
     const fn only(self) -> Option<&'static str> {
         match self {
             Self::Named(name) => Some(name),
-            Self::Nearest | Self::Any => None,
+            Self::Nearest => None,
         }
     }
 }
@@ -257,7 +255,7 @@ fn column(
         tolerance: ToleranceOrigin::Computed,
         ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
     };
-    let between = if choice == ConventionChoice::Any { Between::Inconclusive } else { Between::Refused };
+    let between = if choice == ConventionChoice::Nearest { Between::Inconclusive } else { Between::Refused };
     let beside = ErrorAllowance { floor, times, between };
     covered.all(compared.samples.len(), judged_in_time(row, compared, &beside, outputs))
 }
@@ -266,6 +264,6 @@ fn column(
 pub(super) const fn how_chosen(choice: ConventionChoice) -> &'static str {
     match choice {
         ConventionChoice::Named(_) => "the chosen convention",
-        ConventionChoice::Nearest | ConventionChoice::Any => "our nearest convention",
+        ConventionChoice::Nearest => "our nearest convention",
     }
 }

@@ -3,6 +3,7 @@
 
 use super::covered::Coverage;
 use super::horizon;
+use super::judgement::is_outside;
 use super::ours::{ConventionChoice, Plan, compare, convention, is_compared, until};
 use grainbench_dem::convention::Convention;
 use grainbench_harness::compare::peers::{Peer, together};
@@ -160,16 +161,16 @@ impl CheckInputs<'_> {
                 left.checked_sub(1).ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
             let nearest = self.ours.first().map_or(Convention::DEFAULT, convention);
             let record = self.plan.run(scene, nearest, 1)?;
-            if !self.is_red(&record.series) {
+            if !self.is_told_apart(&record.series) {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// Returns true if a run gives a red result in place of the output. The run is compared at the sample times of the
+    /// Returns true if a run gives a result outside the tolerance in place of the output. The run is compared at the sample times of the
     /// output, for the columns of the output, and with the uncertainty of its printed digits.
-    fn is_red(&self, series: &Series) -> bool {
+    fn is_told_apart(&self, series: &Series) -> bool {
         let mut seen = DumpRecord::default();
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
         let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);
@@ -182,7 +183,7 @@ impl CheckInputs<'_> {
             }
         }
         let row = |quantity: String, unit: &str| Verdict::open("power", quantity, unit);
-        self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail)
+        self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail || is_outside(row))
     }
 
     /// Returns the names of the columns of the scene's probes that are not compared; `None` if all are compared.

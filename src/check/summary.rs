@@ -1,5 +1,6 @@
 //! Summary of a check in one sentence.
 
+use super::judgement::{OUTSIDE, is_outside};
 use super::power::is_of_power;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
@@ -24,7 +25,14 @@ pub fn sentence(section: &Section) -> String {
     parts.extend(agreement(&ours, convention));
     parts.extend(agreement(&of(&|row| row.evidence == Evidence::Analytic), "the exact solutions"));
     parts.extend(agreement(&of(&|row| row.source.contains("stored run")), "the stored run"));
-    parts.extend(agreement(&of(&|row| row.source.contains("predictability horizon")), "the means of our solver"));
+    let means = of(&|row| row.source.contains("predictability horizon") && row.outcome != Outcome::NoReference);
+    if !means.is_empty() {
+        let red: Vec<&str> = means.iter().filter(|row| row.outcome.is_red()).map(|row| name(row)).collect();
+        parts.push(match red[..] {
+            [] => "The means after the predictability horizon agree within their confidence intervals".to_owned(),
+            _ => format!("The means after the predictability horizon differ: {}", red.join(", ")),
+        });
+    }
     let is_open = rows.iter().all(|row| row.outcome.severity() == Severity::Amber);
     if is_open {
         parts.push("No quantity could be judged".to_owned());
@@ -49,34 +57,37 @@ fn convention_words(solver: &str) -> &'static str {
     }
 }
 
+/// Returns the name of the column or the first part of the quantity of a result.
+fn name(row: &Verdict) -> &str {
+    row.quantity.split(", ").next().unwrap_or_default()
+}
+
 /// Returns the agreement of the output with one reference in words; `None` if no quantity was judged.
 fn agreement(rows: &[&Verdict], reference: &str) -> Option<String> {
-    let red: Vec<&&Verdict> = rows.iter().filter(|row| row.outcome.is_red()).collect();
-    let passed: Vec<&&Verdict> = rows.iter().filter(|row| row.outcome == Outcome::Pass).collect();
-    let largest = |rows: &[&&Verdict]| {
-        let errors = rows.iter().filter_map(|row| row.error.map(f64::abs));
-        number::fraction(errors.fold(0.0, f64::max))
-    };
-    let names = || {
-        let name = |row: &&&Verdict| row.quantity.split(", ").next().unwrap_or_default().to_owned();
-        let first: Vec<String> = red.iter().take(MOST_NAMES).map(name).collect();
-        let more = red.len().saturating_sub(first.len());
-        first.join(", ") + &if more > 0 { format!(" and {more} more") } else { String::new() }
-    };
-    let time = |row: &&&Verdict| {
-        let detail = row.detail.as_deref()?.split("first outside at t = ").nth(1)?;
+    let differs = |row: &&&Verdict| row.outcome.is_red() || is_outside(row);
+    let outside: Vec<&Verdict> = rows.iter().filter(differs).copied().collect();
+    let passed: Vec<&Verdict> = rows.iter().filter(|row| row.outcome == Outcome::Pass).copied().collect();
+    let largest = |rows: &[&Verdict]| rows.iter().filter_map(|row| row.error.map(f64::abs)).fold(0.0, f64::max);
+    if outside.is_empty() {
+        let error = largest(&passed);
+        let words = if error == 0.0 { "in all digits".to_owned() } else { format!("to {}", number::fraction(error)) };
+        return (!passed.is_empty()).then(|| format!("The output agrees with {reference} {words}"));
+    }
+    let time = |row: &&Verdict| {
+        let detail = row.detail.as_deref()?.strip_prefix(OUTSIDE)?;
         detail.split(' ').next()?.parse::<f64>().ok()
     };
-    let first = red.iter().filter_map(|row| time(&row)).min_by(f64::total_cmp);
+    let first = outside.iter().filter_map(time).min_by(f64::total_cmp);
     let since =
         first.map(|time| format!(", first outside at t = {} s", number::significant(time, 6))).unwrap_or_default();
-    match (passed.is_empty(), red.is_empty()) {
-        (true, true) => None,
-        (false, true) => Some(format!("The output agrees with {reference} to {}", largest(&passed))),
-        (_, false) => {
-            Some(format!("The output differs from {reference} by up to {}: {}{since}", largest(&red), names()))
-        }
-    }
+    let names: Vec<&str> = outside.iter().take(MOST_NAMES).map(|row| name(row)).collect();
+    let more = outside.len() - names.len();
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    // An error that is smaller than the difference between our conventions may come from another convention.
+    let is_open = outside.iter().all(|row| !row.outcome.is_red());
+    let open = if is_open { "; our conventions differ by more" } else { "" };
+    let (error, names) = (number::fraction(largest(&outside)), names.join(", "));
+    Some(format!("The output differs from {reference} by up to {error}: {names}{more}{since}{open}"))
 }
 
 fn capital(words: &str) -> String {

@@ -36,8 +36,8 @@ pub(crate) struct Arguments {
     /// example of your dump. The start of the scene is then not tested.
     #[arg(long, value_name = "FILE")]
     like: Option<PathBuf>,
-    /// Contact convention with which your output is compared: a solver such as `dem:lammps`, or the `nearest` one.
-    /// `any` takes the nearest one too, but reports differences within those between our conventions as amber.
+    /// Contact convention with which your output is compared: a solver such as `dem:lammps`, or the `nearest` one. An
+    /// error outside the tolerance is red. For the nearest one, it is amber if our conventions differ by more.
     #[arg(long, value_name = "NAME", default_value = "nearest", value_parser = ConventionChoice::NAMES)]
     convention: String,
     /// Output files, plain or compressed by gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at

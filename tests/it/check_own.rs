@@ -70,9 +70,15 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
         let scene = file("slope.toml");
         let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
         let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
-        // All compared quantities pass. Changes of the scene that the output does not reveal are amber.
+        // LIGGGHTS adds a tangential dashpot to Hertz contacts, which the scene lacks. Its effect, below a thousandth, is
+        // amber. All other compared quantities pass. Changes of the scene that the output does not reveal are amber.
         let is_told = |row: &Value| row["verdict"] == "pass" || row["quantity"].as_str().unwrap().contains("reveals");
-        assert_eq!((code, count(&rows, is_told)), (Some(0), rows.len()), "{rows:#?}");
+        let is_dashpot = |row: &Value| {
+            let detail = row["detail"].as_str().unwrap_or_default();
+            row["verdict"] == "no-reference" && detail.contains("our conventions differ by")
+        };
+        assert_eq!((code, count(&rows, |row| is_told(row) || is_dashpot(row))), (Some(0), rows.len()), "{rows:#?}");
+        assert_eq!(count(&rows, is_dashpot), 3, "{rows:#?}");
         assert!(count(&rows, nearest) >= 9, "{rows:#?}");
         assert_eq!(rows[0]["case"], "slope");
     }
