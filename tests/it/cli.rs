@@ -277,8 +277,8 @@ fn simulate_warns_above_the_stable_fraction() {
          [grains.g]\nmaterial = 'm'\nradius = 0.1\nlattice = { origin = [0.0, 0.0], spacing = [0.3, 0.3], count = [2, 2] }\n\
          [probes]\nall = { system = true }\n";
     let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("four.toml"), scene).unwrap();
-    fs::write(directory.path().join("two.toml"), scene.replace("[2, 2]", "[2, 1]")).unwrap();
+    std::fs::write(directory.path().join("four.toml"), scene).unwrap();
+    std::fs::write(directory.path().join("two.toml"), scene.replace("[2, 2]", "[2, 1]")).unwrap();
     // Two grains have only one contact, whose critical step is exact.
     for (file, fraction, warns) in [("four.toml", "0.9", true), ("four.toml", "0.1", false), ("two.toml", "0.9", false)]
     {
