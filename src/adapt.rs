@@ -136,13 +136,19 @@ fn positions(
         let [before, after] = [sum(&|grain| scene.grains[grain].radius), sum(&|grain| radii[grain])];
         contact.change = (after - before) * (1.0 - contact.overlap / before);
     }
-    let Some(moves) = moves(&contacts, &fixed, &radii) else { return Ok(Vec::new()) };
+    let mut start = vec![Vector3::zeros(); radii.len()];
+    for ((start, group), (grain, fixed)) in start.iter_mut().zip(file.grains.values()).zip(scene.grains.iter().zip(&fixed)) {
+        for (axis, coordinate) in group.position.iter().flatten().enumerate().take(3).filter(|_| *fixed) {
+            start[axis] = coordinate - grain.position[axis];
+        }
+    }
+    let Some(moves) = moves(&contacts, &fixed, &radii, start) else { return Ok(Vec::new()) };
     let place = |moves: &[Vector3<f64>]| -> Vec<(usize, (String, String))> {
         let axes = scene.dimension.count();
-        let moved = (0..moves.len()).filter(|&grain| moves[grain] != Vector3::zeros());
+        let moved = (0..moves.len()).filter(|&grain| !fixed[grain] && moves[grain] != Vector3::zeros());
         let value = |grain: usize| {
             let position = scene.grains[grain].position + moves[grain];
-            let numbers: Vec<String> = position.iter().take(axes).map(|number| format!("{number:?}")).collect();
+            let numbers: Vec<String> = position.iter().take(axes).map(|number| rounded(*number)).collect();
             (format!("grains.{}.position", names[grain]), format!("[{}]", numbers.join(", ")))
         };
         moved.map(|grain| (grain, value(grain))).collect()
@@ -204,10 +210,20 @@ fn contacts(scene: &Scene) -> Vec<Contact> {
     contacts
 }
 
+/// Returns a coordinate with 13 significant digits, so that rounding errors do not show.
+fn rounded(coordinate: f64) -> String {
+    let text = format!("{coordinate:.12e}");
+    text.parse::<f64>().map_or(text, |rounded| format!("{rounded:?}"))
+}
+
 /// Returns the displacements of the grains (m) that satisfy all conditions, found by projections onto one condition
-/// after the other; `None` if the projections do not converge.
-fn moves(contacts: &[Contact], fixed: &[bool], radii: &[f64]) -> Option<Vec<Vector3<f64>>> {
-    let mut moves = vec![Vector3::zeros(); radii.len()];
+/// after the other; `None` if the projections do not converge. Fixed grains keep their displacement in `moves`.
+fn moves(
+    contacts: &[Contact],
+    fixed: &[bool],
+    radii: &[f64],
+    mut moves: Vec<Vector3<f64>>,
+) -> Option<Vec<Vector3<f64>>> {
     for _ in 0..SWEEPS {
         let mut is_done = true;
         for contact in contacts {
@@ -219,7 +235,7 @@ fn moves(contacts: &[Contact], fixed: &[bool], radii: &[f64]) -> Option<Vec<Vect
             }
             let other = contact.other.map_or(Vector3::zeros(), |other| moves[other]);
             let off = contact.change - contact.normal.dot(&(moves[contact.grain] - other));
-            if off.abs() <= 1e-3 * TOUCHING * radii[contact.grain] {
+            if off.abs() <= 1e-5 * TOUCHING * radii[contact.grain] {
                 continue;
             }
             is_done = false;

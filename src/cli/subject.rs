@@ -21,7 +21,7 @@ pub(crate) struct Variant<'a> {
 }
 
 impl<'a> Variant<'a> {
-    /// Reads `CASE`, `CASE/VARIANT`, or the path of the folder of a case.
+    /// Reads `CASE`, `CASE/VARIANT`, or the path of the folder of a case, with or without `/VARIANT`.
     pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
         let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
         if is_named || !Path::new(text).is_dir() {
@@ -31,7 +31,13 @@ impl<'a> Variant<'a> {
                     &format!("`{text}` selects the built-in case; write ./{text} to select the folder"),
                 );
             }
-            return Self::read(text);
+            let of_folder = text.rsplit_once('/').filter(|(folder, _)| Path::new(folder).join(folder::CLAIMS).is_file());
+            return match of_folder.filter(|_| !is_named) {
+                Some((folder, variant)) => {
+                    Self::of_case(folder::read(Path::new(folder)).map_err(Fault::input)?, Some(variant))
+                }
+                None => Self::read(text),
+            };
         }
         Ok(Self { case: folder::read(Path::new(text)).map_err(Fault::input)?, variant: None })
     }
@@ -43,6 +49,11 @@ impl<'a> Variant<'a> {
             .iter()
             .find(|case| case.name == name)
             .ok_or_else(|| Fault::unknown("a case", name, CASES.iter().map(|case| case.name)))?;
+        Self::of_case(case, variant)
+    }
+
+    /// Checks that a case has a variant.
+    fn of_case(case: &'static Case, variant: Option<&'a str>) -> Result<Self, Fault> {
         if let Some(variant) = variant {
             let known = variants(case, &(case.claims)())?;
             if variant != PLAIN && !known.iter().any(|name| name == variant) {

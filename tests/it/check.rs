@@ -28,10 +28,10 @@ fn count(rows: &[Value], verdict: &str) -> usize {
 #[test]
 fn what_is_right_passes_by_exact_answers_and_by_our_solvers() {
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline.dump.gz", &[]);
-    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 11, 11));
     assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 3);
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-granular-incline.dump.gz", &[]);
-    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 9, 9));
+    assert_eq!((code, count(&rows, "pass"), rows.len()), (0, 11, 11));
 }
 
 #[test]
@@ -52,14 +52,14 @@ fn six_digits_in_odd_order_pass_with_a_wider_tolerance_that_says_so() {
 #[test]
 fn half_the_friction_is_red() {
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz", &[]);
-    assert_eq!((code, count(&rows, "fail")), (1, 6));
+    assert_eq!((code, count(&rows, "fail")), (1, 7));
 }
 
 /// Output of a released LAMMPS version whose walls are wrong: the friction is wrong by about 10⁻⁴, or values are NaN.
 #[test]
 fn a_released_defect_is_red() {
     let (code, rows) = check("incline-disc/60deg-mu.9", "lammps-2025-incline.dump.gz", &[]);
-    assert_eq!((code, count(&rows, "fail")), (1, 6));
+    assert_eq!((code, count(&rows, "fail")), (1, 7));
     let analytic = rows.iter().filter(|row| row["evidence"] == "analytic");
     assert!(analytic.into_iter().all(|row| row["verdict"] == "fail" && row["error"].as_f64().unwrap().abs() < 1e-3));
 }
@@ -92,11 +92,10 @@ fn a_released_defect_is_red_in_an_oblique_impact_too() {
 fn the_time_step_comes_from_the_log_or_is_asked_for() {
     let log = data("liggghts-backspin.log");
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--log", &log]);
-    // Damping conventions change the velocities of this impact by more than 5 %, so these results are amber.
-    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
+    // The stored run has a longer time step, which changes the impact by more than 5 %, so these results are amber.
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 16, 0, 19));
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "2e-4"]);
-    // Damping conventions change the velocities of this impact by more than 5 %, so these results are amber.
-    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 15, 0, 19));
+    assert_eq!((code, count(&rows, "pass"), count(&rows, "fail"), rows.len()), (0, 16, 0, 19));
     // With another time step, the times of the output belong to another motion.
     let (code, rows) = check("backspin/sphere", "liggghts-backspin.dump.gz", &["--time-step", "3e-4"]);
     assert!(code == 1 && count(&rows, "fail") > 2);
@@ -129,8 +128,10 @@ fn a_table_is_judged_too() {
     let rows = results["verdicts"].as_array().unwrap();
     let row_of =
         |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
-    // The rigid solution has the same mean motion as the soft contacts of the scene, but lacks their oscillation.
-    assert_eq!((&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]), (&"pass".into(), &"fail".into()));
+    // The rigid solution lacks the oscillation of the soft contacts of the scene. Its displacement differs by less than our
+    // conventions differ.
+    let verdicts = (&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]);
+    assert_eq!(verdicts, (&"no-reference".into(), &"fail".into()));
     assert_eq!((rows.len(), answer.code), (5, Some(1)));
 }
 
@@ -236,12 +237,12 @@ fn samples_far_apart_judge_no_course() {
     let detail = rows.iter().find(|row| row["verdict"] == "fail").unwrap()["detail"].as_str().unwrap();
     assert!(detail.starts_with("no sample for 1 s from t = 0 s; at most 0.1"), "{detail}");
     let (code, rows) = checked(&is_end, &["--partial"]);
-    assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 5), "{rows:#?}");
+    assert_eq!((code, count(&rows, "fail"), count(&rows, "known")), (Some(0), 0, 7), "{rows:#?}");
     let (code, rows) = checked(&|at| at % 10 == 0, &[]);
     assert_eq!((code, count(&rows, "fail")), (Some(0), 0), "{rows:#?}");
     // Two tenths of the samples are missing in the middle of the run.
     let (code, rows) = checked(&|at| !(31..50).contains(&at), &[]);
-    assert_eq!((code, count(&rows, "fail")), (Some(1), 5), "{rows:#?}");
+    assert_eq!((code, count(&rows, "fail")), (Some(1), 7), "{rows:#?}");
 }
 
 /// A sampling interval set by the user does not replace the sampling interval of the case.

@@ -247,8 +247,8 @@ fn a_longer_step_than_that_of_the_stored_run_passes() {
             "1-glass",
             "--solver",
             "dem:lammps",
-            "--time-step",
-            "6.5e-8",
+            "--time-step-fraction",
+            "0.003",
             "--out",
             "run",
         ];
@@ -270,10 +270,13 @@ fn the_folder_of_a_case_is_accepted() {
     let folder = root("examples/case").display().to_string();
     let scene = root("examples/case/scene.toml").display().to_string();
     simulated(directory.path(), &scene, "dem", "1e-5", &[]);
-    let answer = grainbench(directory.path(), &["check", &folder, "--dump", "run/series.csv", "--json"]);
+    let answer = grainbench(directory.path(), &["check", &format!("{folder}/plain"), "--dump", "run/series.csv", "--json"]);
     let rows = rows(&answer);
     assert_eq!(answer.code, Some(0), "{rows:#?}");
     assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 2, "{rows:#?}");
+    // Both variants have this start.
+    let answer = grainbench(directory.path(), &["check", &folder, "--dump", "run/series.csv"]);
+    assert!(answer.code == Some(2) && answer.err.contains("expected the name of a variant"), "{}", answer.err);
     let answer = grainbench(directory.path(), &["deck", &folder, "--for", "lammps", "--out", "deck"]);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     let answer = grainbench(directory.path(), &["check", "run", "--dump", "run/series.csv"]);

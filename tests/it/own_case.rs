@@ -133,8 +133,8 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
 fn a_constant_at_a_time_between_samples_has_no_sample() {
     let acceleration = 5.0 / 7.0 * 9.81 * 0.5;
     let constant = format!("{}", 0.101 * acceleration);
-    let course = format!("'{acceleration} * t'");
-    for (at, equals, verdict) in [(0.101, &constant, "fail"), (0.101, &course, "pass"), (0.1, &constant, "fail")] {
+    let (course, end) = (format!("'{acceleration} * t'"), format!("{}", 0.2 * acceleration));
+    for (at, equals, verdict) in [(0.101, &constant, "fail"), (0.101, &course, "pass"), (0.2, &end, "pass")] {
         let folder = case("", &[]);
         let claims = format!(
             "title = \"A slope\"\n[[claims]]\nquantity = \"velocity\"\nunit = \"m/s\"\nvalue = \"ball.vx\"\nat = {at}\n\
