@@ -137,7 +137,9 @@ fn positions(
         contact.change = (after - before) * (1.0 - contact.overlap / before);
     }
     let mut start = vec![Vector3::zeros(); radii.len()];
-    for ((start, group), (grain, fixed)) in start.iter_mut().zip(file.grains.values()).zip(scene.grains.iter().zip(&fixed)) {
+    for ((start, group), (grain, fixed)) in
+        start.iter_mut().zip(file.grains.values()).zip(scene.grains.iter().zip(&fixed))
+    {
         for (axis, coordinate) in group.position.iter().flatten().enumerate().take(3).filter(|_| *fixed) {
             start[axis] = coordinate - grain.position[axis];
         }

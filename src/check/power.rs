@@ -161,16 +161,16 @@ impl CheckInputs<'_> {
                 left.checked_sub(1).ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
             let nearest = self.ours.first().map_or(Convention::DEFAULT, convention);
             let record = self.plan.run(scene, nearest, 1)?;
-            if !self.is_told_apart(&record.series) {
+            if !self.is_detected(&record.series) {
                 return Ok(false);
             }
         }
         Ok(true)
     }
 
-    /// Returns true if a run gives a result outside the tolerance in place of the output. The run is compared at the sample times of the
-    /// output, for the columns of the output, and with the uncertainty of its printed digits.
-    fn is_told_apart(&self, series: &Series) -> bool {
+    /// Returns true if a run gives a result outside the tolerance in place of the output. The run is compared at the
+    /// sample times of the output, for the columns of the output, and with the uncertainty of its printed digits.
+    fn is_detected(&self, series: &Series) -> bool {
         let mut seen = DumpRecord::default();
         (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
         let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);

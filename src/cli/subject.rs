@@ -31,7 +31,8 @@ impl<'a> Variant<'a> {
                     &format!("`{text}` selects the built-in case; write ./{text} to select the folder"),
                 );
             }
-            let of_folder = text.rsplit_once('/').filter(|(folder, _)| Path::new(folder).join(folder::CLAIMS).is_file());
+            let of_folder =
+                text.rsplit_once('/').filter(|(folder, _)| Path::new(folder).join(folder::CLAIMS).is_file());
             return match of_folder.filter(|_| !is_named) {
                 Some((folder, variant)) => {
                     Self::of_case(folder::read(Path::new(folder)).map_err(Fault::input)?, Some(variant))

@@ -140,8 +140,16 @@ fn the_nearest_convention_is_judged_by_its_own_tolerance() {
     // convention that we do not have.
     simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &["contacts.g.friction=.48"]);
     let answer = checked(&[]);
-    assert!(answer.out.contains("The output differs from ") && answer.out.contains("first outside at t = "), "{}", answer.out);
-    assert!(!answer.out.contains(" 0 amber") && answer.out.contains("; our conventions differ by more"), "{}", answer.out);
+    assert!(
+        answer.out.contains("The output differs from ") && answer.out.contains("first outside at t = "),
+        "{}",
+        answer.out
+    );
+    assert!(
+        !answer.out.contains(" 0 amber") && answer.out.contains("; our conventions differ by more"),
+        "{}",
+        answer.out
+    );
     assert_eq!(checked(&["--strict"]).code, Some(1));
     assert_eq!(checked(&["--convention", "dem:liggghts"]).code, Some(1));
     // A larger mistake is red.
@@ -270,7 +278,8 @@ fn the_folder_of_a_case_is_accepted() {
     let folder = root("examples/case").display().to_string();
     let scene = root("examples/case/scene.toml").display().to_string();
     simulated(directory.path(), &scene, "dem", "1e-5", &[]);
-    let answer = grainbench(directory.path(), &["check", &format!("{folder}/plain"), "--dump", "run/series.csv", "--json"]);
+    let answer =
+        grainbench(directory.path(), &["check", &format!("{folder}/plain"), "--dump", "run/series.csv", "--json"]);
     let rows = rows(&answer);
     assert_eq!(answer.code, Some(0), "{rows:#?}");
     assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 2, "{rows:#?}");
