@@ -2,7 +2,8 @@
 
 use std::path::Path;
 
-use grainbench_scene::scene::{Dimension, Scene};
+use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Scene;
 
 use crate::observer::Names;
 use crate::outputs::OutputError;
