@@ -268,7 +268,7 @@ const inPrint = await print.evaluate(() => ({
 }));
 // A heading and the part below it are on one page: no break may follow it, and its parent is no flexible box, where browsers
 // ignore this.
-const alone = await print.evaluate(() => [...document.querySelectorAll("section :is(h2, h3, h4, summary)")].filter((head) => head.getClientRects().length)
+const alone = await print.evaluate(() => [...document.querySelectorAll(":is(section, .overview) :is(h2, h3, h4, summary)")].filter((head) => head.getClientRects().length)
   .filter((head) => getComputedStyle(head).breakAfter !== "avoid" || !/^(block|list-item|flow-root)$/.test(getComputedStyle(head.parentElement).display))
   .map((head) => `${head.tagName} ${head.textContent.slice(0, 40)}`));
 check(alone.length === 0, `headings that can end a page: ${alone.length}, ${alone.slice(0, 4).join("; ")}`);

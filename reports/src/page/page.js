@@ -150,13 +150,13 @@
     const how = want.words.length && named < sum ? ` ${named} by their quantity, ${sum - named} by case, source or detail.` : "";
     const meaning = want.outcome && document.querySelector(`.counts a[data-outcome="${want.outcome}"]`)?.title;
     found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases.${how} `), make("span", meaning ? `${want.outcome}: ${meaning}. ` : ""),
-      make("span", "Passed of judged results by solver, and largest error / tolerance:"));
+      make("span", `${want.outcome ? "Results" : "Passed of judged results"} by solver, and largest error / tolerance:`));
     const list = document.createElement("ul");
     const part = (of) => (of.judged ? of.pass / of.judged : -1);
     for (const [solver, of] of [...tally].sort((a, b) => part(b[1]) - part(a[1]) || b[1].all - a[1].all)) {
       const item = make("li", ""), worst = of.worst >= 100 ? of.worst.toExponential(0) : Number(of.worst.toPrecision(2));
       const rest = of.all > of.judged ? `, ${of.all - of.judged} not judged` : "";
-      item.append(make("b", solver), make("span", of.judged ? ` ${of.pass}/${of.judged}, worst ${worst}${rest}` : ` none judged (${of.all})`));
+      item.append(make("b", solver), make("span", !of.judged ? ` none judged (${of.all})` : want.outcome ? ` ${of.all}, worst ${worst}` : ` ${of.pass}/${of.judged}, worst ${worst}${rest}`));
       list.append(item);
     }
     found.append(list);
