@@ -32,7 +32,7 @@ fn a_written_solver_runs_at_once() {
         let judge = || grainbench(path, &["judge", "mine/SOLVER.toml", CASES[0], CASES[1], "--no-controls", "--quiet"]);
         let answer = judge();
         assert!(
-            answer.code == Some(0) && answer.out.contains("7 pass, 0 fail"),
+            answer.code == Some(0) && answer.out.contains("9 pass, 0 fail"),
             "{language}: {}{}",
             answer.out,
             answer.err
@@ -151,7 +151,7 @@ fn without_arguments_there_is_help() {
 fn colours_are_as_requested() {
     let directory = tempfile::tempdir().unwrap();
     let is_colored = |color: &[&str], variables: &[(&str, &str)]| {
-        let run = ["run", CASES[1], "--solver", "dem", "--no-controls"];
+        let run = ["run", CASES[1], "--solver", "dem:lammps", "--no-controls"];
         let output =
             program().args(run).args(color).envs(variables.iter().copied()).current_dir(directory.path()).output();
         String::from_utf8(output.unwrap().stdout).unwrap().contains("\u{1b}[32m✓\u{1b}[0m All ")
@@ -186,7 +186,7 @@ fn the_citation_is_that_of_the_file() {
 fn figures_have_the_style_of_a_file() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
-    let run = grainbench(path, &["run", CASES[1], "--solver", "dem", "--no-controls", "--out", "out", "--quiet"]);
+    let run = grainbench(path, &["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--out", "out", "--quiet"]);
     assert_eq!(run.code, Some(0), "{}", run.err);
     let figures = || -> Vec<String> {
         let names =

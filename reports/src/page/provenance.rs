@@ -43,7 +43,8 @@ pub(crate) fn citation(provenance: &Provenance) -> [String; 2] {
     let year = day.split('-').next().unwrap_or_default();
     let text = format!("{AUTHOR}: {TITLE}, version {version}, commit {commit}. Results of {day} on {machine}.");
     let bibtex = format!(
-        "@software{{grainbench,\n  author  = {{{{{AUTHOR}}}}},\n  title   = {{{TITLE}}},\n  version = {{{version}, commit {commit}}},\n\
+        "@software{{grainbench,\n  author  = {{{{{AUTHOR}}}}},\n  title   = {{{TITLE}}},\n\
+         \x20 version = {{{version}, commit {commit}}},\n\
          \x20 year    = {{{year}}},\n  note    = {{Results of {day}}}\n}}"
     );
     [text, bibtex]
