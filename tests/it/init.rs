@@ -186,7 +186,8 @@ fn the_citation_is_that_of_the_file() {
 fn figures_have_the_style_of_a_file() {
     let directory = tempfile::tempdir().unwrap();
     let path = directory.path();
-    let run = grainbench(path, &["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--out", "out", "--quiet"]);
+    let run =
+        grainbench(path, &["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--out", "out", "--quiet"]);
     assert_eq!(run.code, Some(0), "{}", run.err);
     let figures = || -> Vec<String> {
         let names =
