@@ -20,7 +20,8 @@ const browser = await puppeteer.launch({
   args: ["--no-sandbox", "--disable-gpu", "--disable-quic", "--no-first-run", "--disable-background-networking", "--disable-component-update", "--disable-sync"],
 });
 
-const open = async (width, { dark = false, script = true, hash = "" } = {}) => {
+// `at` is what follows the file in the address: a query, an anchor or both.
+const open = async (width, { dark = false, script = true, at = "" } = {}) => {
   const page = await browser.newPage();
   page.on("console", (message) => wrong.push(`console at ${width}: ${message.text()}`));
   page.on("pageerror", (error) => wrong.push(`error at ${width}: ${error.message}`));
@@ -28,7 +29,7 @@ const open = async (width, { dark = false, script = true, hash = "" } = {}) => {
   await page.setJavaScriptEnabled(script);
   await page.emulateMediaFeatures([{ name: "prefers-color-scheme", value: dark ? "dark" : "light" }]);
   await page.setViewport({ width, height: 900 });
-  await page.goto(address + hash, { waitUntil: "load" });
+  await page.goto(address + at, { waitUntil: "load" });
   return page;
 };
 
@@ -87,6 +88,67 @@ await pause(300);
 check((await shown()).length === 0, "a search for what is not there finds something");
 await page.keyboard.press("Escape");
 check((await shown()).length === all, "Escape shows all rows again");
+
+// Filters are in the address: a reload keeps them, and a shared link has them. Cleared, the address has none.
+await page.select("#by-solver", solver);
+await page.focus("#search");
+await page.keyboard.type("velocity");
+await pause(300);
+const filtered = (await shown()).map((row) => row.id);
+const query = await page.evaluate(() => location.search);
+check(filtered.length > 0 && new URLSearchParams(query).get("solver") === solver && query.includes("q=velocity"), `filters in the address: ${query}`);
+await page.reload({ waitUntil: "load" });
+check((await shown()).map((row) => row.id).join() === filtered.join(), "a reload loses the filters");
+const shared = await open(1440, { at: query });
+const inShared = await shared.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr:not([hidden])")].map((row) => row.id));
+check(inShared.join() === filtered.join(), "a shared link loses the filters");
+await shared.close();
+await page.click("#clear");
+check(await page.evaluate(() => location.search) === "" && (await shown()).length === all, "cleared filters stay in the address");
+
+// Enter leads to the first hit: a row whose quantity has the word, although rows before it have the word elsewhere.
+await page.focus("#search");
+await page.keyboard.type("velocity");
+await page.keyboard.press("Enter");
+await pause(600);
+const hit = await page.evaluate(() => {
+  const row = document.querySelector("table.verdicts tr:target"), box = row?.getBoundingClientRect();
+  const visible = [...document.querySelectorAll("table.verdicts tbody tr:not([hidden])")];
+  const named = visible.filter((one) => one.cells[1].textContent.toLowerCase().includes("velocity"));
+  return { isFirst: row === named[0], isSeen: box?.top >= 0 && box?.bottom <= innerHeight, named: named.length, all: visible.length, text: document.querySelector("#found b").textContent };
+});
+check(hit.isFirst && hit.isSeen, `Enter does not lead to the first hit: ${JSON.stringify(hit)}`);
+check(hit.named === hit.all || hit.text.includes(`${hit.named} by their quantity`), `hits by quantity: ${JSON.stringify(hit)}`);
+await page.evaluate(() => { history.replaceState(null, "", location.pathname + location.search); });
+await page.click("#clear");
+
+// Each count leads to its rows and says what it means.
+const counts = await page.evaluate(() => [...document.querySelectorAll(".counts a[data-outcome]:not([data-solver])")].map((link) => ({ outcome: link.dataset.outcome, count: Number(link.querySelector("b").textContent), title: link.title })));
+check(counts.length > 0 && counts.every(({ title }) => title), `counts: ${JSON.stringify(counts)}`);
+for (const { outcome, count, title } of counts) {
+  await page.evaluate((outcome) => { document.querySelector(`.counts a[data-outcome="${outcome}"]:not([data-solver])`).click(); }, outcome);
+  rows = await shown();
+  const there = rows.length <= count && rows.every((row) => row.outcome === outcome) && (await page.$eval("#found", (found) => found.textContent)).includes(title);
+  check(there, `the count of ${outcome}: ${rows.length} of ${count} rows`);
+}
+await page.click("#clear");
+
+// A solver without a judged result has no fraction, which would read as a failure.
+const unjudged = await page.evaluate(() => { const all = ["unsupported", "no-reference", "not-available"]; const rows = [...document.querySelectorAll("table.verdicts tbody tr")]; return [...new Set(rows.map((row) => row.dataset.s))].filter((solver) => rows.every((row) => row.dataset.s !== solver || all.includes(row.dataset.o))); });
+for (const name of unjudged) {
+  await page.select("#by-solver", name);
+  const text = await page.$eval("#found li", (item) => item.textContent);
+  check(text.includes("none judged") && !/\d\/\d/.test(text), `${name}: ${text}`);
+}
+await page.click("#clear");
+
+// Pictures of buttons need no font.
+const icons = await page.evaluate(() => [...document.querySelectorAll(".act button, .cite button")].map((button) => [button.textContent, button.querySelector("svg path") !== null]));
+check(icons.length > 0 && icons.every(([text, isDrawn]) => text === "" && isDrawn), "a button has no picture");
+
+// Citations: as text and as BibTeX, with the commit; the button copies them.
+const cited = await page.evaluate(() => [...document.querySelectorAll(".cite")].map((one) => { one.querySelector("button").click(); return [one.querySelector("pre").textContent, document.documentElement.dataset.copied]; }));
+check(cited.length === 2 && cited.every(([text, copy]) => text === copy && /commit \S/.test(text)) && cited[1][0].startsWith("@software{"), `citations: ${JSON.stringify(cited)}`);
 
 // Sort: by numbers, both ways.
 const order = () => page.evaluate(() => [...document.querySelectorAll("table.verdicts")][0].tBodies[0]).then(() => page.evaluate(() => [...document.querySelector("table.verdicts").tBodies[0].rows].map((row) => Number(row.cells[4].dataset.v)).filter((value) => !Number.isNaN(value))));
@@ -171,13 +233,29 @@ await ways.close();
 // Anchors, with a script and without: the row that is asked for is opened and seen.
 const id = await (async () => { const first = await open(1440); const found = await first.evaluate(() => [...document.querySelectorAll("table.verdicts tbody tr")].at(-1).id); await first.close(); return found; })();
 for (const script of [true, false]) {
-  const page = await open(1440, { script, hash: `#${id}` });
+  const page = await open(1440, { script, at: `#${id}` });
   await pause(400);
   const row = await page.$(`#${id}`);
   check(await row.isVisible(), `#${id} is not opened ${script ? "with" : "without"} a script`);
   if (!script) check(!(await (await page.$("#tools")).isVisible()), "tools that need a script are shown without one");
   await page.close();
 }
+
+// On a phone, the heads of tables stay while their boxes scroll.
+const phone = await open(390);
+const stuck = await phone.evaluate(() => {
+  document.querySelectorAll("details").forEach((details) => { details.open = true; });
+  return [...document.querySelectorAll(".scroll > table")].filter((table) => table.tHead?.checkVisibility()).map((table) => {
+    const box = table.parentElement;
+    box.scrollTop = 60;
+    const moved = box.scrollTop, apart = table.tHead.rows[0].cells[0].getBoundingClientRect().top - box.getBoundingClientRect().top;
+    return { name: box.getAttribute("aria-label"), isStuck: moved === 0 || Math.abs(apart) < 2, position: getComputedStyle(table.tHead.rows[0].cells[0]).position, moved };
+  });
+});
+check(stuck.some(({ name }) => name === "Hard cases by solver"), "the table of hard cases is missing");
+for (const { name, isStuck, position } of stuck) check(isStuck && position === "sticky", `the heading of ${name} does not stay`);
+check(stuck.some(({ moved }) => moved > 0), "no table scrolls on a phone");
+await phone.close();
 
 // In print, tables are open and a film shows its still frame. Contents have no page numbers, so they are hidden.
 const print = await open(1440);
@@ -188,6 +266,12 @@ const inPrint = await print.evaluate(() => ({
   contents: document.querySelector(".contents a").getClientRects().length,
   tools: document.querySelector("#tools").getClientRects().length,
 }));
+// A heading and the part below it are on one page: no break may follow it, and its parent is no flexible box, where browsers
+// ignore this.
+const alone = await print.evaluate(() => [...document.querySelectorAll(":is(section, .overview) :is(h2, h3, h4, summary)")].filter((head) => head.getClientRects().length)
+  .filter((head) => getComputedStyle(head).breakAfter !== "avoid" || !/^(block|list-item|flow-root)$/.test(getComputedStyle(head.parentElement).display))
+  .map((head) => `${head.tagName} ${head.textContent.slice(0, 40)}`));
+check(alone.length === 0, `headings that can end a page: ${alone.length}, ${alone.slice(0, 4).join("; ")}`);
 check(inPrint.still > 0 && inPrint.contents === 0 && inPrint.tools === 0, `print: ${JSON.stringify(inPrint)}`);
 await print.close();
 

@@ -116,6 +116,6 @@ def judge(solver: Solver, cases: Sequence[str] = (), *, controls: bool = True) -
     if not hasattr(socket, "AF_UNIX") or not hasattr(os, "fork"):
         raise OSError("expected a system with fork and Unix sockets; a SOLVER.toml works on every system")
     with _served(solver) as manifest, tempfile.TemporaryDirectory(prefix="grainbench-") as out:
-        words = ["run", *cases, "--solver", str(manifest), "--json", "--out", os.path.join(out, "out")]
+        words = ["judge", str(manifest), *cases, "--json", "--out", os.path.join(out, "out")]
         results: dict[str, Any] = json.loads(run(words if controls else [*words, "--no-controls"]))
     return Judgement(results)

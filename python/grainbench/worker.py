@@ -1,6 +1,7 @@
 """Worker `python -m grainbench.worker MODULE:NAME` or `FILE.py:NAME`: a solver that keeps running between runs.
 
-The key `worker` of a `SOLVER.toml` names this command.
+The key `worker` of a `SOLVER.toml` names this command. `--in DIR` before the name sets the working directory. `--manifest`
+prints the `SOLVER.toml` of the function, with this directory, instead.
 """
 
 from __future__ import annotations
@@ -39,12 +40,21 @@ def load(target: str) -> Solver:
 
 
 def main() -> None:
-    """Answers requests until the input ends. Output of the solver goes to the standard error."""
-    if len(sys.argv) != 2:
-        raise SystemExit("usage: python -m grainbench.worker MODULE:NAME")
+    """Answers requests until the input ends, or prints the manifest. Output of the solver goes to the standard error."""
     answers = os.fdopen(os.dup(1), "w", encoding="utf-8")
     os.dup2(2, 1)
-    solver = load(sys.argv[1])
+    match sys.argv[1:]:
+        case ["--manifest", target]:
+            worker = [sys.executable, "-m", "grainbench.worker", "--in", os.getcwd(), target]
+            print(load(target).manifest(worker), end="", file=answers, flush=True)
+            return
+        case ["--in", folder, target]:
+            os.chdir(folder)
+        case [target]:
+            pass
+        case _:
+            raise SystemExit("usage: python -m grainbench.worker [--manifest | --in DIR] MODULE:NAME")
+    solver = load(target)
     for line in sys.stdin:
         print(answer(solver, line), file=answers, flush=True)
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import subprocess
 import sys
 from pathlib import Path
@@ -297,3 +298,12 @@ def test_the_guide_shows_what_runs(tmp_path: Path) -> None:
     (command,) = [line for line in text.splitlines() if line.startswith("pytest --grainbench ")]
     done = subprocess.run([sys.executable, "-m", *command.split()], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout
+
+
+def test_the_command_line_judges_a_function(tmp_path: Path) -> None:
+    """`grainbench judge FILE.py:NAME` starts the function with the `python3` of the environment. Another name is refused."""
+    path = f"{Path(sys.executable).parent}{os.pathsep}{os.environ['PATH']}"
+    for name, code, text in [("sphere", 0, "4 pass, 0 fail"), ("nothing", 2, "expected a function under `@grainbench.solver`")]:
+        words = [binary(), "judge", f"{EXAMPLE}:{name}", "backspin/sphere", "--no-controls"]
+        done = subprocess.run(words, cwd=tmp_path, env={**os.environ, "PATH": path}, capture_output=True, text=True)
+        assert done.returncode == code and text in done.stdout + done.stderr, done.stdout + done.stderr

@@ -104,14 +104,13 @@ impl Headline {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Returns the passed results out of all results, such as `3/5`; `not judged` if no result has a judgement.
+    /// Returns the passed results out of the conclusive ones, such as `3/5`; `not judged` if there are none, because `0/2`
+    /// would read as a failure. Amber results have a count of their own.
     #[must_use]
     pub fn passed(self) -> String {
-        let unjudged = self.no_reference + self.unsupported + self.not_available;
-        if self.rows() > 0 && unjudged == self.rows() {
-            "not judged".to_owned()
-        } else {
-            format!("{}/{}", self.pass, self.rows())
+        match self.rows() - self.amber() {
+            0 => "not judged".to_owned(),
+            judged => format!("{}/{judged}", self.pass),
         }
     }
 

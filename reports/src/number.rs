@@ -62,13 +62,48 @@ pub fn count(count: u64) -> String {
 /// Returns a duration (s) with an SI prefix and at most three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
-    let (scale, unit) = match seconds.abs() {
+    let (scale, unit) = unit_of(seconds);
+    append_unit(significant(seconds * scale, 3), unit)
+}
+
+/// Unit of a group of durations, so that a reader compares their numbers: that of the largest duration.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct TimeUnit {
+    scale: f64,
+    /// Symbol of the unit.
+    pub symbol: &'static str,
+}
+
+impl TimeUnit {
+    /// Returns the unit for durations (s). Durations that are not finite are ignored.
+    #[must_use]
+    pub fn of(seconds: impl IntoIterator<Item = f64>) -> Self {
+        let largest = seconds.into_iter().filter(|seconds| seconds.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
+        let (scale, symbol) = unit_of(largest);
+        Self { scale, symbol }
+    }
+
+    /// Returns a duration (s) in this unit, without its symbol, with at most three significant digits.
+    #[must_use]
+    pub fn number(self, seconds: f64) -> String {
+        significant(seconds * self.scale, 3)
+    }
+
+    /// Returns a duration (s) in this unit, with its symbol.
+    #[must_use]
+    pub fn with_symbol(self, seconds: f64) -> String {
+        append_unit(self.number(seconds), self.symbol)
+    }
+}
+
+/// Returns the factor and the symbol of the unit in which a duration (s) has one to three digits before the decimal point.
+fn unit_of(seconds: f64) -> (f64, &'static str) {
+    match seconds.abs() {
         size if size == 0.0 || size >= 1.0 || !size.is_finite() => (1.0, "s"),
         size if size >= 1e-3 => (1e3, "ms"),
         size if size >= 1e-6 => (1e6, "µs"),
         _ => (1e9, "ns"),
-    };
-    append_unit(significant(seconds * scale, 3), unit)
+    }
 }
 
 /// Returns `10ⁿ` with a superscript exponent.
@@ -147,6 +182,15 @@ fn superscript(number: i32) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// Durations of a group have the unit of the largest, so that `166 ms` is not beside `174 µs`.
+    #[test]
+    fn durations_of_a_group_have_one_unit() {
+        let unit = TimeUnit::of([174e-6, 0.166, f64::NAN]);
+        assert_eq!([174e-6, 0.166].map(|seconds| unit.with_symbol(seconds)), ["0.174\u{202f}ms", "166\u{202f}ms"]);
+        assert_eq!((unit.number(0.166), unit.symbol), ("166".to_owned(), "ms"));
+        assert_eq!(TimeUnit::of([]).with_symbol(2.0), "2\u{202f}s");
+    }
 
     #[test]
     fn values_have_six_digits() {

@@ -14,6 +14,7 @@ use crate::export::series_csv::harmless;
 use crate::junit::junit_xml;
 use crate::page;
 use crate::plot;
+use crate::plot::style::FigureStyle;
 use crate::report::Report;
 use crate::results::{points_csv, results_json};
 use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
@@ -101,6 +102,21 @@ pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Resul
         rows_parquet(report).map_err(|error| SaveError::Encode { file: ROWS_PARQUET, reason: error.to_string() })?;
     out.write(ROWS_PARQUET, rows)?;
     out.commit()?;
+    Ok(())
+}
+
+/// Writes the figures of a report to `dir/figures` again, in a style for a publication. All other files stay.
+///
+/// # Errors
+/// When a file cannot be written or a figure cannot be drawn.
+pub fn write_figures(dir: impl AsRef<Path>, report: &Report, style: &FigureStyle) -> Result<(), SaveError> {
+    let mut out = StagedDir::new(dir.as_ref())?;
+    for (section, names) in report.sections.iter().zip(page::figure_names(report)) {
+        for (figure, name) in section.figures.iter().zip(names) {
+            out.write(format!("figures/{name}.svg"), style.draw(figure)?)?;
+        }
+    }
+    out.commit_beside()?;
     Ok(())
 }
 

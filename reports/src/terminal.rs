@@ -1,22 +1,40 @@
 //! Summary of a report as plain text for the terminal.
 
-use grainbench_harness::verdict::Verdict;
+use std::collections::BTreeMap;
+
+use grainbench_harness::verdict::{Severity, Verdict};
 
 use crate::headline::{self, Headline};
 use crate::line;
 use crate::number;
 use crate::report::{Report, Section};
 
-/// Returns one row per case, the counts, and all failures. There are no colour codes, because the text is also written
-/// to files.
+/// Number of columns of the table.
+const COLUMNS: usize = 6;
+
+/// Columns that become narrower if the terminal is narrow, and the least width of each (characters).
+const FLEXIBLE: [(usize, usize); 3] = [(4, 16), (1, 8), (0, 12)];
+
+/// Largest number of reasons for amber results.
+const REASONS: usize = 6;
+
+/// Returns one row per case, the counts, all failures, the reasons of amber results, and a sentence. Tables are as wide as
+/// their texts. There are no colour codes, because the text is also written to files.
 #[must_use]
 pub fn summary_table(report: &Report) -> String {
+    summary_table_within(report, usize::MAX)
+}
+
+/// Returns the text of [`summary_table`] with a table that is at most `width` characters wide, if possible. Longer cells
+/// are cut and end with `…`.
+#[must_use]
+pub fn summary_table_within(report: &Report, width: usize) -> String {
     let (counts, all) = (Headline::of_report(report), report);
     let report = &*report.view();
     let head = ["case", "solvers", "passed", "amber", "worst, of allowed", "controls red"];
     let mut rows = vec![head.map(str::to_owned)];
     rows.extend(report.sections.iter().map(row));
-    let widths = [0, 1, 2, 3, 4, 5].map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
+    let widths = fitted(&rows, width);
     let mut text = String::new();
     for (index, row) in rows.iter().enumerate() {
         push_line(&mut text, row, &widths);
@@ -26,15 +44,84 @@ pub fn summary_table(report: &Report) -> String {
         }
     }
     text.push_str(&format!("\n{}\n", counts.sentence()));
-    let failing = failing_lines(all);
-    if !failing.is_empty() {
-        text.push('\n');
-        for line in failing {
-            text.push_str(&line);
+    for lines in [failing_lines(all), amber_lines(all), conclusion(all).into_iter().collect()] {
+        if !lines.is_empty() {
             text.push('\n');
         }
+        lines.iter().for_each(|line| text.push_str(&format!("{line}\n")));
     }
     text
+}
+
+/// Returns the widths of the columns (characters). Flexible columns become narrower, one after the other, until a line
+/// fits.
+fn fitted(rows: &[[String; COLUMNS]], most: usize) -> [usize; COLUMNS] {
+    let widest = |column: usize| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0);
+    let mut widths = [0, 1, 2, 3, 4, 5].map(widest);
+    for (column, least) in FLEXIBLE {
+        let line = widths.iter().sum::<usize>() + 2 * (COLUMNS - 1);
+        let spare = widths[column].saturating_sub(least);
+        widths[column] -= line.saturating_sub(most).min(spare);
+    }
+    widths
+}
+
+/// Returns one line for each reason of amber results, with the number of results and their solvers. The most frequent
+/// reasons come first, and a last line counts the others.
+#[must_use]
+pub fn amber_lines(report: &Report) -> Vec<String> {
+    let mut groups: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
+    let rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    for row in rows.filter(|row| row.outcome.severity() == Severity::Amber) {
+        let reason = row.detail.as_deref().unwrap_or("no reason is stated");
+        groups.entry((row.outcome.word(), reason)).or_default().push(&row.solver);
+    }
+    let mut groups: Vec<_> = groups.into_iter().collect();
+    groups.sort_by_key(|(_, solvers)| std::cmp::Reverse(solvers.len()));
+    let rest = groups.split_off(groups.len().min(REASONS));
+    let line = |((outcome, reason), mut solvers): ((&str, &str), Vec<&str>)| {
+        let count = solvers.len();
+        solvers.sort_unstable();
+        solvers.dedup();
+        format!("▲ {count} {outcome} ({}): {reason}", solvers.join(", "))
+    };
+    let mut lines: Vec<String> = groups.into_iter().map(line).collect();
+    if !rest.is_empty() {
+        let results: usize = rest.iter().map(|(_, solvers)| solvers.len()).sum();
+        lines.push(format!("▲ {results} more, for {} other reasons: the page lists them", rest.len()));
+    }
+    lines
+}
+
+/// Returns the outcome of a report in words, with the mark of its colour; none if there is no result.
+#[must_use]
+pub fn conclusion(report: &Report) -> Option<String> {
+    let counts = Headline::of_report(report);
+    let (red, amber, judged) = (counts.red(), counts.amber(), counts.rows() - counts.amber());
+    let missed = counts.controls - counts.controls_red;
+    let (mark, mut text) = match judged {
+        _ if counts.rows() == 0 => return None,
+        0 => ("▲", "No result is conclusive.".to_owned()),
+        _ if red > 0 => ("✗", format!("{red} of {judged} conclusive results {} red.", verb(red, "is", "are"))),
+        1 => ("✓", "The only conclusive result is within its tolerance.".to_owned()),
+        _ => ("✓", format!("All {judged} conclusive results are within their tolerances.")),
+    };
+    if amber > 0 {
+        text += &format!(" {amber} {} amber: inconclusive, or a documented error.", verb(amber, "is", "are"));
+    }
+    text += &match counts.controls {
+        0 => String::new(),
+        _ if missed > 0 => format!(" {missed} of {} negative controls did not fail as they must.", counts.controls),
+        1 => " The negative control failed, as it must.".to_owned(),
+        all => format!(" All {all} negative controls failed, as they must."),
+    };
+    let is_red = red > 0 || missed > 0 || !report.red_because.is_empty();
+    Some(format!("{} {text}", if is_red { "✗" } else { mark }))
+}
+
+/// Returns the form of a verb for a number.
+const fn verb(count: usize, singular: &'static str, plural: &'static str) -> &'static str {
+    if count == 1 { singular } else { plural }
 }
 
 /// Returns true if a result is red: it fails, its run crashed, or its reference was made from another scene.
@@ -63,7 +150,7 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
     lines
 }
 
-fn row(section: &Section) -> [String; 6] {
+fn row(section: &Section) -> [String; COLUMNS] {
     let counts = Headline::of_section(section);
     let worst = headline::worst(section).map_or_else(
         || "—".to_owned(),
@@ -85,10 +172,19 @@ fn row(section: &Section) -> [String; 6] {
     ]
 }
 
-fn push_line(text: &mut String, cells: &[String; 6], widths: &[usize; 6]) {
-    let padded: Vec<String> = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
+fn push_line(text: &mut String, cells: &[String; COLUMNS], widths: &[usize; COLUMNS]) {
+    let padded: Vec<String> =
+        cells.iter().zip(widths).map(|(cell, &width)| format!("{:<width$}", cut(cell, width))).collect();
     text.push_str(padded.join("  ").trim_end());
     text.push('\n');
+}
+
+/// Returns the first `width` characters of a text. The last of them is `…` if the text is longer.
+fn cut(text: &str, width: usize) -> String {
+    match text.char_indices().nth(width) {
+        Some(_) => text.chars().take(width.saturating_sub(1)).chain(['…']).collect(),
+        None => text.to_owned(),
+    }
 }
 
 #[cfg(test)]
@@ -115,5 +211,39 @@ mod tests {
     #[test]
     fn reads_well() {
         insta::assert_snapshot!(summary_table(&sample::report()));
+    }
+
+    /// No line of the table is wider than the terminal, and a wide terminal cuts nothing.
+    #[test]
+    fn a_table_fits_the_terminal() {
+        let report = sample::report();
+        let table = |width| summary_table_within(&report, width).split("\n\n").next().unwrap().to_owned();
+        let widest = |text: &str| text.lines().map(|line| line.chars().count()).max().unwrap();
+        for width in [80, 70] {
+            assert!(widest(&table(width)) <= width && table(width).contains('…'), "{}", table(width));
+        }
+        assert!(widest(&table(500)) > 80 && !table(500).contains('…'));
+    }
+
+    /// Results with the same reason share a line, and a result without judgement is no failure.
+    #[test]
+    fn amber_results_have_their_reasons() {
+        use grainbench_harness::verdict::Outcome;
+        let mut report = sample::report();
+        for row in report.sections.iter_mut().flat_map(|section| &mut section.verdicts) {
+            (row.outcome, row.detail) = (Outcome::NotAvailable, Some("it is not installed".to_owned()));
+            row.solver = "lammps".to_owned();
+        }
+        assert_eq!(amber_lines(&report), ["▲ 9 not-available (lammps): it is not installed"]);
+        assert!(conclusion(&report).unwrap().contains("No result is conclusive. 9 are amber"));
+        assert!(!summary_table(&report).contains("0/"), "an amber result reads as a failure");
+        for (at, row) in report.sections.iter_mut().flat_map(|section| &mut section.verdicts).enumerate() {
+            row.detail = Some(format!("reason {at}"));
+        }
+        let lines = amber_lines(&report);
+        assert_eq!(
+            (lines.len(), lines.last().unwrap().as_str()),
+            (7, "▲ 3 more, for 3 other reasons: the page lists them")
+        );
     }
 }

@@ -1,5 +1,6 @@
 //! Exit codes, messages and output on the terminal.
 
+use super::terminal;
 use grainbench::scene::error::{SceneError, did_you_mean};
 use grainbench::scene::text::{shortened, tamed};
 use std::collections::BTreeSet;
@@ -95,7 +96,8 @@ impl From<SceneError> for Fault {
 /// Prints a message on one line of the standard error. A closed standard error is ignored.
 pub(crate) fn say(kind: &str, message: &str) {
     let one_line = message.split_whitespace().collect::<Vec<_>>().join(" ");
-    let _ = writeln!(io::stderr(), "{kind}: {}", tamed(&shortened(&one_line), |_| false));
+    let line = format!("{kind}: {}", tamed(&shortened(&one_line), |_| false));
+    let _ = writeln!(io::stderr(), "{}", terminal::message(line));
 }
 
 /// Prints text on the standard output. If the reader closes the pipe early, as `head` does, this is not an error.
@@ -103,10 +105,22 @@ pub(crate) fn print(text: &str) -> Result<(), Fault> {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
+/// Prints text for a reader on the standard output. On a terminal, it has colours and fits the width.
+pub(crate) fn print_text(text: &str) -> Result<(), Fault> {
+    let Some(shown) = terminal::shown(text) else { return print(text) };
+    let mut out = io::stdout().lock();
+    done(out.write_all(shown.as_bytes()).and_then(|()| out.flush()))
+}
+
 /// Prints the output of a function in blocks, so that large output needs little memory.
 pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
     let mut out = TamedOutput { out: io::stdout().lock(), piece: Vec::new() };
-    match write(&mut out).and_then(|()| out.flush()) {
+    done(write(&mut out).and_then(|()| out.flush()))
+}
+
+/// Returns the error of the standard output. A closed pipe is no error.
+fn done(written: io::Result<()>) -> Result<(), Fault> {
+    match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Fault::input(format!("cannot write the standard output: {error}")))
         }

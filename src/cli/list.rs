@@ -1,6 +1,6 @@
 //! `grainbench list`: lists the cases.
 
-use super::exit::{Outcome, print, print_json};
+use super::exit::{Outcome, print_json, print_text};
 use super::names;
 use super::select;
 use grainbench::cases::registry::CASES;
@@ -53,7 +53,7 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
     if arguments.json {
         print_json(&entries)?;
     } else {
-        print(&table(&entries))?;
+        print_text(&table(&entries))?;
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -76,7 +76,7 @@ fn list_rows(arguments: &Arguments) -> Outcome {
             let Row { case, variant, quantity, control, .. } = row;
             format!("{case}/{variant} · {quantity} [control: {control}]\n")
         };
-        print(&rows.iter().map(line).collect::<String>())?;
+        print_text(&rows.iter().map(line).collect::<String>())?;
     }
     Ok(ExitCode::SUCCESS)
 }

@@ -16,8 +16,10 @@ mod exit;
 mod fields;
 mod filter;
 mod github;
+mod init;
 mod interrupt;
 mod jobs;
+mod judge;
 mod keep;
 mod kept_runs;
 mod list;
@@ -39,6 +41,8 @@ mod stability;
 mod step;
 mod strangers;
 mod subject;
+mod terminal;
+mod undeclared;
 mod value;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
@@ -56,6 +60,10 @@ const VERSION: &str = concat!(env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_
 #[derive(Parser)]
 #[command(name = "grainbench", version = VERSION, arg_required_else_help = true)]
 struct Cli {
+    /// Use of colours. By default, `NO_COLOR` turns them off.
+    // The help of each command would repeat the option.
+    #[arg(long, value_enum, default_value = "auto", global = true, hide = true)]
+    color: terminal::Color,
     #[command(subcommand)]
     command: Command,
 }
@@ -66,6 +74,11 @@ enum Command {
     List(list::Arguments),
     /// Run cases, judge their claims and write a report.
     Run(run::Arguments),
+    /// Judge one solver by the claims that apply to it: a manifest, a built-in solver or a Python function.
+    Judge(judge::Arguments),
+    /// Write the files of a new solver, case or scene, ready to run.
+    #[command(subcommand)]
+    Init(init::Command),
     /// Simulate a scene and write its record.
     Simulate(simulate::Arguments),
     /// Write the LAMMPS or LIGGGHTS input for a case or a scene.
@@ -118,16 +131,28 @@ enum Command {
 
 /// Groups of commands in the help text.
 const GROUPS: [(&str, &[&str]); 5] = [
-    ("Judge solvers with the cases", &["run", "conform", "list"]),
+    ("Judge solvers with the cases", &["run", "judge", "conform", "list"]),
     ("Judge output of other programs", &["check", "compare", "deck", "fields"]),
     ("Simulate", &["simulate", "scene", "report"]),
     ("Cost, stability, effects", &["cost", "stability", "effects", "race"]),
-    ("Stored runs", &["reference"]),
+    ("Files", &["init", "reference"]),
 ];
 
-/// Returns the command line. Its help text lists the commands by group.
+/// Line of the help for the option that every command accepts.
+const COLOR: &str = "      --color <auto|always|never>
+          Use of colours [default: auto]. By default, `NO_COLOR` turns them off";
+
+/// Returns the command line. Options that make no sense for `judge` are hidden.
+fn command_line() -> clap::Command {
+    let hide = |judge: clap::Command| {
+        judge::HIDDEN.iter().fold(judge, |judge, name| judge.mut_arg(name, |option| option.hide(true)))
+    };
+    Cli::command().mut_subcommand("judge", hide)
+}
+
+/// Returns the command line with a help text that lists the commands by group.
 fn grouped() -> clap::Command {
-    let command = Cli::command();
+    let command = command_line();
     let is_grouped = |name: &str| GROUPS.iter().any(|(_, names)| names.contains(&name));
     let line = |subcommand: &clap::Command| {
         format!("  {:<11}{}\n", subcommand.get_name(), subcommand.get_about().unwrap_or_default())
@@ -143,20 +168,25 @@ fn grouped() -> clap::Command {
     if !others.is_empty() {
         text += &format!("Others:\n{others}\n");
     }
-    let template = format!("{{about-section}}\n{{usage-heading}} {{usage}}\n\n{text}Options:\n{{options}}\n");
+    let template = format!("{{about-section}}\n{{usage-heading}} {{usage}}\n\n{text}Options:\n{{options}}\n{COLOR}\n");
     command.help_template(template)
 }
 
 /// Parses the command line, runs the command and returns its exit code.
 pub(crate) fn main() -> ExitCode {
-    let matches = grouped().get_matches_from(spelling::present(std::env::args_os()));
+    let arguments = spelling::present(std::env::args_os());
+    let command = grouped().color(terminal::choice_in(&arguments));
+    let matches = command.get_matches_from(arguments);
     let cli = Cli::from_arg_matches(&matches).unwrap_or_else(|error| error.exit());
+    terminal::choose(cli.color);
     if let Err(reason) = Processor::forced() {
         return Fault::input(reason).report();
     }
     let done = match cli.command {
         Command::List(arguments) => list::list(&arguments),
-        Command::Run(arguments) => run::command(&arguments),
+        Command::Run(arguments) => run::command(arguments),
+        Command::Judge(arguments) => judge::judge(arguments),
+        Command::Init(command) => init::init(&command),
         Command::Simulate(arguments) => simulate::simulate(&arguments),
         Command::Deck(arguments) => deck::deck(&arguments),
         Command::Check(arguments) => check::check(&arguments),
@@ -197,8 +227,8 @@ pub(crate) fn main() -> ExitCode {
             scene::old_schema(&arguments)
         }
         Command::Report(arguments) => report::report(&arguments),
-        Command::Completions(arguments) => completions::completions(&arguments, Cli::command()),
-        Command::Man(arguments) => completions::man(&arguments, Cli::command()),
+        Command::Completions(arguments) => completions::completions(&arguments, command_line()),
+        Command::Man(arguments) => completions::man(&arguments, command_line()),
     };
     done.unwrap_or_else(|fault: Fault| fault.report())
 }

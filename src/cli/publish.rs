@@ -1,12 +1,13 @@
 //! Output of commands: files and text of a report, and the exit code.
 
-use super::exit::{Fault, Outcome, RED, print};
+use super::exit::{Fault, Outcome, RED, print, print_text};
 use super::github;
+use super::terminal::width;
 use grainbench::harness::verdict::{self, Severity, Verdict};
 use grainbench::reports::results::results_json;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
-use grainbench::reports::{Headline, Report, summary_table, write_report, write_report_and_parquet};
+use grainbench::reports::{Headline, Report, summary_table_within, write_report, write_report_and_parquet};
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -38,10 +39,11 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     if output.json {
         print(&results_json(report).map_err(Fault::input)?)?;
     } else if output.quiet {
-        print(&quiet_text(report))?;
+        print_text(&quiet_text(report))?;
     } else {
-        let text = output.text.clone().unwrap_or_else(|| format!("{}\n", summary_table(report)));
-        print(&format!("{text}{}\n", output.out.join("index.html").display()))?;
+        let text = output.text.clone().unwrap_or_else(|| format!("{}\n", summary_table_within(report, width())));
+        print_text(&text)?;
+        print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
     github::tell(report, output.json)?;
     Ok(exit_code(report, output.strict))
@@ -53,7 +55,8 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> 
     if output.json {
         print(&study_json(study).map_err(Fault::input)?)?;
     } else {
-        print(&format!("{}{}\n", output.text.unwrap_or_default(), output.out.join("index.html").display()))?;
+        print_text(&output.text.unwrap_or_default())?;
+        print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
     Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
 }

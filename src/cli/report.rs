@@ -2,23 +2,25 @@
 
 use super::cost;
 use super::effects;
-use super::exit::{Fault, Outcome, RED, print};
+use super::exit::{Fault, Outcome, RED, print, print_text};
 use super::jobs::collect::{CollectOptions, collect};
 use super::jobs::status::status;
 use super::publish::exit_code;
 use super::stability;
+use super::terminal::width;
 use super::value::{positive, whole};
 use grainbench::jobs::plan::Plan;
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
+use grainbench::reports::plot::style::FigureStyle;
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::REPORT_FILE;
 use grainbench::reports::study::{STUDY_FILE, Study, load_study, write_study};
-use grainbench::reports::{summary_table, write_pictures, write_report};
+use grainbench::reports::{summary_table_within, write_figures, write_pictures, write_report};
 use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 #[derive(clap::Args)]
@@ -42,6 +44,10 @@ pub(crate) struct Arguments {
     /// Largest number of frames of a film. Default: 60.
     #[arg(long, value_name = "N", value_parser = whole::<u16>(2, 500))]
     frames: Option<u16>,
+    /// Draw the figures of a report again, for a publication: `width` in mm, `font_size` in pt, `font`, and `colors` as a
+    /// list of `#rrggbb`.
+    #[arg(long, value_name = "FILE.toml")]
+    style: Option<PathBuf>,
 }
 
 impl Arguments {
@@ -96,6 +102,12 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
              {found}"
         )));
     }
+    if arguments.style.is_some() && !holds(REPORT_FILE) {
+        let there = arguments.dir.display();
+        return Err(Fault::input(format!(
+            "--style: expected a directory written by `run`, with {REPORT_FILE}, found {there}"
+        )));
+    }
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
         pictures(arguments)?;
         print(&page)?;
@@ -112,9 +124,25 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         return Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS });
     }
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
+    let style = arguments.style.as_deref().map(style).transpose()?;
     write_report(&arguments.dir, &report).map_err(Fault::writing)?;
-    print(&format!("{}\n{page}", summary_table(&report)))?;
+    if let Some(style) = &style {
+        write_figures(&arguments.dir, &report, style).map_err(Fault::writing)?;
+    }
+    print_text(&format!("{}\n", summary_table_within(&report, width())))?;
+    print(&page)?;
     Ok(exit_code(&report, false))
+}
+
+/// Reads a style of figures.
+fn style(path: &Path) -> Result<FigureStyle, Fault> {
+    let named = |reason: String| Fault::input(format!("{}: {reason}", path.display()));
+    let text = std::fs::read_to_string(path).map_err(|error| named(error.to_string()))?;
+    let style: FigureStyle = toml::from_str(&text).map_err(|error| named(error.to_string()))?;
+    match style.wrong() {
+        Some((key, expected, found)) => Err(named(format!("{key}: expected {expected}, found {found}"))),
+        None => Ok(style),
+    }
 }
 
 /// Returns true if a study is red: it is unfinished, or the command that made it would end red with these results.

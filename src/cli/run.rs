@@ -15,6 +15,7 @@ use super::keep::{self, keep};
 use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish, says_nothing};
 use super::select::{self, CaseSelection};
+use super::undeclared;
 use grainbench::harness::data::{Data, SceneDataError};
 use grainbench::jobs::execute::in_memory;
 use grainbench::reference::outside::ExternalProgram;
@@ -31,6 +32,16 @@ pub(crate) struct Arguments {
     /// built-in cases.
     #[arg(value_name = "CASE|CASE/VARIANT|FOLDER")]
     cases: Vec<String>,
+    /// Judge only the claims of this solver. With a manifest, the external solver runs the solver-independent claims. Repeatable.
+    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    solver: Vec<String>,
+    #[command(flatten)]
+    rest: RunOptions,
+}
+
+/// Options that `run` and `judge` share.
+#[derive(clap::Args)]
+pub(super) struct RunOptions {
     #[command(flatten)]
     options: ClaimOptions,
     #[command(flatten)]
@@ -46,16 +57,29 @@ pub(crate) struct Arguments {
     work: WorkOptions,
 }
 
+impl RunOptions {
+    /// Returns true if a plan is written instead of a run.
+    pub(super) const fn is_planned(&self) -> bool {
+        self.plan.plan.is_some()
+    }
+}
+
 /// Runs the cases, writes a plan, or runs the tasks of a plan.
-pub(crate) fn command(arguments: &Arguments) -> Outcome {
-    let Arguments { cases, options, plan, resume, work } = arguments;
+pub(crate) fn command(arguments: Arguments) -> Outcome {
+    judge_by(&arguments.cases, arguments.solver, arguments.rest)
+}
+
+/// Judges solvers by the cases, writes a plan, or runs the tasks of a plan.
+pub(super) fn judge_by(cases: &[String], solver: Vec<String>, rest: RunOptions) -> Outcome {
+    let RunOptions { options, plan, resume, work } = rest;
+    let options = &ClaimOptions { solver, ..options };
     if let Some(plan) = resume {
-        return jobs::work::work(plan, work, options.jobs, options.retry_failed);
+        return jobs::work::work(&plan, &work, options.jobs, options.retry_failed);
     }
     work.refuse_without_plan()?;
     let planned = plan.planned(&jobs::arguments::Arguments {
         what: "run".to_owned(),
-        cases: cases.clone(),
+        cases: cases.to_vec(),
         solver: options.solver.clone(),
         levels: options.levels.clone(),
         filter: options.filter.clone(),
@@ -126,6 +150,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let ClaimOptions { out, parquet, json, strict, .. } = options;
     let output = Output { parquet: *parquet, quiet: options.quiet, ..Output::new(out, *json, *strict) };
     let code = publish(&report, &output)?;
+    undeclared::tell(&report);
     if let Some(earlier) = &earlier {
         let changes = earlier.changes(&report, is_whole);
         let none = ["nothing: every result and every control has the same outcome and value".to_owned()];

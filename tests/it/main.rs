@@ -24,6 +24,7 @@ mod given_data;
 mod guide;
 mod hostile_scenes;
 mod in_short;
+mod init;
 mod kept;
 #[cfg(unix)]
 mod killed;

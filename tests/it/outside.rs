@@ -151,9 +151,9 @@ fn what_is_not_declared_is_not_asked_for() {
     };
     let less = [
         ("[2, 3]", "[3]", "scenes in 2 dimensions"),
-        ("[\"linear\"]", "[\"hertz-mindlin\"]", "the law `linear`"),
-        ("walls = [\"plane\"]", "", "walls of the shape `plane`"),
-        ("\"friction\", ", "", "the effect `friction`"),
+        ("[\"linear\"]", "[\"hertz-mindlin\"]", "laws `linear`"),
+        ("walls = [\"plane\"]", "", "walls `plane`"),
+        ("\"friction\", ", "", "effects `friction`"),
     ];
     for (declared, instead, message) in less {
         let (verdict, detail) = reason(&MANIFEST.replace(declared, instead));
@@ -319,8 +319,8 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
         row["detail"].as_str().unwrap_or_default().to_owned()
     };
     let neo_hookean = [("\"hypoelastic\"", "\"neo-hookean\"")];
-    assert!(reason(&neo_hookean, "column").contains("the law `hypoelastic` of materials"));
-    assert!(reason(&[("\"global-damping\"", "")], "column/static").contains("the effect `global-damping`"));
+    assert!(reason(&neo_hookean, "column").contains("deformable `hypoelastic`"));
+    assert!(reason(&[("\"global-damping\"", "")], "column/static").contains("effects `global-damping`"));
     assert!(reason(&neo_hookean, "incline-disc").contains("its manifest declares no output of grains"));
 }
 

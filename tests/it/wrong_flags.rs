@@ -7,9 +7,11 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 20] = [
+const COMMANDS: [&[&str]; 22] = [
     &["list"],
     &["run", "squash"],
+    &["judge", "rigid", "squash"],
+    &["init", "solver", "new"],
     &["simulate", "scene.toml", "--solver", "dem"],
     &["deck", "nine-discs/kappa-0", "--for", "lammps"],
     &["check", "nine-discs/kappa-0", "--dump", "table.csv"],
@@ -29,6 +31,11 @@ const COMMANDS: [&[&str]; 20] = [
     &["completions", "bash"],
     &["man"],
 ];
+
+/// Returns the number of words that name a command.
+fn depth(command: &[&str]) -> usize {
+    if ["reference", "init"].contains(&command[0]) { 2 } else { 1 }
+}
 
 /// An option as shown in the help: its long name and the name of its value.
 struct HelpOption {
@@ -106,8 +113,7 @@ fn answers(command: &[&str]) -> String {
     let directory = directory.path();
     prepare(directory);
     let before = files(directory);
-    let help =
-        grainbench_alone(directory, &[&command[..if command[0] == "reference" { 2 } else { 1 }], &["--help"]].concat());
+    let help = grainbench_alone(directory, &[&command[..depth(command)], &["--help"]].concat());
     let mut messages = String::new();
     let mut ask = |words: &[&str]| {
         let option = words[0].split('=').next().unwrap_or_default();
@@ -132,8 +138,7 @@ fn answers(command: &[&str]) -> String {
 #[test]
 fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
     for command in COMMANDS {
-        let name =
-            command.iter().take(if command[0] == "reference" { 2 } else { 1 }).copied().collect::<Vec<_>>().join("_");
+        let name = command.iter().take(depth(command)).copied().collect::<Vec<_>>().join("_");
         insta::assert_snapshot!(name, answers(command));
     }
 }

@@ -14,7 +14,7 @@ mod grain_table;
 mod manifest;
 mod resolved;
 
-pub use can::inexpressible;
+pub use can::{inexpressible, named_features};
 pub use manifest::{
     Capabilities, GrainFormat, Grains, Limits, Manifest, ManifestError, Output, ParameterValues, SceneFormat, Wall,
 };

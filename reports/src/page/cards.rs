@@ -122,7 +122,7 @@ fn card(
         div class={ "card " (class) } data-card=(solver) {
             h3 {
                 (filter(None, html! { (solver) }))
-                span { @if not_judged < all { (pass) "/" (all) } @else { "none judged" } }
+                span { @if not_judged < all { (pass) "/" (all - not_judged) } @else { "none judged" } }
             }
             dl {
                 (compared(report, solver))

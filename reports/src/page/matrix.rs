@@ -107,38 +107,84 @@ fn fields_of(report: &Report) -> Vec<Physics> {
     fields
 }
 
-/// Renders the number of passed and judged results by field of physics, for solvers without settings for single cases.
-/// Empty if all cases are in one field.
+/// Results of a solver in a field of physics.
+struct FieldResults {
+    /// Largest |error| / scale of the results that pass or have a documented error; none if no result has an error.
+    error: Option<f64>,
+    /// Number of results of each outcome, with the most important outcome first.
+    counts: Vec<(Outcome, usize)>,
+}
+
+impl FieldResults {
+    fn new(report: &Report, physics: Physics, solver: &str) -> Option<Self> {
+        let sections = report.sections.iter().filter(|section| section.physics == physics);
+        let of_solver = sections.flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
+        let rows: Vec<&Verdict> = of_solver.filter(|row| row.outcome.is_judged()).collect();
+        let error = rows.iter().filter_map(|row| row.error).map(f64::abs).filter(|error| error.is_finite());
+        let error = error.reduce(f64::max);
+        (!rows.is_empty()).then(|| Self { error, counts: counts(rows.iter().map(|row| row.outcome)) })
+    }
+
+    /// Returns true if all results pass.
+    fn passes(&self) -> bool {
+        self.counts.iter().all(|(outcome, _)| *outcome == Outcome::Pass)
+    }
+}
+
+/// Renders the largest error by field of physics and solver, for solvers without settings for single cases. Solvers with
+/// the smallest error in most fields come first. Empty if all cases are in one field.
 pub(crate) fn by_physics(report: &Report) -> Markup {
     const MAIN: [&str; 5] = ["dem", "rigid", "mpm", "dem:lammps", "dem:liggghts"];
     let fields = fields_of(report);
-    let rows = |physics: Physics, solver: &str| -> Vec<Outcome> {
-        let sections = report.sections.iter().filter(|section| section.physics == physics);
-        let of_solver = sections.flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
-        of_solver.map(|row| row.outcome).filter(|outcome| outcome.is_judged()).collect()
-    };
-    let count = |physics: Physics, solver: &str| {
-        let outcomes = rows(physics, solver);
-        let counts = counts(outcomes.iter().copied());
-        let worst = counts.first()?.0;
-        let passed = outcomes.iter().filter(|outcome| **outcome == Outcome::Pass).count();
-        let title = description(physics.title(), solver, &counts);
-        let class = if worst == Outcome::Pass { "c1" } else { class(worst, Some(1.0)) };
-        Some(html! { a class=(class) href="#matrix" title=(title) { (passed) "/" (outcomes.len()) } })
-    };
-    let there = |solver: &&str| fields.iter().any(|physics| !rows(*physics, solver).is_empty());
-    let solvers: Vec<&str> = MAIN.into_iter().filter(there).collect();
-    if fields.len() < 2 || solvers.is_empty() {
+    let mut columns: Vec<(&str, Vec<Option<FieldResults>>)> = MAIN
+        .into_iter()
+        .map(|solver| (solver, fields.iter().map(|physics| FieldResults::new(report, *physics, solver)).collect()))
+        .filter(|(_, results): &(&str, Vec<Option<FieldResults>>)| results.iter().any(Option::is_some))
+        .collect();
+    if fields.len() < 2 || columns.is_empty() {
         return html! {};
     }
+    let least = |field: usize| -> Option<f64> {
+        let results = columns.iter().filter_map(|(_, results)| results[field].as_ref());
+        results.filter(|results| results.passes()).filter_map(|results| results.error).reduce(f64::min)
+    };
+    let least: Vec<Option<f64>> = (0..fields.len()).map(least).collect();
+    let is_least = |field: usize, results: &FieldResults| {
+        results.passes() && results.error.is_some() && results.error == least[field]
+    };
+    let wins = |results: &[Option<FieldResults>]| {
+        results
+            .iter()
+            .enumerate()
+            .filter(|(field, results)| results.as_ref().is_some_and(|results| is_least(*field, results)))
+            .count()
+    };
+    columns.sort_by_key(|(_, results)| std::cmp::Reverse(wins(results)));
+    let cell = |field: usize, solver: &str, results: &FieldResults| {
+        let class = match results.counts.first().map_or(Outcome::Pass, |(worst, _)| *worst) {
+            Outcome::Pass if is_least(field, results) => "c2",
+            Outcome::Pass => "c0",
+            worst => class(worst, Some(1.0)),
+        };
+        let title = description(fields[field].title(), solver, &results.counts);
+        let error = results.error.map_or("–".to_owned(), percent);
+        html! { a class=(class) href="#matrix" title=(title) data-solver=(solver) { (error) } }
+    };
     let table = html! {
         table.physics {
-            thead { tr { th scope="col" { "Passed / judged" } @for solver in &solvers { th scope="col" { (broken(solver)) } } } }
+            thead {
+                tr {
+                    th scope="col" { "Largest error" }
+                    @for (solver, _) in &columns { th scope="col" { (broken(solver)) } }
+                }
+            }
             tbody {
-                @for physics in fields {
+                @for (field, physics) in fields.iter().enumerate() {
                     tr {
                         th scope="row" { (physics.title()) }
-                        @for solver in &solvers { td { (count(physics, solver).unwrap_or_default()) } }
+                        @for (solver, results) in &columns {
+                            td { @if let Some(results) = &results[field] { (cell(field, solver, results)) } }
+                        }
                     }
                 }
             }
@@ -146,7 +192,19 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
     };
     html! {
         h3 { a href="#matrix" { "Which solver for which physics" } }
-        (super::scrolling("Passed results by field of physics and solver", &table))
+        (super::scrolling("Largest error by field of physics and solver", &table))
+        p.note { "Largest |error| / scale of the judged results. Dark: the smallest of its row." }
+    }
+}
+
+/// Returns an error with one significant digit, because the cell is small: in percent, or as a power of ten.
+fn percent(error: f64) -> String {
+    if error == 0.0 {
+        "0".to_owned()
+    } else if (1e-4..100.0).contains(&error) {
+        format!("{}\u{202f}%", number::significant(100.0 * error, 1))
+    } else {
+        number::power_of_ten(error.log10().floor() as i32)
     }
 }
 
@@ -262,33 +320,39 @@ mod tests {
         }
     }
 
-    /// The counts are those of the judged results. One result that fails makes its cell red.
+    /// The smallest error of a field is dark, and its solver comes first. A solver with a failed result is red and never
+    /// the best.
     #[test]
-    fn results_are_counted_by_field_of_physics() {
+    fn solvers_are_ranked_by_their_largest_error() {
         let mut report = crate::sample::report();
-        for section in &mut report.sections {
-            section.verdicts.truncate(2);
-            for row in &mut section.verdicts {
-                (row.solver, row.outcome) = ("dem".to_owned(), Outcome::Pass);
+        for (at, section) in report.sections.iter_mut().enumerate() {
+            section.verdicts.truncate(3);
+            let results = [("dem", 0.02), ("dem", -0.01), ("rigid", if at == 0 { 3e-6 } else { 0.01 })];
+            for (row, (solver, error)) in section.verdicts.iter_mut().zip(results) {
+                (row.solver, row.outcome, row.error) = (solver.to_owned(), Outcome::Pass, Some(error));
             }
         }
         let cells = |report: &Report| -> Vec<String> {
             let page = by_physics(report).into_string();
-            page.split("<td>")
-                .skip(1)
-                .map(|cell| cell.split("</a>").next().unwrap().replace(" href=\"#matrix\"", ""))
-                .collect()
+            let cell = |cell: &str| {
+                let class = cell.split('"').nth(1).unwrap().to_owned();
+                format!("{class} {}", cell.split("</a>").next().unwrap().rsplit('>').next().unwrap())
+            };
+            page.split("<td>").skip(1).map(cell).collect()
         };
-        let cell = |class: &str, field: &str, results: &str, shown: &str| {
-            format!("<a class=\"{class}\" title=\"{field}, dem: {results}\">{shown}")
-        };
-        let contacts = cell("c1", "contacts, collisions", "2 pass", "2/2");
-        assert_eq!(cells(&report), [contacts.clone(), cell("c1", "rolling, sliding", "2 pass", "2/2")]);
+        let page = by_physics(&report).into_string();
+        assert!(page.find("rigid").unwrap() < page.find(">dem").unwrap(), "{page}");
+        assert!(page.contains("title=\"rolling, sliding, dem: 2 pass\""), "{page}");
+        assert_eq!(cells(&report), ["c2 1\u{202f}%", "c0 2\u{202f}%", "c2 10⁻⁶", "c0 2\u{202f}%"]);
         let rolling = report.sections.iter().position(|section| section.physics == Physics::Rolling).unwrap();
-        report.sections[rolling].verdicts[1].outcome = Outcome::Fail;
-        assert_eq!(cells(&report), [contacts.clone(), cell("f0", "rolling, sliding", "1 fail, 1 pass", "1/2")]);
-        report.sections[rolling].verdicts[1].outcome = Outcome::Unsupported;
-        assert_eq!(cells(&report), [contacts, cell("c1", "rolling, sliding", "1 pass", "1/1")]);
+        report.sections[rolling].verdicts[2].outcome = Outcome::Fail;
+        assert_eq!(cells(&report)[2..], ["c2 2\u{202f}%", "f0 10⁻⁶"], "both are best in one field");
+        report.sections[rolling].verdicts[2].outcome = Outcome::Unsupported;
+        assert_eq!(
+            by_physics(&report).into_string().matches("<a class").count(),
+            3,
+            "an unsupported result has no cell"
+        );
         report.sections.remove(rolling);
         assert_eq!(by_physics(&report).into_string(), "");
     }

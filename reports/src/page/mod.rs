@@ -17,6 +17,7 @@ pub(crate) mod summary;
 mod tables;
 
 pub use cards::meaning;
+pub use provenance::{AUTHOR, TITLE};
 
 use std::collections::BTreeSet;
 

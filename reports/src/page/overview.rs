@@ -31,8 +31,10 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
                     @let (symbol, class) = sign(outcome);
                     @if counts.count(outcome) > 0 {
                         li class=(class) {
-                            b { (counts.count(outcome)) } " "
-                            span { (symbol) " " (outcome.word()) }
+                            a href="#matrix" title=(meaning(outcome)) data-outcome=(outcome.word()) {
+                                b { (counts.count(outcome)) } " "
+                                span { (symbol) " " (outcome.word()) }
+                            }
                             (by_solver(report, outcome))
                         }
                     }
@@ -63,6 +65,21 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
                 }
             }
         }
+    }
+}
+
+/// Returns the meaning of an outcome. The page shows it beside the results with this outcome.
+const fn meaning(outcome: Outcome) -> &'static str {
+    match outcome {
+        Outcome::Pass => "the error is within the tolerance",
+        Outcome::Fail => "the error is larger than the tolerance",
+        Outcome::Broken => "the run ended with an error",
+        Outcome::Stale => "the reference belongs to another scene",
+        Outcome::Known => "a documented error of the method or program",
+        Outcome::Outdated => "a stored result passes, but older solver sources made it",
+        Outcome::NoReference => "there is no reference, or the tolerance is too large for a conclusion",
+        Outcome::Unsupported => "the solver cannot represent the scene",
+        Outcome::NotAvailable => "the program is not installed, or third-party data are missing",
     }
 }
 
@@ -113,7 +130,7 @@ fn by_solver(report: &Report, outcome: Outcome) -> Markup {
 fn tools() -> Markup {
     html! {
         div.tools id="tools" hidden {
-            input id="search" type="search" placeholder="Search rows ( / )" aria-label="Search rows";
+            input id="search" type="search" placeholder="Search rows ( / )" title="Enter: first hit" aria-label="Search rows";
             @for kind in ["solver", "case", "source", "outcome", "evidence"] {
                 select id={ "by-" (kind) } aria-label={ "Only this " (kind) } { option value="" { "any " (kind) } }
             }

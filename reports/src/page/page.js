@@ -1,4 +1,4 @@
-// Functions of the page: search, filter, sort, copy a row, stop a film, change colours.
+// Functions of the page: search, filter, sort, copy a row or a citation, stop a film, change colours.
 // Without it the page is whole, and everything is there to be read.
 "use strict";
 (() => {
@@ -14,6 +14,28 @@
       const isDark = root.dataset.theme ? root.dataset.theme === "dark" : matchMedia("(prefers-color-scheme: dark)").matches;
       root.dataset.theme = isDark ? "light" : "dark";
     });
+  }
+
+  // Copies a text; the button shows a tick for a moment. The pictures need no font.
+  const icon = (path) => `<svg viewBox="0 0 16 16" width="1em" height="1em" fill="none" stroke="currentColor" stroke-width="1.6" aria-hidden="true"><path d="${path}"/></svg>`;
+  const COPY = icon("M5.5 5.5h8v8h-8zM2.5 10.5v-8h8"), DONE = icon("M2 8.5l4 4 8-9");
+  const copied = async (button, text) => {
+    root.dataset.copied = text;
+    try { await navigator.clipboard.writeText(text); } catch {
+      const area = make("textarea", text);
+      document.body.append(area);
+      area.select();
+      document.execCommand("copy");
+      area.remove();
+    }
+    button.innerHTML = DONE;
+    setTimeout(() => { button.innerHTML = COPY; }, 1200);
+  };
+  for (const text of all(".cite pre")) {
+    const copy = make("button", "", { type: "button", title: "Copy this citation", innerHTML: COPY });
+    copy.setAttribute("aria-label", "Copy this citation");
+    copy.addEventListener("click", () => copied(copy, text.textContent));
+    text.before(copy);
   }
 
   // Films: frames are differences to the frame before, packed; they run until somebody stops them.
@@ -71,7 +93,7 @@
   const rows = all("table.verdicts tbody tr").map((row) => ({
     row, section: row.closest("section"), solver: row.dataset.s, outcome: row.dataset.o, evidence: row.cells[5].firstChild.textContent.split(": ")[0],
     source: row.cells[5].firstChild.textContent.split(": ").slice(1).join(": "), case: row.closest("section").dataset.case,
-    text: (row.closest("section").dataset.words + " " + row.textContent).toLowerCase(),
+    quantity: row.cells[1].textContent.toLowerCase(), text: (row.closest("section").dataset.words + " " + row.textContent).toLowerCase(),
   }));
   const kinds = ["solver", "case", "source", "outcome", "evidence"];
   const selects = Object.fromEntries(kinds.map((kind) => [kind, document.getElementById("by-" + kind)]));
@@ -82,19 +104,33 @@
   }
 
   const wanted = () => ({ words: search.value.toLowerCase().split(/\s+/).filter(Boolean), ...Object.fromEntries(kinds.map((k) => [k, selects[k].value])) });
-  let opened = [];
+  // The address has the filters, so that a reload keeps them and a link shares them.
+  const remember = (want) => {
+    const query = new URLSearchParams(Object.entries({ q: search.value.trim(), ...want }).filter(([key, value]) => value && key !== "words"));
+    const address = `${location.pathname}${query.size ? `?${query}` : ""}${location.hash}`;
+    try { if (address !== location.pathname + location.search + location.hash) history.replaceState(null, "", address); } catch { /* The browser keeps the address of a file. */ }
+  };
+  let opened = [], first = null;
   const apply = () => {
     const want = wanted();
     const isOn = want.words.length > 0 || kinds.some((kind) => want[kind]);
     document.body.classList.toggle("filtering", isOn);
+    remember(want);
     const tally = new Map(), cases = new Map();
+    let named = 0;
+    first = null;
     for (const one of rows) {
       const fits = !isOn || (kinds.every((kind) => !want[kind] || one[kind] === want[kind]) && want.words.every((word) => one.text.includes(word)));
       one.row.hidden = !fits;
       if (!fits) continue;
+      // A row whose quantity has the words comes before a row of a case or source with these words.
+      const isNamed = want.words.every((word) => one.quantity.includes(word));
+      if (isNamed) named += 1;
+      if (!first || (isNamed && named === 1)) first = one.row;
       cases.set(one.case, (cases.get(one.case) || 0) + 1);
-      const of = tally.get(one.solver) || { pass: 0, all: 0, worst: 0 };
+      const of = tally.get(one.solver) || { pass: 0, judged: 0, all: 0, worst: 0 };
       of.all += 1;
+      of.judged += ["unsupported", "no-reference", "not-available"].includes(one.outcome) ? 0 : 1;
       of.pass += one.outcome === "pass" ? 1 : 0;
       of.worst = Math.max(of.worst, Number(one.row.cells[4].dataset.v || 0));
       tally.set(one.solver, of);
@@ -111,11 +147,16 @@
     found.hidden = !isOn;
     if (!isOn) return;
     const sum = [...tally.values()].reduce((sum, of) => sum + of.all, 0);
-    found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases. `), make("span", "Passed results by solver, and largest error / tolerance:"));
+    const how = want.words.length && named < sum ? ` ${named} by their quantity, ${sum - named} by case, source or detail.` : "";
+    const meaning = want.outcome && document.querySelector(`.counts a[data-outcome="${want.outcome}"]`)?.title;
+    found.replaceChildren(make("b", `${sum} of ${rows.length} rows in ${cases.size} cases.${how} `), make("span", meaning ? `${want.outcome}: ${meaning}. ` : ""),
+      make("span", `${want.outcome ? "Results" : "Passed of judged results"} by solver, and largest error / tolerance:`));
     const list = document.createElement("ul");
-    for (const [solver, of] of [...tally].sort((a, b) => b[1].pass / b[1].all - a[1].pass / a[1].all || b[1].all - a[1].all)) {
-      const item = make("li", "");
-      item.append(make("b", solver), make("span", ` ${of.pass}/${of.all}, worst ${of.worst >= 100 ? of.worst.toExponential(0) : Number(of.worst.toPrecision(2))}`));
+    const part = (of) => (of.judged ? of.pass / of.judged : -1);
+    for (const [solver, of] of [...tally].sort((a, b) => part(b[1]) - part(a[1]) || b[1].all - a[1].all)) {
+      const item = make("li", ""), worst = of.worst >= 100 ? of.worst.toExponential(0) : Number(of.worst.toPrecision(2));
+      const rest = of.all > of.judged ? `, ${of.all - of.judged} not judged` : "";
+      item.append(make("b", solver), make("span", !of.judged ? ` none judged (${of.all})` : want.outcome ? ` ${of.all}, worst ${worst}` : ` ${of.pass}/${of.judged}, worst ${worst}${rest}`));
       list.append(item);
     }
     found.append(list);
@@ -127,6 +168,14 @@
   };
   let soon = 0;
   search.addEventListener("input", () => { clearTimeout(soon); soon = setTimeout(apply, 80); });
+  search.addEventListener("keydown", (key) => {
+    if (key.key !== "Enter") return;
+    clearTimeout(soon);
+    apply();
+    if (!first || !search.value.trim()) return;
+    if (location.hash === `#${first.id}`) reveal();
+    else location.hash = first.id;
+  });
   for (const kind of kinds) selects[kind].addEventListener("change", apply);
   document.getElementById("clear").addEventListener("click", () => ask({}));
   addEventListener("keydown", (key) => {
@@ -136,7 +185,7 @@
   });
   // Shows only the rows of a cell or a card.
   document.addEventListener("click", (click) => {
-    const link = click.target.closest("a[data-solver]");
+    const link = click.target.closest("a[data-solver], a[data-outcome]");
     if (!link || click.ctrlKey || click.metaKey) return;
     click.preventDefault();
     ask({ solver: link.dataset.solver, case: link.dataset.case, outcome: link.dataset.outcome });
@@ -153,6 +202,8 @@
     target.scrollIntoView({ block: target.tagName === "TR" ? "center" : "start" });
   };
   addEventListener("hashchange", reveal);
+  const asked = new URLSearchParams(location.search);
+  if (asked.size) ask({ words: asked.get("q"), ...Object.fromEntries(kinds.map((kind) => [kind, asked.get(kind)])) });
   if (location.hash) reveal();
 
   // Sort by a column: numbers as numbers, and once more the other way round.
@@ -188,25 +239,14 @@
     const act = make("span", "", { className: "act" });
     const link = make("a", "§", { href: `#${row.id}` });
     link.setAttribute("aria-label", "Link to this row");
-    const copy = make("button", "⧉", { type: "button", title: "Copy this row as text" });
+    const copy = make("button", "", { type: "button", title: "Copy this row as text", innerHTML: COPY });
     copy.setAttribute("aria-label", "Copy this row as text");
     act.append(link, copy);
     row.cells[0].prepend(act);
   }
-  document.addEventListener("click", async (click) => {
+  document.addEventListener("click", (click) => {
     const button = click.target.closest(".act button");
-    if (!button) return;
-    const text = words(button.closest("tr"));
-    root.dataset.copied = text;
-    try { await navigator.clipboard.writeText(text); } catch {
-      const area = make("textarea", text);
-      document.body.append(area);
-      area.select();
-      document.execCommand("copy");
-      area.remove();
-    }
-    button.textContent = "✓";
-    setTimeout(() => { button.textContent = "⧉"; }, 1200);
+    if (button) copied(button, words(button.closest("tr")));
   });
 
   // Boxes that scroll can be reached by keyboard.

@@ -4,8 +4,8 @@ use grainbench_harness::figure::{Drawing, Figure};
 use maud::{Markup, PreEscaped, html};
 
 use super::scrolling;
-use crate::measured::{AT, Costs, Effects, Hold, Measurements, Stability, Stamp, TARGETS};
-use crate::number;
+use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp, TARGETS};
+use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
 use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
@@ -104,14 +104,15 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
     let section = report.sections.iter().find(|section| section.name == diagram.case);
     let name = section.map_or(diagram.case.as_str(), |section| section.title.as_str());
     figure.title = format!("{name}, {}", diagram.variant);
-    let times: Vec<String> = costs
-        .lines
-        .iter()
-        .filter_map(|line| {
-            let point = cost::cheapest(diagram, &line.solver, TARGETS[AT])?;
-            Some(format!("{} {}", line.solver, number::seconds(point.wall_seconds?)))
-        })
-        .collect();
+    let cheapest = |line: &Line| {
+        let point = cost::cheapest(diagram, &line.solver, TARGETS[AT])?;
+        Some((line.solver.clone(), point.wall_seconds?))
+    };
+    let mut times: Vec<(String, f64)> = costs.lines.iter().filter_map(cheapest).collect();
+    times.sort_by(|(_, a), (_, b)| a.total_cmp(b));
+    let unit = TimeUnit::of(times.iter().map(|(_, seconds)| *seconds));
+    let times: Vec<String> =
+        times.into_iter().map(|(solver, seconds)| format!("{solver} {}", unit.with_symbol(seconds))).collect();
     html! {
         (drawn(&figure))
         p {

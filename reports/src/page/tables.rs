@@ -4,7 +4,7 @@ use grainbench_harness::verdict::Control;
 use maud::{Markup, html};
 
 use super::scrolling;
-use crate::number;
+use crate::number::{self, TimeUnit};
 use crate::report::RunCost;
 
 /// Renders the table of negative controls with their results.
@@ -45,6 +45,8 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
 /// Renders the table with the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
     let variants = runs.iter().any(|run| !run.variant.is_empty());
+    let (step, wall) =
+        (TimeUnit::of(runs.iter().map(|run| run.time_step)), TimeUnit::of(runs.iter().map(|run| run.wall_seconds)));
     let table = html! {
         table.sorts {
             thead {
@@ -52,12 +54,12 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
                     th scope="col" { "Solver" }
                     @if variants { th scope="col" { "Variant" } }
                     th scope="col" { "Resolution" }
-                    th.n scope="col" { "Δt" }
+                    th.n scope="col" { "Δt (" (step.symbol) ")" }
                     th.n scope="col" { "Δt / critical" }
                     th.n scope="col" { "Steps" }
                     th.n scope="col" { "Particle-steps" }
                     th.n scope="col" { "Contact evaluations" }
-                    th.n scope="col" { "Wall time" }
+                    th.n scope="col" { "Wall time (" (wall.symbol) ")" }
                 }
             }
             tbody {
@@ -66,13 +68,13 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
                         th scope="row" { (run.solver) }
                         @if variants { td { (run.variant) } }
                         td { (run.resolution) }
-                        td.n data-v=(run.time_step) { (number::seconds(run.time_step)) }
+                        td.n data-v=(run.time_step) { (step.number(run.time_step)) }
                         td.n { (run.fraction_of_critical.map_or("—".to_owned(), |part| number::significant(part, 3))) }
                         td.n data-v=(run.steps) { (number::count(run.steps)) }
                         td.n data-v=(run.particle_steps) { (number::count(run.particle_steps)) }
                         td.n { (run.contact_evaluations.map_or("—".to_owned(), number::count)) }
                         @if run.wall_seconds.is_finite() {
-                            td.n data-v=(run.wall_seconds) { (number::seconds(run.wall_seconds)) }
+                            td.n data-v=(run.wall_seconds) { (wall.number(run.wall_seconds)) }
                         } @else {
                             td.n { "—" }
                         }

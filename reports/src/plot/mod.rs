@@ -7,6 +7,7 @@ pub mod lines;
 pub mod palette;
 mod reel;
 pub mod scale;
+pub mod style;
 pub(crate) mod text;
 
 use grainbench_harness::figure::{Drawing, Figure};

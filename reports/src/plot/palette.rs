@@ -4,7 +4,7 @@
 pub const FAINT: &str = "#666";
 
 /// Colours of Okabe and Ito without yellow and black. Yellow is too pale on white, and dashed curves are black.
-const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
+pub(super) const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 /// Solvers whose colour and marker are the same in all figures.
 pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];

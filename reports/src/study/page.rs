@@ -3,7 +3,7 @@
 use super::point::{Diagram, Point, PointStatus};
 use super::{Study, cost, effects, load, stability, step};
 use crate::measured::Costs;
-use crate::number;
+use crate::number::{self, TimeUnit};
 use crate::page::{provenance, scrolling, shell, slug, summary, unique};
 use crate::plot::{self, DrawError};
 use grainbench_harness::figure::Figure;
@@ -137,6 +137,8 @@ fn which(study: &Study) -> Markup {
                 @for diagram in &study.diagrams {
                     @let best = lines.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds)
                         .fold(f64::INFINITY, f64::min);
+                    @let walls = lines.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds);
+                    @let unit = TimeUnit::of(walls);
                     tr {
                         th scope="row" { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } }
                         @for line in &lines {
@@ -144,8 +146,8 @@ fn which(study: &Study) -> Markup {
                                 Some(point) => {
                                     @let wall = point.wall_seconds.unwrap_or(f64::NAN);
                                     td {
-                                        @if wall <= best { b { (number::seconds(wall)) } }
-                                        @else { (number::seconds(wall)) " (× " (number::significant(wall / best, 2)) ")" }
+                                        @if wall <= best { b { (unit.with_symbol(wall)) } }
+                                        @else { (unit.with_symbol(wall)) " (× " (number::significant(wall / best, 2)) ")" }
                                         span.fine { (point.setting()) }
                                     }
                                 }
@@ -207,6 +209,8 @@ fn reasons(diagram: &Diagram) -> Markup {
 }
 
 fn points(diagram: &Diagram) -> Markup {
+    let times = |point: &Point| [point.wall_seconds, point.cpu_seconds, point.start_up_seconds];
+    let unit = TimeUnit::of(diagram.points.iter().flat_map(times).flatten());
     let table = html! {
         table.rows.costs {
             thead {
@@ -226,14 +230,14 @@ fn points(diagram: &Diagram) -> Markup {
                     th scope="col" { "Parts of the error" }
                 }
             }
-            tbody { @for point in &diagram.points { (row(point)) } }
+            tbody { @for point in &diagram.points { (row(point, unit)) } }
         }
     };
     scrolling("Every point", &table)
 }
 
-fn row(point: &Point) -> Markup {
-    let seconds = |value: Option<f64>| value.map_or("—".to_owned(), number::seconds);
+fn row(point: &Point, unit: TimeUnit) -> Markup {
+    let seconds = |value: Option<f64>| value.map_or("—".to_owned(), |seconds| unit.with_symbol(seconds));
     let class = match point.standing {
         PointStatus::Measured => "",
         PointStatus::Failed => "fail",

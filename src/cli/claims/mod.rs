@@ -14,11 +14,11 @@ use grainbench::reports::measured::Measurements;
 use grainbench::reports::{Provenance, Report, Section};
 use std::path::PathBuf;
 
-/// Options of `run`.
+/// Options of `run` and `judge`.
 #[derive(clap::Args)]
 pub(crate) struct ClaimOptions {
-    /// Judge only the claims of this solver. With a manifest, the external solver runs the solver-independent claims. Repeatable.
-    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    /// Solvers of `run --solver` or of `judge`, by name or manifest.
+    #[arg(skip)]
     pub(crate) solver: Vec<String>,
     /// Resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]

@@ -53,7 +53,7 @@ pub(crate) struct PlanOptions {
     /// Write a plan to this directory and run nothing. `run --resume DIR` runs the plan. Finished tasks of an existing
     /// plan stay finished.
     #[arg(long, value_name = "DIR", conflicts_with_all = ["out", "no_cache", "update_stored"])]
-    plan: Option<PathBuf>,
+    pub(crate) plan: Option<PathBuf>,
     /// Number of shards of the plan. Default: as many as last at least 60 s on average.
     #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST), requires = "plan")]
     shards: Option<u32>,

@@ -55,6 +55,8 @@ pub(crate) struct ClaimStudy {
 #[derive(clap::Parser)]
 struct RunParser {
     cases: Vec<String>,
+    #[arg(long)]
+    solver: Vec<String>,
     #[command(flatten)]
     options: ClaimOptions,
 }
@@ -69,7 +71,8 @@ impl ClaimStudy {
         words.extend(arguments.filter.iter().map(|value| format!("--filter={value}")));
         words.extend(arguments.no_controls.then(|| "--no-controls".to_owned()));
         words.extend(arguments.live.then(|| "--live".to_owned()));
-        let RunParser { cases, options } = clap::Parser::try_parse_from(words).map_err(Fault::input)?;
+        let RunParser { cases, solver, options } = clap::Parser::try_parse_from(words).map_err(Fault::input)?;
+        let options = ClaimOptions { solver, ..options };
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
             return Err(Fault::input(

@@ -1,0 +1,225 @@
+//! Files of `init`, the command `judge`, and colours.
+
+use crate::common::{files, grainbench, program};
+use serde_json::Value;
+use std::fs;
+use std::path::Path;
+use std::process::Command;
+
+/// Cases that a solver for one grain can run.
+const CASES: [&str; 2] = ["incline-disc/30deg-mu.5", "backspin/sphere"];
+
+fn is_here(program: &str) -> bool {
+    Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success())
+}
+
+/// Each written solver passes, and fails after its friction is changed.
+#[test]
+fn a_written_solver_runs_at_once() {
+    let languages = [
+        ("python", "python3", "one_grain.py", "law[\"friction\"] *", "0.9 * law[\"friction\"] *"),
+        ("cpp", "c++", "one_grain.cpp", "most = mu *", "most = 0.9 * mu *"),
+        ("rust", "rustc", "one_grain.rs", "friction_coefficient * push", "0.9 * friction_coefficient * push"),
+    ];
+    for (language, compiler, source, right, wrong) in
+        languages.into_iter().filter(|(_, compiler, ..)| is_here(compiler))
+    {
+        let directory = tempfile::tempdir().unwrap();
+        let path = directory.path();
+        let made = grainbench(path, &["init", "solver", "mine", "--language", language]);
+        assert_eq!((made.code, made.err.as_str()), (Some(0), ""), "{compiler}");
+        assert_eq!(made.out, "grainbench judge mine/SOLVER.toml incline-disc backspin\n");
+        let judge = || grainbench(path, &["judge", "mine/SOLVER.toml", CASES[0], CASES[1], "--no-controls", "--quiet"]);
+        let answer = judge();
+        assert!(
+            answer.code == Some(0) && answer.out.contains("9 pass, 0 fail"),
+            "{language}: {}{}",
+            answer.out,
+            answer.err
+        );
+        let text = fs::read_to_string(path.join("mine").join(source)).unwrap();
+        assert!(text.contains(right), "{language}");
+        // `make` compares times of files.
+        let _ = fs::remove_file(path.join("mine/one_grain"));
+        fs::write(path.join("mine").join(source), text.replace(right, wrong)).unwrap();
+        assert_eq!(judge().code, Some(1), "{language}: a wrong friction passes");
+    }
+}
+
+/// A written case and a written scene run. Nothing is overwritten, and a refusal writes nothing.
+#[test]
+fn a_written_case_and_scene_run_at_once() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let done = |arguments: &[&str]| {
+        let answer = grainbench(path, arguments);
+        assert_eq!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
+        answer.out
+    };
+    assert_eq!(done(&["init", "case", "mine"]), "grainbench run mine\n");
+    assert!(done(&["run", "mine", "--quiet"]).starts_with("3 pass, 0 fail; negative controls: 3 of 3"));
+    assert_eq!(done(&["init", "scene", "ball.toml"]), "grainbench simulate ball.toml --solver dem\n");
+    assert!(done(&["simulate", "ball.toml", "--solver", "dem", "--out", "ball"]).contains("A ball on a slope"));
+    let before = files(path);
+    fs::write(path.join("ball.toml"), "mine").unwrap();
+    for (arguments, found) in [
+        (&["init", "case", "mine"][..], "mine: expected a new or empty directory, found `"),
+        (&["init", "solver", "mine"], "mine: expected a new or empty directory, found `"),
+        (&["init", "solver", "ball.toml"], "ball.toml: "),
+        (&["init", "scene", "ball.toml"], "ball.toml: expected the name of a new `.toml` file, found an existing file"),
+        (&["init", "scene", "ball"], "ball: expected the name of a new `.toml` file, found another name"),
+        (&["init", "solver", "other", "--language", "cobol"], "invalid value 'cobol'"),
+    ] {
+        let answer = grainbench(path, arguments);
+        assert!(
+            answer.code == Some(2) && answer.err.contains(found),
+            "{arguments:?}: {:?} {}",
+            answer.code,
+            answer.err
+        );
+    }
+    assert_eq!(files(path), before);
+    assert_eq!(fs::read_to_string(path.join("ball.toml")).unwrap(), "mine");
+    fs::create_dir(path.join("empty")).unwrap();
+    assert_eq!(done(&["init", "case", "empty"]), "grainbench run empty\n", "an empty directory is not refused");
+}
+
+/// `judge NAME` gives the results of `run --solver NAME`.
+#[test]
+fn judge_and_run_give_the_same_results() {
+    let directory = tempfile::tempdir().unwrap();
+    let results = |arguments: &[&str]| -> Value {
+        let answer = grainbench(directory.path(), arguments);
+        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        results["verdicts"].clone()
+    };
+    let by_run = results(&["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--json"]);
+    assert!(!by_run.as_array().unwrap().is_empty());
+    assert_eq!(results(&["judge", "dem:lammps", CASES[1], "--no-controls", "--json"]), by_run);
+    assert_ne!(results(&["judge", "rigid", CASES[1], "--no-controls", "--json"]), by_run);
+}
+
+/// A Python function needs `python3` and the package. A misspelled built-in solver is no function.
+#[cfg(unix)]
+#[test]
+fn a_python_function_needs_python() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let judge = |name: &str, script: Option<&str>| {
+        let bin = path.join("bin");
+        fs::create_dir_all(&bin).unwrap();
+        if let Some(script) = script {
+            use std::os::unix::fs::PermissionsExt;
+            fs::write(bin.join("python3"), format!("#!/bin/sh\n{script}\n")).unwrap();
+            fs::set_permissions(bin.join("python3"), fs::Permissions::from_mode(0o755)).unwrap();
+        }
+        let output = program().args(["judge", name, CASES[1]]).current_dir(path).env("PATH", &bin).output().unwrap();
+        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+    };
+    let (code, message) = judge("sphere:sphere", None);
+    assert_eq!(code, Some(2));
+    assert_eq!(message, "error: sphere:sphere: expected the program `python3`, which runs the function; found none\n");
+    let (code, message) = judge("sphere.py:sphere", Some("echo \"No module named 'grainbench'\" >&2; exit 1"));
+    assert!(code == Some(2) && message.contains("pip install ./python"), "{message}");
+    let (code, message) = judge("sphere.py:other", Some("echo 'found NoneType' >&2; exit 1"));
+    assert!(code == Some(2) && message.contains("python3 reports: found NoneType"), "{message}");
+    assert!(!message.contains("pip install"), "{message}");
+    let (code, message) = judge("dem:lamps", Some("exit 1"));
+    assert!(code == Some(2) && message.contains("did you mean `dem:lammps`?"), "{message}");
+    let answer = grainbench(path, &["judge", "sphere.py:sphere", "--plan", "plan"]);
+    assert!(answer.code == Some(2) && answer.err.contains("--plan: expected a manifest"), "{}", answer.err);
+}
+
+/// Without arguments, the program prints its help and ends with 2. At most 18 commands are shown.
+#[test]
+fn without_arguments_there_is_help() {
+    let directory = tempfile::tempdir().unwrap();
+    let answer = grainbench(directory.path(), &[]);
+    let help = grainbench(directory.path(), &["--help"]).out;
+    assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
+    assert!(answer.err.contains("Judge solvers with the cases:") && help.contains("Judge solvers with the cases:"));
+    let commands = help
+        .lines()
+        .filter(|line| line.starts_with("  ") && line.as_bytes().get(2).is_some_and(u8::is_ascii_lowercase));
+    assert!((15..=18).contains(&commands.count()), "{help}");
+    for old in ["plan", "work", "status", "collect"] {
+        assert!(!help.contains(&format!("\n  {old} ")), "{old}");
+    }
+}
+
+#[test]
+fn colours_are_as_requested() {
+    let directory = tempfile::tempdir().unwrap();
+    let is_colored = |color: &[&str], variables: &[(&str, &str)]| {
+        let run = ["run", CASES[1], "--solver", "dem:lammps", "--no-controls"];
+        let output =
+            program().args(run).args(color).envs(variables.iter().copied()).current_dir(directory.path()).output();
+        String::from_utf8(output.unwrap().stdout).unwrap().contains("\u{1b}[32m✓\u{1b}[0m All ")
+    };
+    assert!(is_colored(&["--color", "always"], &[]));
+    assert!(is_colored(&["--color=always"], &[("NO_COLOR", "1")]), "an option is stronger than the environment");
+    for (color, variables) in
+        [(&[][..], &[][..]), (&["--color", "never"], &[]), (&["--color", "auto"], &[("NO_COLOR", "1")])]
+    {
+        assert!(!is_colored(color, variables), "{color:?}: a pipe has colours");
+    }
+    let answer = grainbench(directory.path(), &["list", "--color", "red"]);
+    assert!(answer.code == Some(2) && answer.err.contains("invalid value 'red'"), "{}", answer.err);
+    let error = program().args(["run", "sqash", "--color", "always"]).current_dir(directory.path()).output().unwrap();
+    assert!(String::from_utf8(error.stderr).unwrap().starts_with("\u{1b}[31merror:\u{1b}[0m expected a case"));
+}
+
+/// The citation of a page is that of `CITATION.cff`.
+#[test]
+fn the_citation_is_that_of_the_file() {
+    use grainbench::reports::page::{AUTHOR, TITLE};
+    let file = fs::read_to_string(Path::new(env!("CARGO_MANIFEST_DIR")).join("CITATION.cff")).unwrap();
+    assert!(
+        file.contains(&format!("\ntitle: {TITLE}\n")) && file.contains(&format!("\n  - name: {AUTHOR}\n")),
+        "{file}"
+    );
+    assert!(file.contains(&format!("\nversion: {}\n", env!("CARGO_PKG_VERSION"))));
+}
+
+/// A style changes the figures of a stored report and nothing else. A wrong style changes nothing.
+#[test]
+fn figures_have_the_style_of_a_file() {
+    let directory = tempfile::tempdir().unwrap();
+    let path = directory.path();
+    let run =
+        grainbench(path, &["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--out", "out", "--quiet"]);
+    assert_eq!(run.code, Some(0), "{}", run.err);
+    let figures = || -> Vec<String> {
+        let names =
+            files(&path.join("out")).into_iter().filter(|name| name.ends_with(".svg") && name.starts_with("figures"));
+        names.map(|name| fs::read_to_string(path.join("out").join(name)).unwrap()).collect()
+    };
+    let (plain, page) = (figures(), fs::read_to_string(path.join("out/index.html")).unwrap());
+    assert!(!plain.is_empty());
+    for (style, message) in [
+        ("width = -86", "style.toml: width: expected a width in mm, at most 2000, found -86"),
+        (
+            "font_size = 8",
+            "style.toml: font_size: expected a size in pt, at most 100, and a width, found 8 without `width`",
+        ),
+        ("colours = []", "unknown field `colours`"),
+        ("colors = [\"red\"]", "style.toml: colors: expected colours as `#rrggbb`, found `red`"),
+    ] {
+        fs::write(path.join("style.toml"), style).unwrap();
+        let answer = grainbench(path, &["report", "out", "--style", "style.toml"]);
+        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+        assert_eq!(figures(), plain);
+    }
+    fs::write(path.join("style.toml"), "width = 86\nfont_size = 8\nfont = \"Times, serif\"\ncolors = [\"#123456\"]")
+        .unwrap();
+    let answer = grainbench(path, &["report", "out", "--style", "style.toml"]);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    for svg in figures() {
+        assert!(
+            svg.contains("width=\"86mm\"") && svg.contains("font-family=\"Times, serif\"") && !svg.contains("#0072b2")
+        );
+    }
+    assert_eq!(fs::read_to_string(path.join("out/index.html")).unwrap(), page, "the page keeps its figures");
+    let answer = grainbench(path, &["report", ".", "--style", "style.toml"]);
+    assert_eq!(answer.code, Some(2), "a directory without a report");
+}
