@@ -6,7 +6,7 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::uncertainty::Estimate;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// Stored estimates of a case.
@@ -29,7 +29,7 @@ pub struct StoredEstimates {
 /// Returns the path of the file with the estimates of a case.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
-    Path::new(grainbench_reference::FOLDER).join("uncertainty").join(format!("{case}.toml"))
+    grainbench_reference::folder().join("uncertainty").join(format!("{case}.toml"))
 }
 
 /// Loads the stored estimates of a case; empty if the file is missing or unreadable.

@@ -3,11 +3,9 @@
 //! Content of a file is either read or refused. The error names the file and the position, and states the expected and
 //! the actual content. No input causes a panic, even if it is damaged.
 
-/// Folder of this crate. It contains literature values, prototypes, stored runs and estimated uncertainties.
-pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
-
 mod clock;
 pub mod comparison;
+pub mod data;
 pub mod deck;
 mod execution;
 pub mod grain_dump;
@@ -20,6 +18,12 @@ mod read;
 pub mod round_robin;
 mod run_files;
 pub mod stored;
+
+/// Returns the folder with literature values, prototypes, stored runs and estimated uncertainties.
+#[must_use]
+pub fn folder() -> std::path::PathBuf {
+    data::folder("reference", env!("CARGO_MANIFEST_DIR"))
+}
 
 pub use execution::process::{end_programs_at, has_ended_programs};
 pub use read::atom::Atom;
