@@ -383,9 +383,10 @@ impl Runner {
         };
         slot.get_or_init(|| {
             let mut scene = match run.data {
-                None => self.case.variant(run.variant).map_err(|error| {
-                    self.without_data(run).unwrap_or_else(|| self.unusable(run, error.to_string()))
-                })?,
+                None => self
+                    .case
+                    .variant(run.variant)
+                    .map_err(|error| self.without_data(run).unwrap_or_else(|| self.unusable(run, error.to_string())))?,
                 Some(data) => self.made_from(data, run)?,
             };
             if let Some((_, change)) = &run.adjustment {

@@ -31,7 +31,9 @@ pub fn folder(name: &str, built: &str) -> PathBuf {
 #[must_use]
 pub fn missing() -> Option<String> {
     let reason = || match named() {
-        Some(named) => format!("{VARIABLE}: expected a directory with {}, found {}", PARTS.join(" and "), shown(&named)),
+        Some(named) => {
+            format!("{VARIABLE}: expected a directory with {}, found {}", PARTS.join(" and "), shown(&named))
+        }
         None => format!(
             "the data of version {} are not installed; `grainbench reference fetch URL` installs them",
             env!("CARGO_PKG_VERSION")

@@ -40,7 +40,8 @@ pub(crate) fn fetch(arguments: &Fetch) -> Outcome {
 fn download(address: &str, file: &Path) -> Result<(), Fault> {
     let words = ["--fail", "--location", "--silent", "--show-error", "--output"];
     let done = Command::new("curl").args(words).arg(file).arg(address).output();
-    let done = done.map_err(|error| Fault::Input(format!("curl: expected the program for the download, found {error}")))?;
+    let done =
+        done.map_err(|error| Fault::Input(format!("curl: expected the program for the download, found {error}")))?;
     if done.status.success() {
         return Ok(());
     }

@@ -75,7 +75,8 @@ const OF_WALL: &str = ".force";
 /// Array with the step of each contact, in ascending order. The other arrays of contacts have the same number of rows.
 const CONTACT_STEP: &str = "contact_step";
 /// Arrays of contacts: name and columns.
-const CONTACT: [(&str, &[&str]); 2] = [("contact_id", &["id1", "id2"]), ("contact_force", &["force_x", "force_y", "force_z"])];
+const CONTACT: [(&str, &[&str]); 2] =
+    [("contact_id", &["id1", "id2"]), ("contact_force", &["force_x", "force_y", "force_z"])];
 
 /// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, the forces of walls on grains, contacts
 /// of grains, and the arrays `step` and `time` of moments. At least one of `step` and `time` is required.
@@ -118,7 +119,8 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     let contacts = contacts(&arrays, &steps).map_err(|(expected, found)| fault(expected, found))?;
     let (columns, numbers) = (Vec::new(), Vec::new());
     let mut course = Course { name: name.clone(), steps, numbering, times, grains: 0, columns, numbers, contacts };
-    let known = KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
+    let known =
+        KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
     let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| {
         let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{key}_{axis}")).collect();
         (key.as_str(), columns, false)
@@ -331,7 +333,35 @@ mod tests {
     }
 
     #[test]
+    fn contacts_and_forces_of_walls_are_read() {
+        let course = read("contacts.npz").unwrap();
+        let value =
+            |snapshot: &DumpSnapshot, row: usize, column: &str| snapshot.row(row)[snapshot.column(column).unwrap()];
+        let [first, second, third, fourth] = [0, 1, 2, 3].map(|place| course.snapshot(place).unwrap());
+        assert!(course.snapshot(4).is_none());
+        assert_eq!([&first, &second, &third, &fourth].map(|snapshot| snapshot.step), [0, 10, 0, 10]);
+        assert_eq!((first.kind, first.rows(), second.rows()), (DumpKind::Entries, 1, 2));
+        assert_eq!([value(&second, 0, "id1"), value(&second, 0, "id2")], [2.0, 1.0]);
+        assert_eq!([value(&second, 0, "force_x"), value(&second, 1, "force_z")], [3.0 / 7.0, 8.0 / 7.0]);
+        assert_eq!((third.kind, value(&fourth, 1, "x")), (DumpKind::Atoms, 1.0));
+        assert_eq!([value(&third, 0, "floor.force_y"), value(&fourth, 1, "floor.force_z")], [1.0 / 3.0, 11.0 / 3.0]);
+    }
+
+    #[test]
     fn other_shapes_are_refused_in_words() {
+        assert_eq!(
+            read("contacts-late.npz").unwrap_err(),
+            "contacts-late.npz:1: expected steps of the grains in ascending order in the array `contact_step`, found 5 \
+             in row 2"
+        );
+        assert_eq!(
+            read("contacts-short.npz").unwrap_err(),
+            "contacts-short.npz:1: expected the shape (3, 3) of the array `contact_force`, found [2, 3]"
+        );
+        assert_eq!(
+            read("wall-flat.npz").unwrap_err(),
+            "wall-flat.npz:1: expected the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"
+        );
         assert_eq!(
             read("flat.npz").unwrap_err(),
             "flat.npz:1: expected the shape (3, grains, 3) of the array `position`, found [3, 3]"
