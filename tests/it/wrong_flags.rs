@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 20] = [
+const COMMANDS: [&[&str]; 21] = [
     &["list"],
     &["run", "squash"],
     &["simulate", "scene.toml", "--solver", "dem"],
@@ -23,6 +23,7 @@ const COMMANDS: [&[&str]; 20] = [
     &["reference", "verify"],
     &["reference", "keep", "squash"],
     &["reference", "uncertainty", "squash"],
+    &["reference", "fetch", "no-such.zip"],
     &["conform", "dem"],
     &["scene", "collision"],
     &["report", "a-directory"],
