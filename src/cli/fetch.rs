@@ -1,6 +1,6 @@
 //! `grainbench reference fetch`: installs the data of cases and stored runs, which only a source tree contains.
 
-use super::exit::{Fault, Outcome, print};
+use super::exit::{Fault, Outcome, check_writable, print};
 use grainbench::reference::data::{installed, unpack};
 use grainbench::store::{StagedDir, temporary_in};
 use std::io;
@@ -18,6 +18,7 @@ pub(crate) struct Fetch {
 }
 
 pub(crate) fn fetch(arguments: &Fetch) -> Outcome {
+    arguments.out.as_deref().map(check_writable).transpose()?;
     let none = || Fault::Input("--out: expected a directory for the data, found no home directory".to_owned());
     let target = arguments.out.clone().or_else(installed).ok_or_else(none)?;
     let mut out = StagedDir::new(&target).map_err(Fault::writing)?.without_manifest();
