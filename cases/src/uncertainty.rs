@@ -29,7 +29,7 @@ pub struct StoredEstimates {
 /// Returns the path of the file with the estimates of a case.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
-    grainbench_reference::folder().join("uncertainty").join(format!("{case}.toml"))
+    grainbench_reference::data::reference().join("uncertainty").join(format!("{case}.toml"))
 }
 
 // Estimates of the build by case. They are small, and claims need them where the data are not installed.

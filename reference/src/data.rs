@@ -27,6 +27,12 @@ pub fn folder(name: &str, built: &str) -> PathBuf {
     }
 }
 
+/// Returns the folder with literature values, prototypes, stored runs and estimated uncertainties.
+#[must_use]
+pub fn reference() -> PathBuf {
+    folder("reference", env!("CARGO_MANIFEST_DIR"))
+}
+
 /// Returns the reason for missing data, with the command that installs them; `None` if the data are there.
 #[must_use]
 pub fn missing() -> Option<String> {

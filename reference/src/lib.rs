@@ -19,12 +19,6 @@ pub mod round_robin;
 mod run_files;
 pub mod stored;
 
-/// Returns the folder with literature values, prototypes, stored runs and estimated uncertainties.
-#[must_use]
-pub fn folder() -> std::path::PathBuf {
-    data::folder("reference", env!("CARGO_MANIFEST_DIR"))
-}
-
 pub use execution::process::{end_programs_at, has_ended_programs};
 pub use read::atom::Atom;
 pub use read::data_file::{DataFile, parse_data, read_data_file};
