@@ -25,8 +25,9 @@ fn main() -> Result<(), Failure> {
     // a package, it is not.
     let references = PathBuf::from(env::var("DEP_GRAINBENCH_REFERENCE_FOLDER")?);
     fs::write(out.join("sources.rs"), sources(&references)?)?;
+    fs::write(out.join("estimates.rs"), estimates(&references.join(ESTIMATES))?)?;
     println!("cargo::rerun-if-changed={}", root.display());
-    for kind in KINDS {
+    for kind in KINDS.into_iter().chain([ESTIMATES]) {
         println!("cargo::rerun-if-changed={}", references.join(kind).display());
     }
     let workspace = root.parent().unwrap_or(&root);
@@ -159,6 +160,18 @@ fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Res
         writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
     }
     writeln!(code, "];")
+}
+
+/// Subfolder of the reference folder that contains estimated uncertainties.
+const ESTIMATES: &str = "uncertainty";
+
+/// Returns the code of a list with the name and the text of each file of estimates.
+fn estimates(folder: &Path) -> Result<String, Failure> {
+    let mut files = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
+    files.sort();
+    let name = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let lines: String = files.iter().map(|file| format!("    ({:?}, include_str!({file:?})),\n", name(file))).collect();
+    Ok(format!("static ESTIMATES: &[(&str, &str)] = &[\n{lines}];\n"))
 }
 
 /// Subfolders of the reference folder that contain works.

@@ -3,6 +3,7 @@
 use grainbench_harness::case::{Case, Home, SceneCache};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{TargetQuantity, from_claims};
+use grainbench_reference::data::folder;
 use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
@@ -18,7 +19,8 @@ type TargetFunction = (&'static str, fn() -> Vec<TargetQuantity>);
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
 /// Folder of the cases, function that reads their grain files, and cache of their scenes.
-pub static HOME: Home = Home { folder: env!("CARGO_MANIFEST_DIR"), read_grains, made: Some(&MADE) };
+pub static HOME: Home =
+    Home { folder: &|| folder("cases", env!("CARGO_MANIFEST_DIR")), read_grains, made: Some(&MADE) };
 static MADE: SceneCache = SceneCache::new(Vec::new());
 
 /// Returns the case with this name.

@@ -8,6 +8,7 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::solvers::{Solvers, StoredResult};
 use grainbench_mpm::solver::Mpm;
+use grainbench_reference::data::missing;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::LiveProgram;
 use grainbench_rigid::solver::Rigid;
@@ -109,6 +110,10 @@ impl Solvers for Registry {
         control: Option<&str>,
     ) -> Option<Result<StoredResult, RunError>> {
         kept::load(case, run, scene, control)
+    }
+
+    fn missing_data(&self) -> Option<String> {
+        missing()
     }
 
     fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {

@@ -6,7 +6,7 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::uncertainty::Estimate;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::OnceLock;
 
 /// Stored estimates of a case.
@@ -29,12 +29,16 @@ pub struct StoredEstimates {
 /// Returns the path of the file with the estimates of a case.
 #[must_use]
 pub fn file(case: &str) -> PathBuf {
-    Path::new(grainbench_reference::FOLDER).join("uncertainty").join(format!("{case}.toml"))
+    grainbench_reference::data::reference().join("uncertainty").join(format!("{case}.toml"))
 }
 
-/// Loads the stored estimates of a case; empty if the file is missing or unreadable.
+// Estimates of the build by case. They are small, and claims need them where the data are not installed.
+include!(concat!(env!("OUT_DIR"), "/estimates.rs"));
+
+/// Loads the stored estimates of a case; empty if there are none or the file is unreadable.
 fn load(case: &str) -> StoredEstimates {
-    let text = std::fs::read_to_string(file(case)).unwrap_or_default();
+    let built = || ESTIMATES.iter().find(|(name, _)| *name == case).map(|(_, text)| (*text).to_owned());
+    let text = std::fs::read_to_string(file(case)).ok().or_else(built).unwrap_or_default();
     toml::from_str(&text).unwrap_or_default()
 }
 

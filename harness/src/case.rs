@@ -108,8 +108,8 @@ pub struct Case {
 ///
 /// The harness itself parses no file format of another program.
 pub struct Home {
-    /// Directory that contains one folder for each case.
-    pub folder: &'static str,
+    /// Returns the directory that contains one folder for each case.
+    pub folder: &'static (dyn Fn() -> PathBuf + Sync),
     /// Reads grains for a scene from a data file.
     pub read_grains: fn(&Path) -> Result<Vec<FileGrain>, SceneError>,
     /// Cache of scenes with many grains, shared by all runners. None if the scene files can change while the program runs.
@@ -127,7 +127,7 @@ impl Case {
     /// Returns the folder of the case.
     #[must_use]
     pub fn directory(&self) -> PathBuf {
-        Path::new(self.home.folder).join(self.name)
+        (self.home.folder)().join(self.name)
     }
 
     /// Returns the source of the scene: the text of `scene.toml`, its name for messages and its folder.

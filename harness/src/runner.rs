@@ -332,7 +332,10 @@ impl Runner {
     /// Returns the stored result of a run.
     fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
         let of_control = by.control.map(|control| control.name);
-        let none = || self.unusable(run, "no result is stored; `grainbench reference keep` makes it".to_owned());
+        let none = || {
+            let reason = "no result is stored; `grainbench reference keep` makes it".to_owned();
+            self.without_data(run).unwrap_or_else(|| self.unusable(run, reason))
+        };
         let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
         let StoredResult { record, tables, made } = kept?;
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
@@ -380,7 +383,10 @@ impl Runner {
         };
         slot.get_or_init(|| {
             let mut scene = match run.data {
-                None => self.case.variant(run.variant).map_err(|error| self.unusable(run, error.to_string()))?,
+                None => self
+                    .case
+                    .variant(run.variant)
+                    .map_err(|error| self.without_data(run).unwrap_or_else(|| self.unusable(run, error.to_string())))?,
                 Some(data) => self.made_from(data, run)?,
             };
             if let Some((_, change)) = &run.adjustment {
@@ -423,6 +429,12 @@ impl Runner {
     /// Returns the name of the solver of a run, as it appears in results.
     fn solver_name(&self, run: &Run) -> String {
         self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
+    }
+
+    /// Returns the error of a run of our cases if their data are not installed.
+    fn without_data(&self, run: &Run) -> Option<RunError> {
+        let reason = self.solvers.missing_data().filter(|_| self.case.home.made.is_some())?;
+        Some(RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
     fn unusable(&self, run: &Run, reason: String) -> RunError {

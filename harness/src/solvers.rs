@@ -86,6 +86,11 @@ pub trait Solvers: Send + Sync {
         None
     }
 
+    /// Returns the reason if stored runs and initial states are not installed; none if they are.
+    fn missing_data(&self) -> Option<String> {
+        None
+    }
+
     /// Returns the stored numerical uncertainty of a claim's value, in units of the claim's scale.
     fn uncertainty(&self, _case: &Case, _claim: &Claim) -> Option<f64> {
         None

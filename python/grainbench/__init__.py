@@ -12,15 +12,17 @@ wrong physics, for which it must fail::
     gb.judge(mine, ["incline-disc", "backspin"])
 """
 
-from ._judge import Judgement, judge
-from ._read import Results, Run, read
-from ._record import Record, Recorder
+from ._judge import Judgement, check, conform, cost, judge, scene
+from ._read import Costs, Results, Run, read
+from ._record import Contacts, Record, Recorder
 from ._scene import Law, Scene, Steps, Wall
 from ._solver import Broken, Cannot, Solver, solver
 
 __all__ = [
     "Broken",
     "Cannot",
+    "Contacts",
+    "Costs",
     "Judgement",
     "Law",
     "Record",
@@ -31,7 +33,11 @@ __all__ = [
     "Solver",
     "Steps",
     "Wall",
+    "check",
+    "conform",
+    "cost",
     "judge",
     "read",
+    "scene",
     "solver",
 ]

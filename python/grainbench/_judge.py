@@ -1,96 +1,28 @@
-"""Tests of a solver function with the solver-independent claims."""
+"""Tests of solvers and of output with claims, the cost study, and resolved scenes."""
 
 from __future__ import annotations
 
 import json
 import os
 import socket
-import socketserver
-import sys
 import tempfile
-import threading
-from collections.abc import Iterator, Sequence
+from collections.abc import Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
 from ._binary import run
-from ._read import Results
-from ._serve import answer
+from ._read import Costs, Results
+from ._record import Record
+from ._scene import Scene
 from ._solver import Solver
-
-# Relays requests of grainbench to the process of the function, and its answers back. All its imports are fast.
-_RELAY = """
-import os, socket, sys, threading
-far = socket.socket(socket.AF_UNIX); far.connect(sys.argv[1])
-def back():
-    while data := far.recv(65536):
-        sys.stdout.buffer.write(data); sys.stdout.buffer.flush()
-    os._exit(1)
-threading.Thread(target=back, daemon=True).start()
-for line in sys.stdin.buffer:
-    far.sendall(line)
-"""
-
-
-class _Server(socketserver.ForkingMixIn, socketserver.UnixStreamServer):
-    """Server with one forked process per connection, so that the function may be a closure or a notebook cell."""
-
-    solver: Solver
-    max_children = 1024
-
-
-class _Handler(socketserver.StreamRequestHandler):
-    server: _Server
-
-    def handle(self) -> None:
-        # Only answers go to grainbench. Output of the function goes to the standard error.
-        os.dup2(2, 1)
-        for line in self._lines():
-            self.wfile.write((answer(self.server.solver, line) + "\n").encode())
-            self.wfile.flush()
-
-    def _lines(self) -> Iterator[str]:
-        """Yields the requests. If grainbench closes the connection during a run, this process ends too."""
-        pending: list[bytes] = []
-        ready = threading.Condition()
-
-        def listen() -> None:
-            for line in self.rfile:
-                with ready:
-                    pending.append(line)
-                    ready.notify()
-            os._exit(0)
-
-        threading.Thread(target=listen, daemon=True).start()
-        while True:
-            with ready:
-                while not pending:
-                    ready.wait()
-                line = pending.pop(0)
-            yield line.decode()
-
-
-@contextmanager
-def _served(solver: Solver) -> Iterator[Path]:
-    """Serves the function from this process and yields the path of its manifest."""
-    with tempfile.TemporaryDirectory(prefix="grainbench-") as folder:
-        address = os.path.join(folder, "socket")
-        with _Server(address, _Handler) as server:
-            server.solver = solver
-            thread = threading.Thread(target=server.serve_forever, kwargs={"poll_interval": 0.05}, daemon=True)
-            thread.start()
-            manifest = Path(folder) / "SOLVER.toml"
-            manifest.write_text(solver.manifest([sys.executable, "-I", "-S", "-c", _RELAY, address]), encoding="utf-8")
-            try:
-                yield manifest
-            finally:
-                server.shutdown()
-                thread.join()
 
 
 class Judgement(Results):
-    """Results and controls of a solver function. It prints as a table."""
+    """Results and controls of a solver or of output. It prints as a table."""
+
+    page: Path | None = None
+    """Page of the report; None without `out`."""
 
     @property
     def passed(self) -> bool:
@@ -106,16 +38,114 @@ class Judgement(Results):
         return self
 
 
-def judge(solver: Solver, cases: Sequence[str] = (), *, controls: bool = True) -> Judgement:
-    """Tests a solver with the claims of some cases (`CASE` or `CASE/VARIANT`); with all cases by default.
+def judge(
+    solver: Solver | str | Path,
+    cases: Sequence[str] = (),
+    *,
+    controls: bool = True,
+    out: str | Path | None = None,
+    progress: bool | None = None,
+) -> Judgement:
+    """Tests a solver with the claims of some cases (`CASE`, `CASE/VARIANT` or a folder); with all cases by default.
+
+    solver: a function under `@grainbench.solver`, a name, or the path of a `SOLVER.toml`. out: directory for the page and
+    the result files, which is replaced. progress: True shows a progress bar; None shows it on a terminal.
 
     Raises ValueError if a case does not exist or a declaration of the solver is wrong.
     """
+    with _manifest(solver) as name:
+        words = ["judge", name, *cases] + ([] if controls else ["--no-controls"])
+        return _judged(words, out, progress)
+
+
+def conform(solver: Solver | str | Path, *, out: str | Path | None = None, progress: bool | None = None) -> Judgement:
+    """Tests the conformance properties of a solver: conservation, symmetries, free flight, order and determinism."""
+    with _manifest(solver) as name:
+        return _judged(["conform", name], out, progress)
+
+
+def cost(
+    solver: Solver | str | Path,
+    cases: Sequence[str],
+    *,
+    out: str | Path | None = None,
+    progress: bool | None = None,
+) -> Costs:
+    """Measures the error of a solver against its computing time, at several time steps.
+
+    With `out`, finished points stay in this directory, and a repeated call continues after an interruption.
+    """
+    with _manifest(solver) as name:
+        return Costs(_results(["cost", *cases, "--solver", name], out, progress))
+
+
+def check(
+    scene: str | Path,
+    dump: str | Path | Sequence[str | Path] | Record,
+    *,
+    set: Mapping[str, object] | None = None,
+    time_step: float | None = None,
+    out: str | Path | None = None,
+    progress: bool | None = None,
+) -> Judgement:
+    """Judges output of any program for a case or a scene file.
+
+    dump: files in a format of `grainbench check`, or a record with the `time_step` (s) of its run. set: changed keys of the
+    scene, such as `{"contacts.floor.friction": 0.5}`.
+    """
+    with tempfile.TemporaryDirectory(prefix="grainbench-") as folder:
+        if isinstance(dump, Record):
+            dump.write(folder)
+            files: list[str] = [os.path.join(folder, "grains.npz")]
+        else:
+            files = [str(file) for file in ([dump] if isinstance(dump, (str, Path)) else dump)]
+        words = ["check", str(scene), *_changes(set), "--dump", *files]
+        if time_step is not None:
+            words += ["--time-step", repr(time_step)]
+        return _judged(words, out, progress)
+
+
+def scene(name: str | Path, *, set: Mapping[str, object] | None = None, time_step: float | None = None) -> Scene:
+    """Returns the resolved scene of a case (`CASE` or `CASE/VARIANT`) or a scene file, as a solver receives it.
+
+    set: changed keys of the scene. time_step: time step (s).
+    """
+    words = ["scene", str(name), *_changes(set)]
+    return Scene._of(run(words if time_step is None else [*words, "--time-step", repr(time_step)]), str(name))
+
+
+def _changes(set: Mapping[str, object] | None) -> list[str]:
+    def value(given: object) -> str:
+        return given if isinstance(given, str) else json.dumps(given)
+
+    return [word for key, given in (set or {}).items() for word in ("--set", f"{key}={value(given)}")]
+
+
+@contextmanager
+def _manifest(solver: Solver | str | Path) -> Iterator[str]:
+    """Yields the name of a solver or the path of its manifest, and serves a function meanwhile."""
+    if isinstance(solver, (str, Path)):
+        yield str(solver)
+        return
     if not isinstance(solver, Solver):
         raise TypeError(f"expected a function under @grainbench.solver, found {type(solver).__name__}")
     if not hasattr(socket, "AF_UNIX") or not hasattr(os, "fork"):
         raise OSError("expected a system with fork and Unix sockets; a SOLVER.toml works on every system")
-    with _served(solver) as manifest, tempfile.TemporaryDirectory(prefix="grainbench-") as out:
-        words = ["judge", str(manifest), *cases, "--json", "--out", os.path.join(out, "out")]
-        results: dict[str, Any] = json.loads(run(words if controls else [*words, "--no-controls"]))
-    return Judgement(results)
+    from ._server import served
+
+    with served(solver) as manifest:
+        yield str(manifest)
+
+
+def _judged(words: Sequence[str], out: str | Path | None, progress: bool | None) -> Judgement:
+    judgement = Judgement(_results(words, out, progress))
+    judgement.page = None if out is None else Path(out) / "index.html"
+    return judgement
+
+
+def _results(words: Sequence[str], out: str | Path | None, progress: bool | None) -> dict[str, Any]:
+    """Runs a command and returns its results. Without `out`, its report is removed."""
+    with tempfile.TemporaryDirectory(prefix="grainbench-") as folder:
+        place = os.path.join(folder, "out") if out is None else str(out)
+        results: dict[str, Any] = json.loads(run([*words, "--json", "--out", place], progress=progress))
+    return results

@@ -6,6 +6,7 @@ import csv
 import html
 import importlib.util
 import json
+import re
 from pathlib import Path
 from typing import Any
 
@@ -28,8 +29,12 @@ class Results:
 
     @property
     def rows(self) -> Any:
-        """Dataframe with one row per claim, of the first installed library: pandas, polars or pyarrow."""
-        return frame(self.verdicts)
+        """Dataframe with one row per claim, of the first installed library: pandas, polars or pyarrow.
+
+        The column `detail` is also split into `first_outside` (s), `as_if` (the mistake that explains a failed result) and
+        `reason` (any other text).
+        """
+        return frame([_with_parts(row) for row in self.verdicts])
 
     @property
     def controls(self) -> Any:
@@ -70,6 +75,23 @@ class Results:
         head = "".join(f"<th>{name}</th>" for name in _SHOWN)
         body = "".join("<tr>" + "".join(cell(row, name) for name in _SHOWN) + "</tr>" for row in self.verdicts)
         return f"<table><thead><tr>{head}</tr></thead><tbody>{body}</tbody></table>"
+
+
+class Costs(Results):
+    """Results of the cost study: one point per solver, target quantity and resolution."""
+
+    @property
+    def points(self) -> Any:
+        """Dataframe with error, computing time (`wall_seconds`, `cpu_seconds`) and operation counts of each point."""
+        return frame(self.raw["points"])
+
+    def table(self, *, only_red: bool = False) -> str:
+        """Returns one line per point, with error and wall-clock time."""
+        return "\n".join(
+            f"{row['solver']:<16} {row['case']} · {row['variant']} · {row['quantity']}: {row['resolution']}, "
+            f"error {_shown(row['error'])}, {_shown(row['wall_seconds'])} s"
+            for row in self.raw["points"]
+        )
 
 
 class Run:
@@ -113,6 +135,18 @@ def frame(rows: list[dict[str, Any]]) -> Any:
     names = list(dict.fromkeys(name for row in rows for name in row))
     columns = {name: [_plain(row.get(name)) for row in rows] for name in names}
     return nw.from_dict(columns, backend=backend).to_native()  # type: ignore[arg-type]
+
+
+def _with_parts(row: dict[str, Any]) -> dict[str, Any]:
+    """Returns a row with the parts of its detail as columns."""
+    detail, _, as_if = (row.get("detail") or "").partition("as if: ")
+    outside = re.search(r"(?:first outside at|not a number \(NaN\) from) t = ([-+.\de]+) s", detail)
+    reason = detail.replace(outside.group(), "") if outside else detail
+    return row | {
+        "first_outside": float(outside.group(1)) if outside else None,
+        "as_if": as_if or None,
+        "reason": reason.strip("; ") or None,
+    }
 
 
 def _plain(value: Any) -> Any:

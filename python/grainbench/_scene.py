@@ -156,10 +156,13 @@ class Scene:
     @classmethod
     def read(cls, path: str | Path) -> Scene:
         """Reads a resolved scene, as `grainbench scene CASE` prints it."""
-        with open(path, encoding="utf-8") as file:
-            raw = json.load(file)
+        return cls._of(Path(path).read_text(encoding="utf-8"), str(path))
+
+    @classmethod
+    def _of(cls, text: str, name: str) -> Scene:
+        raw = json.loads(text)
         if raw.get("format") != 1:
-            raise ValueError(f"{path}: expected the format 1 of a resolved scene, found {raw.get('format')!r}")
+            raise ValueError(f"{name}: expected the format 1 of a resolved scene, found {raw.get('format')!r}")
         grains = raw["grains"]
 
         def column(name: str) -> Floats:

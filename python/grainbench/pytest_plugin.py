@@ -30,7 +30,9 @@ def pytest_addoption(parser: pytest.Parser) -> None:
     """Adds the options of the plugin."""
     group = parser.getgroup("grainbench", "solvers of grains, judged by grainbench")
     group.addoption("--grainbench", metavar="MODULE:NAME", help="judge the function under @grainbench.solver of this name")
-    group.addoption("--grainbench-cases", metavar="CASE,…", default="", help="by these cases alone (CASE or CASE/VARIANT)")
+    group.addoption(
+        "--grainbench-cases", metavar="CASE,…", default="", help="by these cases alone (CASE, CASE/VARIANT or a folder)"
+    )
 
 
 def pytest_configure(config: pytest.Config) -> None:
@@ -51,7 +53,7 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
     wanted = [name for name in config.getoption("--grainbench-cases").split(",") if name]
     try:
         solver = load(_absolute(target, config))
-        rows = json.loads(run(["list", "--rows", "--json", *wanted]))
+        rows = _rows(wanted)
     except (SystemExit, ValueError, FileNotFoundError) as error:
         raise pytest.UsageError(str(error)) from None
     if not any(config.args_source is source for source in (config.ArgsSource.ARGS,)):
@@ -61,10 +63,11 @@ def pytest_collection_modifyitems(session: pytest.Session, config: pytest.Config
     judged = _Judged(solver.manifest([sys.executable, "-m", "grainbench.worker", _absolute(target, config)]), folder, config)
     seen: dict[tuple[str, str, str], int] = {}
     for row in rows:
-        key = (row["case"], row["variant"], row["quantity"])
+        key = (row.get("folder", row["case"]), row["variant"], row["quantity"])
         place = seen[key] = seen.get(key, -1) + 1
         for control in (None, row["control"]):
-            items.append(_Row.from_parent(session, name=(name := _name(row, control)), nodeid=name, judged=judged, key=(*key, place), control=control, solvers=row["solvers"]))
+            name, words = _name(row, control), {"judged": judged, "control": control, "solvers": row["solvers"]}
+            items.append(_Row.from_parent(session, name=name, nodeid=name, key=(*key, place), **words))
 
 
 @pytest.hookimpl(trylast=True)
@@ -88,6 +91,16 @@ def pytest_report_collectionfinish(config: pytest.Config, items: list[pytest.Ite
     """Returns the number of claims and controls among the items."""
     rows = sum(isinstance(item, _Row) for item in items)
     return f"grainbench: {rows} rows and controls of {config.getoption('--grainbench')}" if rows else None
+
+
+def _rows(wanted: list[str]) -> list[dict[str, Any]]:
+    """Returns the claims of the cases. A claim of a case folder has the path of the folder."""
+    folders = [name for name in wanted if (Path(name) / "claims.toml").is_file()]
+    others = [name for name in wanted if name not in folders]
+    rows: list[dict[str, Any]] = json.loads(run(["list", "--rows", "--json", *others])) if others or not folders else []
+    for folder in folders:
+        rows += [row | {"folder": folder} for row in json.loads(run(["list", "--rows", "--json", folder]))]
+    return rows
 
 
 def _absolute(target: str, config: pytest.Config) -> str:
@@ -130,7 +143,8 @@ class _Judged:
         if case not in self._results:
             words = ["run", case, "--solver", str(self._folder / "SOLVER.toml"), "--json"]
             try:
-                self._results[case] = json.loads(run([*words, "--out", str(self._folder / case)]))
+                out = self._folder / str(len(self._results))
+                self._results[case] = json.loads(run([*words, "--out", str(out)]))
             except ValueError as error:
                 if _NOT_FAIR not in str(error):
                     raise

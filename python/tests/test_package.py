@@ -15,6 +15,8 @@ from grainbench._binary import binary
 
 EXAMPLE = Path(__file__).parents[2] / "examples" / "python" / "sphere.py"
 GRAINS = EXAMPLE.with_name("grains.py")
+# Case with 2001 discs, whose claims read a velocity, the force of a pair and the force on a wall.
+PAIRS = Path(__file__).with_name("pairs")
 CASES = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"]
 
 # Lines of the example's physics, each with a defective version.
@@ -121,8 +123,92 @@ def test_pytest_names_the_mistake(tmp_path: Path) -> None:
 
 def test_many_grains_are_judged() -> None:
     judgement = gb.judge(load(GRAINS, "grains"), [IMPACT, "collision", SLOPE])
-    assert judgement.passed, judgement.table(only_red=True)
+    assert judgement.passed and judgement.page is None, judgement.table(only_red=True)
     assert sum(row["verdict"] == "pass" for row in judgement.verdicts) >= 19
+
+
+def test_contacts_of_thousands_of_grains_are_judged(tmp_path: Path) -> None:
+    judgement = gb.judge(load(GRAINS, "grains"), [str(PAIRS)], out=tmp_path / "out")
+    assert judgement.passed and len(judgement.verdicts) == 3, judgement
+    assert [control["turned_red"] for control in judgement.of_controls] == [True] * 3
+    assert judgement.page == tmp_path / "out" / "index.html" and judgement.page.is_file()
+    kept = gb.read(tmp_path / "out")
+    assert isinstance(kept, gb.Results) and kept.verdicts == judgement.verdicts
+
+
+@pytest.mark.parametrize(
+    ("right", "wrong", "red"),
+    [
+        ("force[is_pair])", "0.98 * force[is_pair])", "largest force of the pair in the middle"),
+        ("(pairs[is_pair] + 1,", "(pairs[is_pair][:, ::-1] + 1,", "largest force of the pair in the middle"),
+        ("= force[~is_pair]", "= 0.999 * force[~is_pair]", "force on the floor"),
+    ],
+)
+def test_wrong_contacts_are_red(tmp_path: Path, right: str, wrong: str, red: str) -> None:
+    text = GRAINS.read_text(encoding="utf-8")
+    assert text.count(right) == 1, right
+    (tmp_path / "grains.py").write_text(text.replace(right, wrong), encoding="utf-8")
+    judgement = gb.judge(load(tmp_path / "grains.py", "grains"), [str(PAIRS)], controls=False)
+    assert [row["quantity"] for row in judgement.verdicts if row["verdict"] == "fail"] == [red], judgement
+
+
+def test_contacts_at_some_samples_are_an_error() -> None:
+    recorder = gb.Recorder(gb.scene("backspin/disc"))
+    recorder.take(0, np.zeros((1, 3)), np.zeros((1, 3)), np.zeros((1, 3)), contacts=(np.zeros((0, 2)), np.zeros((0, 3))))
+    recorder.take(recorder._steps.count, np.zeros((1, 3)), np.zeros((1, 3)), np.zeros((1, 3)))
+    with pytest.raises(ValueError, match="contacts: expected them at all 2 samples, found 1"):
+        recorder.record()
+
+
+def test_pytest_judges_many_grains(tmp_path: Path) -> None:
+    (tmp_path / "sphere.py").write_text(GRAINS.read_text(encoding="utf-8").replace("def grains(", "def sphere("), encoding="utf-8")
+    done = by_pytest(tmp_path, "-v", cases=[str(PAIRS)])
+    assert done.returncode == 0 and done.stdout.count("PASSED") == 6, done.stdout
+
+
+def test_a_record_is_checked() -> None:
+    scene = gb.scene(PAIRS / "scene.toml", time_step=1e-4)
+    record = load(GRAINS, "grains")(scene, scene.steps)
+    assert record.contacts is not None and len(record.contacts.step) > 1000
+    judgement = gb.check(PAIRS / "scene.toml", record, time_step=1e-4)
+    assert judgement.passed, judgement
+    softer = gb.check(PAIRS / "scene.toml", record, set={"contacts.all.normal_stiffness": 5e3}, time_step=1e-4)
+    assert not softer.passed
+    with pytest.raises(ValueError, match="time"):
+        gb.check(PAIRS / "scene.toml", record)
+
+
+def test_scenes_are_changed() -> None:
+    scene = gb.scene("backspin/disc", set={"contacts.plane.friction": 0.3, "grains.grain.position": [0.0, 0.6]})
+    assert scene.law("rock", "rock").friction == 0.3 and scene.position.tolist() == [[0.0, 0.6, 0.0]]
+    with pytest.raises(ValueError, match="did you mean"):
+        gb.scene("backspinn")
+
+
+def test_conformance_and_cost_have_results(tmp_path: Path) -> None:
+    assert gb.conform("rigid").passed
+    costs = gb.cost(load(GRAINS, "grains"), ["backspin/disc"], out=tmp_path / "cost")
+    points = costs.points
+    assert len(points) >= 5 and set(points["solver"]) == {"grains"} and (points["wall_seconds"] > 0).any()
+    assert (tmp_path / "cost" / "index.html").is_file() and "grains" in repr(costs)
+    with pytest.raises(ValueError, match="backspinn"):
+        gb.cost("dem", ["backspinn"])
+
+
+def test_progress_is_shown(capsys: pytest.CaptureFixture[str]) -> None:
+    assert gb.judge("dem:lammps", ["oblique-impact"], progress=True).verdicts
+    assert "\x1b[" in capsys.readouterr().err
+    assert gb.judge("dem:lammps", ["oblique-impact"]).verdicts and not capsys.readouterr().err
+    with pytest.raises(ValueError, match="did you mean `backspin`"):
+        gb.judge("dem", ["backspinn"], progress=True)
+
+
+def test_details_are_columns() -> None:
+    details = ["first outside at t = 0.210000 s; as if: half the friction", "as if: no damping", "not installed", None]
+    rows = gb.Results({"verdicts": [{"detail": detail} for detail in details], "controls": []}).rows
+    assert rows["first_outside"].tolist()[0] == 0.21 and rows["first_outside"].isna().tolist() == [False, True, True, True]
+    assert rows["as_if"].tolist()[:2] == ["half the friction", "no damping"]
+    assert rows["reason"].tolist()[2] == "not installed" and rows["reason"].isna().tolist() == [True, True, False, True]
 
 
 @pytest.mark.parametrize(("line", "wrong", "case", "hint"), MISTAKES, ids=[wrong for _, wrong, _, _ in MISTAKES])
@@ -244,6 +330,10 @@ def test_what_is_not_declared_is_not_asked_for() -> None:
 def test_arrays_have_the_shapes_that_they_say() -> None:
     with pytest.raises(ValueError, match=r"position: expected the shape \(2, grains, 3\), found \(2, 3\)"):
         gb.Record(np.array([0, 1]), np.zeros((2, 3)))
+    with pytest.raises(ValueError, match=r"force of contacts: expected the shape \(2, 3\)"):
+        gb.Contacts(np.array([0, 0]), np.ones((2, 2), dtype=int), np.zeros((3, 2)))
+    with pytest.raises(ValueError, match=r"force of the wall floor: expected the shape \(2, 1, 3\)"):
+        gb.Record(np.array([0, 1]), np.zeros((2, 1, 3)), wall_force={"floor": np.zeros((1, 3))})
     with pytest.raises(ValueError, match=r"spin: expected the shape \(2, 1, 3\)"):
         gb.Record(np.array([0, 1]), np.zeros((2, 1, 3)), spin=np.zeros((2, 1)))
     with pytest.raises(TypeError, match="expected a function under @grainbench.solver"):
@@ -282,19 +372,22 @@ def test_a_scene_is_read_as_it_is_printed(tmp_path: Path) -> None:
     assert scene.law(scene.material[0], wall.material).normal_stiffness > 0
 
 
-def test_the_guide_shows_what_runs(tmp_path: Path) -> None:
+@pytest.mark.parametrize(("chapter", "blocks"), [("judge.md", 1), ("python.md", 2)])
+def test_the_guide_shows_what_runs(tmp_path: Path, chapter: str, blocks: int) -> None:
     """Runs the Python blocks of the guide that show no file.
 
     They run in a new process, because `sphere` may be a module that another test has changed.
     """
-    text = (Path(__file__).parents[2] / "guide" / "src" / "judge.md").read_text(encoding="utf-8")
+    text = (Path(__file__).parents[2] / "guide" / "src" / chapter).read_text(encoding="utf-8")
     parts = text.split("```python\n")
     shows_file = [part.rstrip().endswith(".py -->") for part in parts[:-1]]
     typed = [part.split("```")[0] for part, is_file in zip(parts[1:], shows_file, strict=True) if not is_file]
-    assert len(typed) == 1
+    assert len(typed) == blocks
     example(tmp_path)
-    shown = subprocess.run([sys.executable, "-c", typed[0]], cwd=tmp_path, capture_output=True, text=True, check=False)
-    assert shown.returncode == 0, shown.stdout + shown.stderr
+    (tmp_path / "grains.py").write_text(GRAINS.read_text(encoding="utf-8"), encoding="utf-8")
+    for block in typed:
+        shown = subprocess.run([sys.executable, "-c", block], cwd=tmp_path, capture_output=True, text=True, check=False)
+        assert shown.returncode == 0, shown.stdout + shown.stderr
     (command,) = [line for line in text.splitlines() if line.startswith("pytest --grainbench ")]
     done = subprocess.run([sys.executable, "-m", *command.split()], cwd=tmp_path, capture_output=True, text=True, check=False)
     assert done.returncode == 0, done.stdout

@@ -3,11 +3,9 @@
 //! Content of a file is either read or refused. The error names the file and the position, and states the expected and
 //! the actual content. No input causes a panic, even if it is damaged.
 
-/// Folder of this crate. It contains literature values, prototypes, stored runs and estimated uncertainties.
-pub const FOLDER: &str = env!("CARGO_MANIFEST_DIR");
-
 mod clock;
 pub mod comparison;
+pub mod data;
 pub mod deck;
 mod execution;
 mod first_sample;

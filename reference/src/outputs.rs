@@ -144,8 +144,10 @@ pub struct Outputs {
     sources: Sources,
     /// Dumps and files of one moment, sorted by step.
     files: Vec<RunFile>,
-    /// Digits of the columns of each file, from all of its snapshots.
+    /// Digits of the columns of each file, from all of its snapshots of grains, or of contacts if it has no grains.
     digits: Vec<Vec<Digits>>,
+    /// Digits of the columns of each file, from all of its snapshots of contacts.
+    contact_digits: Vec<Vec<Digits>>,
     table: Option<Table>,
     /// Log of the run, if there is one.
     log: Option<Log>,
@@ -188,6 +190,7 @@ impl Outputs {
         let mut outputs = Self {
             files: Vec::new(),
             digits: Vec::new(),
+            contact_digits: Vec::new(),
             table: None,
             log: None,
             clock: None,
@@ -240,10 +243,12 @@ impl Outputs {
         Ok(outputs)
     }
 
-    /// Reads a file to the end. Adds the properties of its snapshots to `survey` and returns the digits of its columns.
+    /// Reads a file to the end. Adds the properties of its snapshots to `survey`, adds the digits of its contacts, and
+    /// returns the digits of the columns of its last snapshot.
     fn look(&mut self, file: &RunFile, survey: &mut Survey) -> Result<Vec<Digits>, OutputError> {
         let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX))?;
-        let mut snapshot = DumpSnapshot::default();
+        let (mut snapshot, mut of_contacts) = (DumpSnapshot::default(), Vec::new());
+        let digits = |snapshot: &DumpSnapshot| snapshot.columns.iter().map(|column| column.digits).collect();
         loop {
             match reader.read(&mut snapshot) {
                 Ok(true) => {}
@@ -254,7 +259,9 @@ impl Outputs {
                 }
                 Err(error) => return Err(error.into()),
             }
-            if snapshot.kind == DumpKind::Atoms {
+            if snapshot.kind == DumpKind::Entries {
+                of_contacts = digits(&snapshot);
+            } else {
                 if self.ids.is_empty() {
                     self.ids = ids(&snapshot, &self.sources.names);
                 }
@@ -276,7 +283,8 @@ impl Outputs {
             }
         }
         self.significant = self.significant.max(snapshot.digits().significant());
-        Ok(snapshot.columns.iter().map(|column| column.digits).collect())
+        self.contact_digits.push(of_contacts);
+        Ok(digits(&snapshot))
     }
 
     /// Sets the time step from the option, the log or the files, in this order. The option must agree with log and
@@ -475,15 +483,19 @@ impl Outputs {
     /// Returns the forces between the pairs of grains that probes request, from dumps of contacts.
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
         let mut pairs = PairForces::new(scene, &self.ids);
-        for (file, digits) in self.files.iter().zip(&self.digits) {
+        for (file, digits) in self.files.iter().zip(&self.contact_digits) {
             let mut reader = Snapshots::open(file, u64::MAX)?;
             let mut snapshot = DumpSnapshot::default();
             while pairs.is_asked() && self.next(&mut reader, &mut snapshot)? {
                 if snapshot.kind != DumpKind::Entries {
                     break;
                 }
-                snapshot.step = snapshot.step.saturating_sub(self.origin.step);
-                pairs.take(&shown(&file.path), &snapshot, &self.sources.names, Some(digits))?;
+                let name = shown(&file.path);
+                snapshot.step = match snapshot.numbering {
+                    Numbering::Steps => snapshot.step.saturating_sub(self.origin.step),
+                    _ => self.step(&snapshot, self.time(&name, &snapshot)?),
+                };
+                pairs.take(&name, &snapshot, &self.sources.names, Some(digits))?;
             }
         }
         Ok(pairs)

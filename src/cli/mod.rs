@@ -13,6 +13,7 @@ mod deck;
 mod earlier;
 mod effects;
 mod exit;
+mod fetch;
 mod fields;
 mod filter;
 mod github;

@@ -2,6 +2,7 @@
 
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
+use super::fetch::{Fetch, fetch};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::provenance;
@@ -29,6 +30,8 @@ pub(crate) enum Command {
     Verify(Verify),
     /// Do the long runs and store their results with the cases. `run` judges the stored results.
     Keep(KeepArguments),
+    /// Install stored runs and initial states, which packages, wheels and archives of the program do not contain.
+    Fetch(Fetch),
     /// Estimate discretization errors from three resolution levels, for each claim with an estimated tolerance.
     Uncertainty(Uncertainty),
 }
@@ -71,6 +74,7 @@ pub(crate) fn reference(command: &Command) -> Outcome {
         Command::Build(arguments) => build(arguments),
         Command::Verify(arguments) => verify(arguments),
         Command::Keep(arguments) => keep(arguments),
+        Command::Fetch(arguments) => fetch(arguments),
         Command::Uncertainty(arguments) => uncertainty(arguments),
     }
 }

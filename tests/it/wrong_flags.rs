@@ -7,7 +7,7 @@ use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 22] = [
+const COMMANDS: [&[&str]; 23] = [
     &["list"],
     &["run", "squash"],
     &["judge", "rigid", "squash"],
@@ -25,6 +25,7 @@ const COMMANDS: [&[&str]; 22] = [
     &["reference", "verify"],
     &["reference", "keep", "squash"],
     &["reference", "uncertainty", "squash"],
+    &["reference", "fetch", "no-such.zip"],
     &["conform", "dem"],
     &["scene", "collision"],
     &["report", "a-directory"],

@@ -90,7 +90,9 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     };
     let derivation = folder.join(DERIVATION);
     let derivation = if derivation.exists() { text_of(&derivation)? } else { String::new() };
-    let home = Home { folder: kept(parent.to_string_lossy().into_owned()), read_grains: HOME.read_grains, made: None };
+    let parent = parent.to_owned();
+    let folder = Box::leak(Box::new(move || parent.clone()));
+    let home = Home { folder, read_grains: HOME.read_grains, made: None };
     Ok(Box::leak(Box::new(Case {
         name: kept(name.to_string_lossy().into_owned()),
         title: kept(claims.title),

@@ -6,10 +6,11 @@ use super::binary::Number;
 use super::digits::Digits;
 use super::numbers::NumberColumn;
 use super::read_error::{ReadError, quoted};
-use super::snapshot::{DumpSnapshot, Numbering};
+use super::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use std::collections::BTreeMap;
 use std::fs::File;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 use zip::ZipArchive;
 
@@ -43,6 +44,18 @@ pub(crate) struct Course {
     columns: Vec<NumberColumn>,
     /// Numbers of each column, and true if the column has different numbers for each moment.
     numbers: Vec<(Vec<f64>, bool)>,
+    /// Contacts of all moments, if the file contains them.
+    contacts: Option<Contacts>,
+}
+
+/// Contacts of grains at several moments.
+#[derive(Debug)]
+struct Contacts {
+    columns: Vec<NumberColumn>,
+    /// Range of the rows of each moment.
+    ranges: Vec<Range<usize>>,
+    /// Numbers of each column.
+    numbers: Vec<Vec<f64>>,
 }
 
 /// Known arrays of grains: name, columns, and true if the array is required.
@@ -57,8 +70,16 @@ const KNOWN: [(&str, &[&str], bool); 5] = [
     ("radius", &["radius"], false),
 ];
 
-/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, and the arrays `step` and `time` of
-/// moments. At least one of `step` and `time` is required.
+/// Ending of the name of an array with the forces of a wall on the grains, as in `floor.force`.
+const OF_WALL: &str = ".force";
+/// Array with the step of each contact, in ascending order. The other arrays of contacts have the same number of rows.
+const CONTACT_STEP: &str = "contact_step";
+/// Arrays of contacts: name and columns.
+const CONTACT: [(&str, &[&str]); 2] =
+    [("contact_id", &["id1", "id2"]), ("contact_force", &["force_x", "force_y", "force_z"])];
+
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, the forces of walls on grains, contacts
+/// of grains, and the arrays `step` and `time` of moments. At least one of `step` and `time` is required.
 ///
 /// # Errors
 /// If the file cannot be read, lacks a required array, or has arrays of other shapes.
@@ -95,9 +116,16 @@ pub(crate) fn read_course(path: &Path) -> Result<Course, ReadError> {
     if let Some(at) = steps.windows(2).position(|pair| pair[1] <= pair[0]) {
         return Err(fault(format!("a step after {}", steps[at]), steps[at + 1].to_string()));
     }
-    let mut course =
-        Course { name: name.clone(), steps, numbering, times, grains: 0, columns: Vec::new(), numbers: Vec::new() };
-    for (key, columns, must) in KNOWN {
+    let contacts = contacts(&arrays, &steps).map_err(|(expected, found)| fault(expected, found))?;
+    let (columns, numbers) = (Vec::new(), Vec::new());
+    let mut course = Course { name: name.clone(), steps, numbering, times, grains: 0, columns, numbers, contacts };
+    let known =
+        KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
+    let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| {
+        let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{key}_{axis}")).collect();
+        (key.as_str(), columns, false)
+    });
+    for (key, columns, must) in known.into_iter().chain(of_walls) {
         let Some(array) = arrays.get(key) else {
             if must {
                 return Err(fault(format!("an array `{key}`"), have()));
@@ -146,8 +174,26 @@ impl Course {
         self.grains
     }
 
-    /// Returns the grains at a moment, or `None` after the last.
-    pub(crate) fn snapshot(&self, moment: usize) -> Option<DumpSnapshot> {
+    /// Returns the contacts of each moment, if the file contains them, then the grains of each moment, or `None` after
+    /// the last.
+    pub(crate) fn snapshot(&self, place: usize) -> Option<DumpSnapshot> {
+        match &self.contacts {
+            Some(contacts) if place < self.steps.len() => Some(self.entries(contacts, place)),
+            Some(_) => self.atoms(place - self.steps.len()),
+            None => self.atoms(place),
+        }
+    }
+
+    fn entries(&self, contacts: &Contacts, moment: usize) -> DumpSnapshot {
+        let row = |row: usize| contacts.numbers.iter().map(move |column| column[row]);
+        let (step, numbering, columns) = (self.steps[moment], self.numbering, contacts.columns.clone());
+        let (time, values) =
+            (self.times.as_ref().map(|times| times[moment]), contacts.ranges[moment].clone().flat_map(row).collect());
+        let kind = DumpKind::Entries;
+        DumpSnapshot { kind, step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() }
+    }
+
+    fn atoms(&self, moment: usize) -> Option<DumpSnapshot> {
         let (grains, step) = (self.grains, *self.steps.get(moment)?);
         let number =
             |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
@@ -156,6 +202,41 @@ impl Course {
         let (columns, numbering) = (self.columns.clone(), self.numbering);
         Some(DumpSnapshot { step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
     }
+}
+
+/// Returns the contacts in the arrays, if there are any. `steps` are the steps of the moments. An error consists of the
+/// expected and the actual content.
+fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Contacts>, (String, String)> {
+    let Some(step) = arrays.get(CONTACT_STEP) else { return Ok(None) };
+    let rows = step.numbers.len();
+    let mut contacts = Contacts { columns: Vec::new(), ranges: Vec::new(), numbers: Vec::new() };
+    for (key, columns) in CONTACT {
+        let expected = || format!("the shape ({rows}, {}) of the array `{key}`", columns.len());
+        let array = arrays.get(key).ok_or_else(|| (expected(), "no such array".to_owned()))?;
+        if array.shape != [rows, columns.len()] {
+            return Err((expected(), format!("{:?}", array.shape)));
+        }
+        if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
+            return Err((format!("finite numbers in the array `{key}`"), wrong.to_string()));
+        }
+        for (component, column) in columns.iter().enumerate() {
+            contacts.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
+            contacts.numbers.push(array.numbers.iter().skip(component).step_by(columns.len()).copied().collect());
+        }
+    }
+    let mut row = 0;
+    for &moment in steps {
+        let start = row;
+        while row < rows && step.numbers[row] == moment as f64 {
+            row += 1;
+        }
+        contacts.ranges.push(start..row);
+    }
+    if row < rows {
+        let expected = format!("steps of the grains in ascending order in the array `{CONTACT_STEP}`");
+        return Err((expected, format!("{} in row {}", step.numbers[row], row + 1)));
+    }
+    Ok(Some(contacts))
 }
 
 /// Returns all arrays of a file by name.
@@ -252,7 +333,35 @@ mod tests {
     }
 
     #[test]
+    fn contacts_and_forces_of_walls_are_read() {
+        let course = read("contacts.npz").unwrap();
+        let value =
+            |snapshot: &DumpSnapshot, row: usize, column: &str| snapshot.row(row)[snapshot.column(column).unwrap()];
+        let [first, second, third, fourth] = [0, 1, 2, 3].map(|place| course.snapshot(place).unwrap());
+        assert!(course.snapshot(4).is_none());
+        assert_eq!([&first, &second, &third, &fourth].map(|snapshot| snapshot.step), [0, 10, 0, 10]);
+        assert_eq!((first.kind, first.rows(), second.rows()), (DumpKind::Entries, 1, 2));
+        assert_eq!([value(&second, 0, "id1"), value(&second, 0, "id2")], [2.0, 1.0]);
+        assert_eq!([value(&second, 0, "force_x"), value(&second, 1, "force_z")], [3.0 / 7.0, 8.0 / 7.0]);
+        assert_eq!((third.kind, value(&fourth, 1, "x")), (DumpKind::Atoms, 1.0));
+        assert_eq!([value(&third, 0, "floor.force_y"), value(&fourth, 1, "floor.force_z")], [1.0 / 3.0, 11.0 / 3.0]);
+    }
+
+    #[test]
     fn other_shapes_are_refused_in_words() {
+        assert_eq!(
+            read("contacts-late.npz").unwrap_err(),
+            "contacts-late.npz:1: expected steps of the grains in ascending order in the array `contact_step`, found 5 \
+             in row 2"
+        );
+        assert_eq!(
+            read("contacts-short.npz").unwrap_err(),
+            "contacts-short.npz:1: expected the shape (3, 3) of the array `contact_force`, found [2, 3]"
+        );
+        assert_eq!(
+            read("wall-flat.npz").unwrap_err(),
+            "wall-flat.npz:1: expected the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"
+        );
         assert_eq!(
             read("flat.npz").unwrap_err(),
             "flat.npz:1: expected the shape (3, grains, 3) of the array `position`, found [3, 3]"

@@ -44,7 +44,7 @@ pub struct StoredRun {
 /// Returns the folder of the stored run `id` of a program.
 #[must_use]
 pub fn folder(program: Program, id: &str) -> PathBuf {
-    Path::new(crate::FOLDER).join(program.name()).join(id)
+    crate::data::reference().join(program.name()).join(id)
 }
 
 impl StoredRun {
