@@ -28,7 +28,6 @@ pub(crate) struct EffectStudy {
 
 impl EffectStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
-        arguments.only(&["CASE"])?;
         let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
         for (number, (ledger, of_case)) in effects::ledgers(&arguments.cases)?.into_iter().enumerate() {
             ledgers.push(Mutex::new(ledger));

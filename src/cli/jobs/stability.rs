@@ -47,7 +47,6 @@ pub(crate) enum Tested {
 
 impl StabilityStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
-        arguments.only(&["CASE", "--solver"])?;
         let (assemblies, hard) = (assembly::all()?, hard::all());
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let items = stability::select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;

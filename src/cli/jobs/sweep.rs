@@ -1,6 +1,5 @@
 //! Plan of a parameter sweep.
 
-use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
@@ -39,15 +38,10 @@ pub(crate) struct SweepStudy {
 }
 
 impl SweepStudy {
-    pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
+    pub(crate) fn new(file: &str) -> Result<Self, Fault> {
         if !is_manifest(file) {
-            return Err(Fault::unknown(
-                "`SWEEP.toml`, or a command with a plan",
-                file,
-                ["run", "cost", "stability", "effects"],
-            ));
+            return Err(Fault::input(format!("{file}: expected the file of a sweep (`.toml`), found another name")));
         }
-        arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;
         let beside = Path::new(file).parent().unwrap_or(Path::new(""));
         // Paths of manifests are relative to the directory of the sweep file.
