@@ -12,7 +12,7 @@ use grainbench::jobs::shard::Shard;
 use grainbench::jobs::slurm;
 use grainbench::jobs::work::{Summary, WorkRequest};
 use grainbench::reports::number;
-use grainbench::store::log::Worker;
+use grainbench::store::log::{State, Worker};
 use grainbench::store::machine;
 use std::env;
 use std::path::Path;
@@ -67,7 +67,8 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
         (Some(jobs), false) => usize::from(jobs),
         (None, false) => cores(),
     };
-    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again: retry_failed, jobs };
+    let again: &[State] = if retry_failed { &[State::Failed, State::Crashed] } else { &[] };
+    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again, jobs };
     let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks"))?;
     if !options.quiet {
         print(&words(&summary))?;
