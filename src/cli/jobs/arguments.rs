@@ -97,7 +97,7 @@ impl Arguments {
     }
 
     /// Returns the command, the cases and the solvers for the provenance of the report.
-    pub(super) fn said(&self, command: &str) -> Vec<String> {
+    pub(super) fn command_words(&self, command: &str) -> Vec<String> {
         let words = std::iter::once(command.to_owned()).chain(self.cases.iter().cloned());
         words.chain(self.solver.iter().map(|solver| format!("--solver {solver}"))).collect()
     }

@@ -170,7 +170,7 @@ impl Study for CostStudy {
     fn report(&self, results: Vec<TaskResult<Measured>>, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose().map_err(Fault::input)?;
         let (results, has_crash) = outputs(results, how);
-        let mut words = self.arguments.said("cost");
+        let mut words = self.arguments.command_words("cost");
         if self.wanted.all {
             words.push("--levels all".to_owned());
         }

@@ -75,7 +75,7 @@ impl TaskList for EffectStudy {
 impl Study for EffectStudy {
     fn report(&self, results: Vec<TaskResult<Option<Entry>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.said("effects"));
+        let mut study = how.study(self.arguments.command_words("effects"));
         study.ledger.extend(results.into_iter().flatten().flatten());
         let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
         study.sources = sources(&solvers.collect::<Vec<_>>());

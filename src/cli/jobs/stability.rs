@@ -134,7 +134,7 @@ impl TaskList for StabilityStudy {
 impl Study for StabilityStudy {
     fn report(&self, results: Vec<TaskResult<Tested>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.said("stability"));
+        let mut study = how.study(self.arguments.command_words("stability"));
         for tested in results.into_iter().flatten() {
             match tested {
                 Tested::Limit(limit) => study.limits.push(limit),
