@@ -74,7 +74,7 @@ pub type Store<'a, T> = dyn Fn(usize, State, f64, Finished<T>) -> Result<(), Wri
 pub struct ResultSink<'a, T> {
     watch: &'a dyn Watch,
     store: &'a Store<'a, T>,
-    left: Mutex<BTreeSet<usize>>,
+    finished: Mutex<BTreeSet<usize>>,
     fault: Mutex<Option<WriteError>>,
     stops: AtomicBool,
     failed: AtomicUsize,
@@ -86,7 +86,7 @@ impl<'a, T> ResultSink<'a, T> {
         Self {
             watch,
             store,
-            left: Mutex::default(),
+            finished: Mutex::default(),
             fault: Mutex::default(),
             stops: AtomicBool::new(false),
             failed: AtomicUsize::new(0),
@@ -114,7 +114,7 @@ impl<'a, T> ResultSink<'a, T> {
             locked(&self.fault).get_or_insert(error);
             return;
         }
-        locked(&self.left).insert(place);
+        locked(&self.finished).insert(place);
         self.failed.fetch_add(usize::from(state != State::Done), Ordering::Relaxed);
         self.watch.finished();
     }
@@ -128,7 +128,7 @@ impl<'a, T> ResultSink<'a, T> {
     /// Returns the number of stored results.
     #[must_use]
     pub fn done(&self) -> usize {
-        locked(&self.left).len()
+        locked(&self.finished).len()
     }
 
     /// Returns the number of results of tasks that failed or crashed.
@@ -154,8 +154,8 @@ pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sin
         let start = Instant::now();
         if let Err(reason) = catch_unwind(AssertUnwindSafe(|| list.perform_group(&groups[group], sink))) {
             for &place in &groups[group] {
-                let is_left = locked(&sink.left).contains(&place);
-                if !is_left {
+                let is_stored = locked(&sink.finished).contains(&place);
+                if !is_stored {
                     sink.crashed(place, start, &*reason);
                 }
             }
@@ -164,18 +164,18 @@ pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sin
     share(groups.len(), at_once, || sink.goes_on(), perform);
 }
 
-/// Performs all tasks in memory on up to `at_once` threads, in the order `order` of their indices. Calls `told` with each
+/// Performs all tasks in memory on up to `at_once` threads, in the order `order` of their indices. Calls `observe` with each
 /// result. Returns the results in the order of the list.
 pub fn in_memory<L: TaskList>(
     list: &L,
     order: &[usize],
     at_once: usize,
     watch: &dyn Watch,
-    told: &(dyn Fn(&L::Output) + Sync),
+    observe: &(dyn Fn(&L::Output) + Sync),
 ) -> Vec<TaskResult<L::Output>> {
     let results: Vec<Mutex<TaskResult<L::Output>>> = order.iter().map(|_| Mutex::new(TaskResult::Nothing)).collect();
     let store = |place: usize, _: State, _: f64, result: Finished<L::Output>| {
-        result.iter().for_each(told);
+        result.iter().for_each(observe);
         *locked(&results[place]) = result.map_or_else(TaskResult::Crash, TaskResult::Out);
         Ok(())
     };

@@ -27,8 +27,8 @@ const SHARE: u32 = 20;
 pub struct WorkRequest {
     /// Shard to run.
     pub shard: Shard,
-    /// True to repeat failed and crashed tasks.
-    pub again: bool,
+    /// States of the finished tasks that are repeated.
+    pub again: &'static [State],
     /// Number of simultaneous tasks.
     pub jobs: usize,
 }
@@ -119,7 +119,7 @@ pub fn work<L: TaskList>(
         let look = look.elapsed();
         let is_open = |place: usize| match finished.entries.get(&plan.tasks[place].id) {
             None => true,
-            Some(entry) => asked.again && entry.state != State::Done && !tried.contains(&place),
+            Some(entry) => asked.again.contains(&entry.state) && !tried.contains(&place),
         };
         let open: Vec<usize> = range.clone().filter(|place| is_open(*place)).collect();
         if is_first {

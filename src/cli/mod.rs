@@ -96,18 +96,6 @@ enum Command {
     Stability(stability::Arguments),
     /// Measure the influence of each physical effect, by switching it off or giving it a neutral value.
     Effects(effects::Arguments),
-    /// Old spelling of `--plan DIR`.
-    #[command(hide = true)]
-    Plan(jobs::arguments::Arguments),
-    /// Old spelling of `run --resume DIR`.
-    #[command(hide = true)]
-    Work(jobs::work::Arguments),
-    /// Old spelling of `report DIR --progress`.
-    #[command(hide = true)]
-    Status(jobs::status::Arguments),
-    /// Old spelling of `report DIR`.
-    #[command(hide = true)]
-    Collect(jobs::collect::Arguments),
     /// Compare throughput with LAMMPS and LIGGGHTS, in particle-steps per second of processor time.
     Race(race::Arguments),
     /// Make, verify and update stored runs of other programs and stored results.
@@ -200,25 +188,6 @@ pub(crate) fn main() -> ExitCode {
             Ok(Some(code)) => Ok(code),
             Err(fault) => Err(fault),
         },
-        Command::Plan(arguments) => {
-            spelling::say_command(
-                "plan",
-                "run|cost|stability|effects … --plan DIR` or `simulate SWEEP.toml --plan DIR",
-            );
-            jobs::plan::plan(&arguments)
-        }
-        Command::Work(arguments) => {
-            spelling::say_command("work", "run --resume DIR");
-            jobs::work::old(&arguments)
-        }
-        Command::Status(arguments) => {
-            spelling::say_command("status", "report DIR --progress");
-            jobs::status::status(&arguments.plan, arguments.json)
-        }
-        Command::Collect(arguments) => {
-            spelling::say_command("collect", "report DIR");
-            jobs::collect::collect(&arguments.plan, &arguments.options)
-        }
         Command::Race(arguments) => race::race(&arguments),
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),

@@ -93,7 +93,7 @@ fn a_collected_plan_is_the_report_of_its_command() {
         (&["run", "squash", "collision"][..], 3, "report.json"),
         (&["stability", "two-discs", "mass-ratio-1e6", "--solver=dem", "--solver=mpm"], 2, "study.json"),
         (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
-        (&["effects", "collision", "squash"], 2, "study.json"),
+        (&["effects", "collision/gamma-zeta.1", "squash"], 2, "study.json"),
     ] {
         let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
         ok(&grainbench(here, &[command, &["--plan", "p"]].concat()));

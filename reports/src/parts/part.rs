@@ -165,9 +165,10 @@ impl OpenPart {
         Ok(())
     }
 
-    /// Returns the number of bytes written so far, without those of the table of bodies.
+    /// Returns the number of bytes written so far.
     pub(super) fn bytes(&self) -> usize {
-        self.frames.bytes() + self.grains.bytes() + self.contacts.bytes() + self.walls.bytes() + self.points.bytes()
+        let Self { frames, grains, contacts, walls, bodies, points, .. } = self;
+        [frames.bytes(), grains.bytes(), contacts.bytes(), walls.bytes(), bodies.bytes(), points.bytes()].iter().sum()
     }
 
     /// Closes the part and moves it to the folder. `number` is the number of the part.

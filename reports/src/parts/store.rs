@@ -451,6 +451,7 @@ fn bytes(snapshot: &Snapshot) -> usize {
         + size_of_val(snapshot.told_contacts())
         + size_of_val(snapshot.points.as_slice())
         + size_of_val(snapshot.walls.as_slice())
+        + size_of_val(snapshot.bodies.as_slice())
 }
 
 #[cfg(test)]

@@ -6,44 +6,34 @@ use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard;
 use std::path::{Path, PathBuf};
 
-/// Arguments of a plan.
+/// Arguments of `run`, `cost`, `stability` and `effects`, and the file of a sweep, which determine the tasks.
 #[derive(Clone, Default, clap::Args)]
 pub(crate) struct Arguments {
-    /// Kind of plan: `run`, `cost`, `stability`, `effects`, or the path of a sweep file.
-    #[arg(value_name = "run|cost|stability|effects|SWEEP.toml")]
+    /// Command, or path of a sweep file.
     pub(crate) what: String,
-    /// Cases, as for `run`, `cost` and `stability`. Default: all.
-    #[arg(value_name = "CASE|CASE/VARIANT")]
     pub(crate) cases: Vec<String>,
-    /// Select a solver, by name or manifest; repeatable.
-    #[arg(long, value_name = "NAME|SOLVER.toml")]
+    #[arg(long)]
     pub(crate) solver: Vec<String>,
-    /// Resolution levels, for `run`. For `cost`, `all` includes points that take more than 20 s.
-    #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
+    #[arg(long, value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    /// Filter, as `run --filter`.
-    #[arg(long, value_name = "quantity=…|source=…|evidence=…")]
+    #[arg(long)]
     pub(crate) filter: Vec<String>,
-    /// Skip the negative controls, for `run`.
     #[arg(long)]
     pub(crate) no_controls: bool,
-    /// Run `lammps` and `liggghts` even if a stored run exists; for `run`.
     #[arg(long)]
     pub(crate) live: bool,
-    /// Also measure the cost of the parts of a step, and of a step with one and with 10,000 grains; for `cost`.
     #[arg(long)]
     pub(crate) prices: bool,
-    /// Measure only errors and counts, for `cost`. Without timing, several tasks can run on one machine.
-    #[arg(long, conflicts_with = "prices")]
-    pub(crate) counts: bool,
-    /// Number of shards. Default: as many as last at least 60 s on average.
-    #[arg(long, value_name = "N", value_parser = whole(1, shard::MOST))]
-    pub(crate) shards: Option<u32>,
-    /// Directory of the plan. Finished tasks of an existing plan stay finished.
-    #[arg(long, value_name = "DIR", default_value = "grainbench-plan")]
-    pub(crate) out: PathBuf,
-    /// Print the plan as JSON.
     #[arg(long)]
+    pub(crate) counts: bool,
+    /// Number of shards of a plan.
+    #[arg(skip)]
+    pub(crate) shards: Option<u32>,
+    /// Directory of the plan or of the report.
+    #[arg(skip)]
+    pub(crate) out: PathBuf,
+    /// True to print results as JSON.
+    #[arg(skip)]
     pub(crate) json: bool,
 }
 
@@ -107,7 +97,7 @@ impl Arguments {
     }
 
     /// Returns the command, the cases and the solvers for the provenance of the report.
-    pub(super) fn said(&self, command: &str) -> Vec<String> {
+    pub(super) fn command_words(&self, command: &str) -> Vec<String> {
         let words = std::iter::once(command.to_owned()).chain(self.cases.iter().cloned());
         words.chain(self.solver.iter().map(|solver| format!("--solver {solver}"))).collect()
     }
@@ -120,26 +110,5 @@ impl Arguments {
             Fault::input(format!("{}: expected arguments of a plan, found {found}", plan.path.display()))
         })?;
         Ok(again.arguments)
-    }
-
-    /// Returns an error if an option is given that this kind of plan does not support.
-    pub(crate) fn only(&self, heeded: &[&str]) -> Result<(), Fault> {
-        let given = [
-            ("CASE", !self.cases.is_empty()),
-            ("--solver", !self.solver.is_empty()),
-            ("--levels", !self.levels.is_empty()),
-            ("--filter", !self.filter.is_empty()),
-            ("--no-controls", self.no_controls),
-            ("--live", self.live),
-            ("--prices", self.prices),
-            ("--counts", self.counts),
-        ];
-        match given.iter().find(|(name, is_given)| *is_given && !heeded.contains(name)) {
-            Some((name, _)) => {
-                let study_name = if heeded.is_empty() { "a sweep" } else { self.what.as_str() };
-                Err(Fault::input(format!("{name}: not supported with {study_name}")))
-            }
-            None => Ok(()),
-        }
     }
 }

@@ -63,15 +63,8 @@ struct RunParser {
 
 impl ClaimStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
-        arguments.only(&["CASE", "--solver", "--levels", "--filter", "--no-controls", "--live"])?;
-        let mut words = vec!["run".to_owned()];
-        words.extend(arguments.cases.iter().cloned());
-        words.extend(arguments.solver.iter().map(|value| format!("--solver={value}")));
-        words.extend(arguments.levels.iter().map(|value| format!("--levels={value}")));
-        words.extend(arguments.filter.iter().map(|value| format!("--filter={value}")));
-        words.extend(arguments.no_controls.then(|| "--no-controls".to_owned()));
-        words.extend(arguments.live.then(|| "--live".to_owned()));
-        let RunParser { cases, solver, options } = clap::Parser::try_parse_from(words).map_err(Fault::input)?;
+        let RunParser { cases, solver, options } =
+            clap::Parser::try_parse_from(arguments.words()).map_err(Fault::input)?;
         let options = ClaimOptions { solver, ..options };
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {

@@ -12,15 +12,6 @@ use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
 use std::process::ExitCode;
 
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// Directory of the plan.
-    #[arg(value_name = "PLAN")]
-    pub(crate) plan: PathBuf,
-    #[command(flatten)]
-    pub(crate) options: CollectOptions,
-}
-
 /// Options of the report of a plan.
 #[derive(Default, clap::Args)]
 pub(crate) struct CollectOptions {

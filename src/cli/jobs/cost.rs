@@ -49,16 +49,7 @@ pub(crate) enum Measured {
 
 impl CostStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
-        arguments.only(&["CASE", "--solver", "--levels", "--prices", "--counts"])?;
-        let all = match &arguments.levels[..] {
-            [] => false,
-            [word] if word == "default" => false,
-            [word] if word == "all" => true,
-            words => {
-                let found = words.join(",");
-                return Err(Fault::input(format!("--levels: expected `default` or `all` with cost, found `{found}`")));
-            }
-        };
+        let all = arguments.levels.iter().any(|level| level == "all");
         let subjects = cost::subjects(&arguments.cases)?;
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let wanted = PointSelection { solvers: named, all, counts: arguments.counts };
@@ -179,7 +170,7 @@ impl Study for CostStudy {
     fn report(&self, results: Vec<TaskResult<Measured>>, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose().map_err(Fault::input)?;
         let (results, has_crash) = outputs(results, how);
-        let mut words = self.arguments.said("cost");
+        let mut words = self.arguments.command_words("cost");
         if self.wanted.all {
             words.push("--levels all".to_owned());
         }

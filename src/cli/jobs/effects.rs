@@ -28,7 +28,6 @@ pub(crate) struct EffectStudy {
 
 impl EffectStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
-        arguments.only(&["CASE"])?;
         let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
         for (number, (ledger, of_case)) in effects::ledgers(&arguments.cases)?.into_iter().enumerate() {
             ledgers.push(Mutex::new(ledger));
@@ -76,7 +75,7 @@ impl TaskList for EffectStudy {
 impl Study for EffectStudy {
     fn report(&self, results: Vec<TaskResult<Option<Entry>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.said("effects"));
+        let mut study = how.study(self.arguments.command_words("effects"));
         study.ledger.extend(results.into_iter().flatten().flatten());
         let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
         study.sources = sources(&solvers.collect::<Vec<_>>());

@@ -11,6 +11,7 @@ use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
 use grainbench::jobs::plan::{Plan, RUNNING};
 use grainbench::jobs::shard::Shard;
 use grainbench::jobs::work::WorkRequest;
+use grainbench::store::log::State;
 use grainbench::store::results::{self, FinishedTasks};
 use std::fs;
 use std::process::ExitCode;
@@ -79,7 +80,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
         }
     };
     let jobs = if study.is_timed() { 1 } else { cores() };
-    let asked = WorkRequest { shard: Shard::WHOLE, again: false, jobs };
+    let asked = WorkRequest { shard: Shard::WHOLE, again: &[State::Crashed], jobs };
     let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks").calling(&draft))?;
     // The folder of leases is empty unless another process works on the same directory.
     let _ = fs::remove_dir(out.join(RUNNING));

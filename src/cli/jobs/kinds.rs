@@ -16,6 +16,6 @@ pub(crate) fn from_arguments(arguments: &Arguments, is_shared: bool) -> Result<B
         "cost" => Box::new(CostStudy::new(arguments, is_shared)?),
         "stability" => Box::new(StabilityStudy::new(arguments, is_shared)?),
         "effects" => Box::new(EffectStudy::new(arguments)?),
-        file => Box::new(SweepStudy::new(file, arguments)?),
+        file => Box::new(SweepStudy::new(file)?),
     })
 }

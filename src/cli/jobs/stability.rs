@@ -47,7 +47,6 @@ pub(crate) enum Tested {
 
 impl StabilityStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
-        arguments.only(&["CASE", "--solver"])?;
         let (assemblies, hard) = (assembly::all()?, hard::all());
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let items = stability::select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;
@@ -135,7 +134,7 @@ impl TaskList for StabilityStudy {
 impl Study for StabilityStudy {
     fn report(&self, results: Vec<TaskResult<Tested>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.said("stability"));
+        let mut study = how.study(self.arguments.command_words("stability"));
         for tested in results.into_iter().flatten() {
             match tested {
                 Tested::Limit(limit) => study.limits.push(limit),

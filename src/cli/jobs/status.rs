@@ -6,18 +6,8 @@ use grainbench::jobs::slurm;
 use grainbench::jobs::status::Status;
 use grainbench::reports::number;
 use serde::Serialize;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
-
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// Directory of the plan.
-    #[arg(value_name = "PLAN")]
-    pub(crate) plan: PathBuf,
-    /// Print the progress as JSON.
-    #[arg(long)]
-    pub(crate) json: bool,
-}
 
 /// Progress of a plan, printed as JSON.
 #[derive(Serialize)]

@@ -1,6 +1,5 @@
 //! Plan of a parameter sweep.
 
-use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
@@ -34,36 +33,31 @@ pub(crate) struct SweepStudy {
     /// Solver names in the results.
     names: Vec<String>,
     solvers: NamedSolvers,
-    /// Cache of finished runs, and the solvers in the order of the sweep file, which use it. They are opened with the first run.
-    opened: OnceLock<(Option<Arc<RunCache>>, Vec<Option<Arc<dyn Solver>>>)>,
+    /// Cache of finished runs, opened with the first run. Timed tasks never use it.
+    cache: OnceLock<Option<Arc<RunCache>>>,
+    /// Solvers in the order of the sweep file, which use the cache.
+    found: OnceLock<Vec<Option<Arc<dyn Solver>>>>,
 }
 
 impl SweepStudy {
-    pub(crate) fn new(file: &str, arguments: &Arguments) -> Result<Self, Fault> {
+    pub(crate) fn new(file: &str) -> Result<Self, Fault> {
         if !is_manifest(file) {
-            return Err(Fault::unknown(
-                "`SWEEP.toml`, or a command with a plan",
-                file,
-                ["run", "cost", "stability", "effects"],
-            ));
+            return Err(Fault::input(format!("{file}: expected the file of a sweep (`.toml`), found another name")));
         }
-        arguments.only(&[])?;
         let sweep = Sweep::read(Path::new(file))?;
         let beside = Path::new(file).parent().unwrap_or(Path::new(""));
         // Paths of manifests are relative to the directory of the sweep file.
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
         let (solvers, names) = NamedSolvers::read_for(&asked, true)?;
-        Ok(Self { path: file.to_owned(), sweep, asked, names, solvers, opened: OnceLock::new() })
+        Ok(Self { path: file.to_owned(), sweep, asked, names, solvers, cache: OnceLock::new(), found: OnceLock::new() })
     }
 
-    fn opened(&self) -> &(Option<Arc<RunCache>>, Vec<Option<Arc<dyn Solver>>>) {
-        self.opened.get_or_init(|| {
-            // Timed tasks never use results of the cache.
-            let cache = if self.is_timed() { None } else { cache::open(false) };
+    fn found(&self) -> &[Option<Arc<dyn Solver>>] {
+        self.found.get_or_init(|| {
+            let cache = self.cache.get_or_init(|| if self.is_timed() { None } else { cache::open(false) });
             let solvers = cache::with(self.solvers.clone(), cache.as_ref());
-            let found = self.names.iter().map(|name| solvers.find(name)).collect();
-            (cache, found)
+            self.names.iter().map(|name| solvers.find(name)).collect()
         })
     }
 }
@@ -102,13 +96,13 @@ impl TaskList for SweepStudy {
     type Output = PointOutput;
 
     fn perform(&self, place: usize, _: &ResultSink<'_, PointOutput>) -> (State, PointOutput) {
-        self.sweep.run(place, &self.opened().1)
+        self.sweep.run(place, self.found())
     }
 }
 
 impl Drop for SweepStudy {
     fn drop(&mut self) {
-        if let Some((Some(cache), _)) = self.opened.get() {
+        if let Some(Some(cache)) = self.cache.get() {
             cache.make_room();
         }
     }

@@ -4,36 +4,20 @@ use super::arguments::Arguments as Planned;
 use super::enter;
 use super::kinds::from_arguments;
 use super::watch::Follower;
-use crate::cli::cores::{MOST_THREADS, cores};
+use crate::cli::cores::cores;
 use crate::cli::exit::{self, Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
-use crate::cli::value::whole;
 use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard::Shard;
 use grainbench::jobs::slurm;
 use grainbench::jobs::work::{Summary, WorkRequest};
 use grainbench::reports::number;
-use grainbench::store::log::Worker;
+use grainbench::store::log::{State, Worker};
 use grainbench::store::machine;
 use std::env;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 use std::process::ExitCode;
 use std::time::{SystemTime, UNIX_EPOCH};
-
-#[derive(clap::Args)]
-pub(crate) struct Arguments {
-    /// Directory of the plan.
-    #[arg(value_name = "PLAN")]
-    pub(crate) plan: PathBuf,
-    #[command(flatten)]
-    pub(crate) options: WorkOptions,
-    /// Number of simultaneous tasks. Default: the number of cores, or 1 if the plan measures times.
-    #[arg(short, long, value_name = "N", value_parser = whole(1, MOST_THREADS), conflicts_with = "on")]
-    jobs: Option<u16>,
-    /// Repeat failed tasks.
-    #[arg(long, conflicts_with = "on")]
-    retry_failed: bool,
-}
 
 /// Options of `run` that need `--resume`.
 #[derive(Default, clap::Args)]
@@ -66,11 +50,6 @@ impl WorkOptions {
     }
 }
 
-/// Runs a plan for the old command `work`.
-pub(crate) fn old(arguments: &Arguments) -> Outcome {
-    work(&arguments.plan, &arguments.options, arguments.jobs, arguments.retry_failed)
-}
-
 /// Runs the tasks of a plan or submits them to a batch system.
 pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_failed: bool) -> Outcome {
     let plan = enter(plan)?;
@@ -88,7 +67,8 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
         (Some(jobs), false) => usize::from(jobs),
         (None, false) => cores(),
     };
-    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again: retry_failed, jobs };
+    let again: &[State] = if retry_failed { &[State::Failed, State::Crashed] } else { &[] };
+    let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again, jobs };
     let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks"))?;
     if !options.quiet {
         print(&words(&summary))?;
