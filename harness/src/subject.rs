@@ -50,6 +50,14 @@ const MOST: usize = 2;
 /// Returns the target quantities from the claims of a case, at most one per variant. Quantities with the most methods come first.
 #[must_use]
 pub fn from_claims(case: &'static Case) -> Vec<TargetQuantity> {
+    let mut chosen = of_each_variant(case);
+    chosen.truncate(MOST);
+    chosen
+}
+
+/// Returns one target quantity for each variant that has any. Quantities with the most methods come first.
+#[must_use]
+pub fn of_each_variant(case: &'static Case) -> Vec<TargetQuantity> {
     let mut subjects: Vec<TargetQuantity> = Vec::new();
     for claim in (case.claims)() {
         add(case, &claim, &mut subjects);
@@ -63,7 +71,7 @@ pub fn from_claims(case: &'static Case) -> Vec<TargetQuantity> {
     subjects.sort_by_key(|subject| std::cmp::Reverse(kinds(subject)));
     let mut chosen: Vec<TargetQuantity> = Vec::new();
     for subject in subjects {
-        if chosen.len() < MOST && chosen.iter().all(|known| known.variant != subject.variant) {
+        if chosen.iter().all(|known| known.variant != subject.variant) {
             chosen.push(subject);
         }
     }

@@ -2,19 +2,23 @@
 
 use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::own;
 use super::subject::Variant;
 use grainbench::cases::registry::{self, CASES};
-use grainbench::harness::subject::TargetQuantity;
+use grainbench::harness::case::Case;
+use grainbench::harness::subject::{TargetQuantity, of_each_variant};
 use grainbench::reports::study::point::Point;
 use grainbench::reports::study::{Study, cost as drawn};
 use grainbench::studies::cost::against::{compare, shared};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases to measure. Default: all cases with an exact solution.
-    #[arg(value_name = "CASE|CASE/VARIANT")]
+    /// Cases to measure, or one scene of your own: a scene file, or a folder with `scene.toml` and `claims.toml`. Default: all
+    /// cases with an exact solution.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml|FOLDER")]
     pub(crate) cases: Vec<String>,
     /// Measure only this solver, by name or manifest. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
@@ -38,6 +42,12 @@ pub(crate) struct Arguments {
     /// Directory of the report and of the finished points.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    own: own::Options,
+    /// Column of a probe whose error is estimated, such as `ball.vx`, or all columns of a probe. Only for a scene of your own.
+    /// Repeatable. Default: all columns except counts.
+    #[arg(long, value_name = "PROBE[.COLUMN]")]
+    quantity: Vec<String>,
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -64,6 +74,25 @@ impl Arguments {
         }
     }
 
+    /// Studies the scene that the arguments name; returns `None` if they name cases, or claims with exact values.
+    pub(crate) fn own_scene(&self) -> Result<Option<ExitCode>, Fault> {
+        let (has_levels, is_planned) = (self.levels != "default" || self.prices, self.plan.is_given());
+        let path = own::scene(&self.cases)?;
+        let has_claims = own::folder(&self.cases)?.is_some_and(|case| !registry::subjects(case).is_empty());
+        let Some(path) = path.filter(|_| !has_claims) else {
+            self.own.refuse_for_cases(!self.quantity.is_empty())?;
+            return Ok(None);
+        };
+        if has_levels || is_planned {
+            return Err(Fault::input(format!("{path}: expected `--budget`, found `--levels`, `--prices` or `--plan`")));
+        }
+        let words = [&self.cases[..], &self.solver].concat();
+        let (solvers, quantities) = (&self.solver, &self.quantity);
+        let input =
+            own::Input { path, words, solvers, quantities, no_cache: self.no_cache, out: &self.out, json: self.json };
+        own::cost(&input, &self.own).map(Some)
+    }
+
     /// Returns the options that do not change the tasks.
     pub(crate) fn options(&self) -> StudyOptions<'_> {
         StudyOptions { no_cache: self.no_cache, against: self.against.as_deref(), update_stored: self.update_stored }
@@ -86,6 +115,9 @@ pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
 
 /// Returns the target quantities of the named cases, in the order of the registry.
 pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
+    if let Some(case) = own::folder(names)? {
+        return Ok(registry::subjects(case));
+    }
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {
@@ -97,6 +129,11 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
             mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
         };
         found.extend(registry::subjects(case).into_iter().filter(|subject| wanted(subject.variant)));
+        for (named, variant) in mine.iter().filter_map(|named| Some((named, named.variant?))) {
+            if found.iter().all(|subject| subject.case.name != case.name || subject.variant != variant) {
+                found.push(of_variant(named.case, variant)?);
+            }
+        }
     }
     if found.is_empty() {
         return Err(Fault::input(
@@ -104,6 +141,21 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
         ));
     }
     Ok(found)
+}
+
+/// Returns the target quantity of a variant that is not among those of the case. The error lists the variants with one.
+fn of_variant(case: &'static Case, variant: &str) -> Result<TargetQuantity, Fault> {
+    let mut all = of_each_variant(case);
+    if let Some(at) = all.iter().position(|subject| subject.variant == variant) {
+        return Ok(all.swap_remove(at));
+    }
+    let mut variants: Vec<&str> = all.iter().map(|subject| subject.variant).collect();
+    variants.sort_unstable();
+    let known = if variants.is_empty() { "no variant has one".to_owned() } else { variants.join(", ") };
+    Err(Fault::input(format!(
+        "{}/{variant}: expected a variant with an exact solution for a single run ({known}), found one without",
+        case.name
+    )))
 }
 
 /// Returns hashes of the solvers' sources, by solver name.

@@ -2,6 +2,7 @@
 
 use super::exit::{Fault, Outcome, check_writable};
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::own;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
@@ -25,8 +26,8 @@ use std::time::Instant;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Cases, or one scene file. Default: all cases.
-    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml")]
+    /// Cases, or one scene of your own: a scene file, or a folder with `scene.toml` and `claims.toml`. Default: all cases.
+    #[arg(value_name = "CASE|CASE/VARIANT|SCENE.toml|FOLDER")]
     cases: Vec<String>,
     #[command(flatten)]
     yours: SceneOptions,
@@ -179,6 +180,11 @@ pub(crate) fn text(study: &Study) -> String {
 
 /// Returns the study of each named case, with the effects to test.
 pub(crate) fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
+    if let Some(case) = own::folder(names)? {
+        let ledger = Ledger::new(case, Arc::new(Registry));
+        let pieces = ledger.pieces();
+        return Ok(vec![(ledger, pieces)]);
+    }
     let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
     for case in CASES {

@@ -25,6 +25,7 @@ mod keep;
 mod kept_runs;
 mod list;
 mod names;
+mod own;
 mod pattern;
 mod progress;
 mod provenance;
@@ -181,8 +182,14 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fields(arguments) => fields::fields(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Cost(arguments) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
-        Command::Stability(arguments) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+        Command::Cost(arguments) => arguments.own_scene().and_then(|own| match own {
+            Some(code) => Ok(code),
+            None => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+        }),
+        Command::Stability(arguments) => arguments.own_scene().and_then(|own| match own {
+            Some(code) => Ok(code),
+            None => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+        }),
         Command::Effects(arguments) => match effects::scene_file(&arguments) {
             Ok(None) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
             Ok(Some(code)) => Ok(code),

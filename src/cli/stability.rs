@@ -3,6 +3,7 @@
 use super::cost::sources;
 use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::own;
 use grainbench::reports::number;
 use grainbench::reports::study::Study;
 use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
@@ -11,6 +12,7 @@ use grainbench::studies::stability::hard::HardCase;
 use grainbench::studies::stability::limit;
 use std::collections::BTreeMap;
 use std::path::PathBuf;
+use std::process::ExitCode;
 
 /// Case in which the stability limit of grid methods is measured.
 pub(super) const BAR: &str = "vibrating-bar";
@@ -19,8 +21,9 @@ const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
-    /// Names, or beginnings of names, of hard cases and of assemblies with a known stability limit. Default: all.
-    #[arg(value_name = "CASE")]
+    /// Names, or beginnings of names, of hard cases and of assemblies with a known stability limit. Or one scene of your own: a
+    /// scene file, or a folder with `scene.toml`. Default: all cases.
+    #[arg(value_name = "CASE|SCENE.toml|FOLDER")]
     pub(crate) cases: Vec<String>,
     /// Test only this solver, by name or manifest. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
@@ -34,6 +37,8 @@ pub(crate) struct Arguments {
     /// Directory of the report and of the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     pub(crate) out: PathBuf,
+    #[command(flatten)]
+    own: own::Options,
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -59,6 +64,28 @@ impl Arguments {
             out: self.out.clone(),
             ..Planned::default()
         }
+    }
+
+    /// Studies the scene that the arguments name; returns `None` if they name cases.
+    pub(crate) fn own_scene(&self) -> Result<Option<ExitCode>, Fault> {
+        let Some(path) = own::scene(&self.cases)? else {
+            self.own.refuse_for_cases(false)?;
+            return Ok(None);
+        };
+        if self.plan.is_given() {
+            return Err(Fault::input(format!("{path}: expected cases with `--plan`, found a scene file")));
+        }
+        let (words, solvers) = ([&self.cases[..], &self.solver].concat(), &self.solver);
+        let input = own::Input {
+            path,
+            words,
+            solvers,
+            quantities: &[],
+            no_cache: self.no_cache,
+            out: &self.out,
+            json: self.json,
+        };
+        own::stability(&input, &self.own).map(Some)
     }
 
     /// Returns the options that do not change the tasks.

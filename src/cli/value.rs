@@ -2,6 +2,7 @@
 
 use std::fmt::Display;
 use std::str::FromStr;
+use std::time::Duration;
 
 /// Reads `PATH=VALUE`, a key of a scene and its value.
 pub(crate) fn path_and_value(text: &str) -> Result<(String, String), String> {
@@ -17,6 +18,21 @@ pub(crate) fn positive(text: &str) -> Result<f64, String> {
     }
 }
 
+/// Reads a duration: a number with the unit `s`, `m`, `min` or `h`. A number alone is in seconds.
+pub(crate) fn duration(text: &str) -> Result<Duration, String> {
+    let number = text.trim_end_matches(|letter: char| letter.is_ascii_alphabetic());
+    let factor = match text[number.len()..].trim() {
+        "" | "s" => 1.0,
+        "m" | "min" => 60.0,
+        "h" => 3600.0,
+        _ => f64::NAN,
+    };
+    match number.trim().parse::<f64>().map(|value| value * factor) {
+        Ok(seconds) if (1.0..=1e7).contains(&seconds) => Ok(Duration::from_secs_f64(seconds)),
+        _ => Err("expected a duration of at least a second, such as `90s`, `2m` or `1h`".to_owned()),
+    }
+}
+
 /// Returns a parser of whole numbers from `low` to `high`.
 pub(crate) fn whole<T>(low: T, high: T) -> impl Fn(&str) -> Result<T, String> + Clone + Send + Sync + 'static
 where
@@ -25,5 +41,18 @@ where
     move |text| {
         let read = text.parse().ok().filter(|value| (low..=high).contains(value));
         read.ok_or_else(|| format!("expected a whole number from {low} to {high}"))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn durations_have_units() {
+        let seconds = |text: &str| duration(text).map(|duration| duration.as_secs_f64()).ok();
+        let texts = ["90", "90s", "1.5m", "2 min", "1h", "0.5s", "soon", "2d", "-3s", "nan"];
+        let found = [Some(90.0), Some(90.0), Some(90.0), Some(120.0), Some(3600.0), None, None, None, None, None];
+        assert_eq!(texts.map(seconds), found);
     }
 }

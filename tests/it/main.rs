@@ -34,6 +34,7 @@ mod motions;
 mod observer;
 mod outside;
 mod own_case;
+mod own_scene;
 mod own_solver;
 mod passing_decks;
 mod peers;

@@ -104,6 +104,17 @@ pub(crate) fn render(study: &Study) -> Markup {
     }
 }
 
+/// Renders the table of the effects of one scene.
+pub(crate) fn important(ledger: &[Entry]) -> Markup {
+    html! {
+        section {
+            h3 { "Which effects matter" }
+            p.note { "Each effect is switched off. It is needed if a probe then changes by more than the stated limit." }
+            (table(ledger))
+        }
+    }
+}
+
 const fn class(worth: EffectResult) -> &'static str {
     match worth {
         EffectResult::Needed | EffectResult::Inert => "pass",

@@ -2,6 +2,7 @@
 
 pub mod cost;
 pub mod effects;
+pub mod estimate;
 pub mod load;
 mod page;
 pub mod point;
@@ -10,6 +11,7 @@ pub mod step;
 mod store;
 
 use self::effects::Entry;
+use self::estimate::SceneCost;
 use self::load::Load;
 use self::point::{Change, Diagram};
 use self::stability::{HardCaseResult, Limit};
@@ -28,6 +30,9 @@ pub struct Study {
     /// Cost of accuracy, one diagram per quantity.
     #[serde(default)]
     pub diagrams: Vec<Diagram>,
+    /// Cost of accuracy of scenes without an exact solution.
+    #[serde(default, skip_serializing_if = "Vec::is_empty")]
+    pub scenes: Vec<SceneCost>,
     /// Cost of the parts of a step.
     #[serde(default)]
     pub model: Option<Model>,
@@ -61,6 +66,7 @@ impl Study {
         Self {
             provenance,
             diagrams: Vec::new(),
+            scenes: Vec::new(),
             model: None,
             loads: Vec::new(),
             changes: Vec::new(),

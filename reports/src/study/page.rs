@@ -1,7 +1,7 @@
 //! Page of a study.
 
 use super::point::{Diagram, Point, PointStatus};
-use super::{Study, cost, effects, load, stability, step};
+use super::{Study, cost, effects, estimate, load, stability, step};
 use crate::measured::Costs;
 use crate::number::{self, TimeUnit};
 use crate::page::{provenance, scrolling, shell, slug, summary, unique};
@@ -24,14 +24,22 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
             sections.push(cost_section(diagram, &anchor)?);
         }
     }
+    for cost in &study.scenes {
+        sections.push(estimate::render(cost)?);
+    }
+    let is_cost = !(study.diagrams.is_empty() && study.scenes.is_empty());
     let mut title = "what accuracy costs";
     if !(study.limits.is_empty() && study.hard.is_empty()) {
-        title = "what stays stable";
-        sections.push(stability::render(study)?);
+        title = if is_cost { title } else { "what stays stable" };
+        sections.push(if study.scenes.is_empty() {
+            stability::render(study)?
+        } else {
+            stability::largest_steps(&study.limits)
+        });
     }
     if !study.ledger.is_empty() {
-        title = "influence of each effect";
-        sections.push(effects::render(study));
+        title = if is_cost { title } else { "influence of each effect" };
+        sections.push(if study.scenes.is_empty() { effects::render(study) } else { effects::important(&study.ledger) });
     }
     let body = html! {
         main.alone {

@@ -169,6 +169,7 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
 
 /// Returns the figure of the largest stable time step against the exact limit.
 fn against_exact(limits: &[Limit]) -> Option<Figure> {
+    let limits: Vec<&Limit> = limits.iter().filter(|row| row.unit == "√(m/k)").collect();
     let mut curves = Vec::new();
     let mut ends = (f64::INFINITY, 0.0_f64);
     for solver in distinct(limits.iter().map(|row| row.solver.as_str())) {
@@ -231,6 +232,17 @@ fn totals(lines: &[Hold]) -> Markup {
 
 /// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
+    if let ([first, ..], []) = (&study.limits[..], &study.hard[..])
+        && first.scene.ends_with(".toml")
+    {
+        return Ok(html! {
+            header id="summary" {
+                p.kicker { "grainbench" }
+                h1 { "What stays stable in " (first.scene) }
+            }
+            (largest_steps(&study.limits))
+        });
+    }
     let tables = tables(&Stability::from_study(study, &|_| None))?;
     Ok(html! {
         header id="summary" {
@@ -239,6 +251,20 @@ pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
             (tables)
         }
     })
+}
+
+/// Renders the table of the largest stable steps in one scene.
+pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
+    html! {
+        section {
+            h3 { "Largest stable steps" }
+            p.note {
+                "Bisection between runs that end and runs that break, or whose kinetic energy grows tenfold, or whose elastic energy grows threefold. 2√(m/k) is the critical \
+                 time step of the scene, and h/c is the time in which a wave crosses a cell."
+            }
+            (limits(rows))
+        }
+    }
 }
 
 /// Renders the figures and tables.

@@ -1,6 +1,7 @@
 //! Files of a study. They are written together, and can be read back to write them again or to compare studies.
 
 use super::effects::Entry;
+use super::estimate::{self, SceneCost};
 use super::load::Load;
 use super::point::Point;
 use super::stability::{HardCaseResult, Limit};
@@ -28,6 +29,8 @@ struct Results<'a> {
     verdicts: [Verdict; 0],
     controls: [Control; 0],
     points: Vec<&'a Point>,
+    #[serde(skip_serializing_if = "<[SceneCost]>::is_empty")]
+    scenes: &'a [SceneCost],
     stability: Stability<'a>,
     effects: &'a [Entry],
     #[serde(skip_serializing_if = "Option::is_none")]
@@ -53,6 +56,7 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
         verdicts: [],
         controls: [],
         points: study.diagrams.iter().flat_map(|diagram| &diagram.points).collect(),
+        scenes: &study.scenes,
         stability: Stability { limits: &study.limits, hard: &study.hard },
         effects: &study.ledger,
         prices: study.model.as_ref(),
@@ -93,6 +97,7 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
     });
     let others =
         cost::scatters(study).into_iter().chain(load::figure(&study.loads)).chain(stability::figures(&study.limits));
+    let others = others.chain(study.scenes.iter().flat_map(estimate::figures));
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 

@@ -4,8 +4,10 @@ use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
 use crate::cli::cost;
 use crate::cli::exit::{Fault, Outcome};
+use crate::cli::own;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::solvers::Registry;
+use grainbench::harness::subject::TargetQuantity;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
@@ -54,8 +56,11 @@ impl CostStudy {
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let wanted = PointSelection { solvers: named, all, counts: arguments.counts };
         let program = key::of_this_program();
-        let sets: Vec<PointSet> =
-            subjects.into_iter().map(|subject| PointSet::new(subject, &wanted, &solvers, &program)).collect();
+        let set = |subject: TargetQuantity| {
+            let program = program.clone() + &own::edition(subject.case);
+            PointSet::new(subject, &wanted, &solvers, &program)
+        };
+        let sets: Vec<PointSet> = subjects.into_iter().map(set).collect();
         if sets.iter().all(|set| set.count() == 0) {
             return Err(Fault::input("expected at least one point, found none for the selected cases and solvers"));
         }

@@ -5,6 +5,7 @@ use super::study::{ReportOptions, Study, Tasks, outputs};
 use crate::cli::cost::sources;
 use crate::cli::effects;
 use crate::cli::exit::{Fault, Outcome};
+use crate::cli::own;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
@@ -48,13 +49,14 @@ impl Tasks for EffectStudy {
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         let task = |(number, piece): &(usize, SceneEffect)| {
-            let case = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner).case().name;
+            let case = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner).case();
+            let (program, case) = (program.to_owned() + &own::edition(case), case.name);
             Task {
                 scene: format!("{case}/{}", piece.variant),
                 what: piece.effect.word().to_owned(),
                 // One worker tests all effects of a case, because they share runs.
                 group: u32::try_from(*number).ok(),
-                ..Task::new(Id::of_words(program, &["effect", case, piece.variant, piece.effect.word()]), SECONDS)
+                ..Task::new(Id::of_words(&program, &["effect", case, piece.variant, piece.effect.word()]), SECONDS)
             }
         };
         Ok(self.pieces.iter().map(task).collect())

@@ -1,6 +1,7 @@
 //! Effects study of a scene without claims: changes of the probes if an effect is omitted, and cost of the effect.
 
 use super::idle::{ratio_of_times, try_idly};
+use crate::chaos::{change_of_mean, farthest, perturbed_runs};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
@@ -14,11 +15,6 @@ use std::time::Duration;
 /// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.
 const PATIENCE: Duration = Duration::from_millis(300);
 
-/// Displacement of one grain in a perturbed run, over its radius. It is negligible, but large enough for perturbed runs to part
-/// soon.
-const PERTURBATION: f64 = 1e-6;
-/// Number of perturbed runs of a chaotic scene.
-const PERTURBED: usize = 4;
 /// Smallest relevant change of a mean in a chaotic scene, divided by the largest change in the perturbed runs. For normally
 /// distributed means and four perturbed runs, an effect without influence exceeds it in 0.11 % of columns.
 const SCATTER: f64 = 5.0;
@@ -53,17 +49,8 @@ impl StudyInput<'_> {
     /// When the solver cannot run the scene.
     pub fn whole(&self) -> Result<WholeRuns, RunError> {
         let record = self.solver.run(self.scene, &self.resolution, &mut ())?;
-        let (mut perturbed, mut scene) = (Vec::new(), self.scene.clone());
-        while scene.grains.len() > 1 && perturbed.len() < PERTURBED {
-            let middle = scene.grains.len() / 2;
-            scene.grains[middle].position.x += PERTURBATION * scene.grains[middle].radius;
-            let other = self.solver.run(&scene, &self.resolution, &mut ())?;
-            let mut columns = 0..record.series.columns.len();
-            if perturbed.is_empty() && !columns.any(|at| farthest(&record, &other, at) > Some(self.matters)) {
-                break;
-            }
-            perturbed.push(other);
-        }
+        let mut run = |scene: &Scene| self.solver.run(scene, &self.resolution, &mut ());
+        let perturbed = perturbed_runs(self.scene, &record, self.matters, &mut run)?;
         Ok(WholeRuns { record, perturbed })
     }
 
@@ -141,54 +128,6 @@ impl StudyInput<'_> {
         entry.tried.push(self.solver.name());
         Some(())
     }
-}
-
-/// Returns the largest absolute value of the columns that belong to the same probe and have the same unit as a column.
-fn scale_of(whole: &Record, column: usize) -> f64 {
-    let kind = |at: usize| {
-        let column = &whole.series.columns[at];
-        (column.name.rsplit_once('.').map_or("", |(probe, _)| probe), column.unit.as_str())
-    };
-    let alike = (0..whole.series.columns.len()).filter(|&at| kind(at) == kind(column));
-    let values = alike.filter_map(|at| whole.series.values.get(at)).flatten();
-    values.filter(|value| value.is_finite()).fold(0.0, |scale: f64, value| scale.max(value.abs()))
-}
-
-/// Returns the change of the mean of a column over time, relative to [`scale_of`] the run with the effect.
-///
-/// The result is NaN or `None` as for [`farthest`].
-fn change_of_mean(whole: &Record, without: &Record, column: usize) -> Option<f64> {
-    let pointwise = farthest(whole, without, column)?;
-    let values = whole.series.values.get(column)?;
-    let others = without.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
-    let scale = scale_of(whole, column);
-    if scale == 0.0 || !pointwise.is_finite() {
-        return Some(pointwise);
-    }
-    let off = values.iter().zip(others).filter(|(value, _)| value.is_finite()).map(|(value, other)| other - value);
-    Some((off.sum::<f64>() / values.len() as f64).abs() / scale)
-}
-
-/// Returns the largest difference of a column between two runs at equal samples, relative to [`scale_of`] the run with
-/// the effect.
-///
-/// The result is NaN if the run without the effect has another number of samples or a value that is NaN. It is `None`
-/// if the column is empty.
-fn farthest(whole: &Record, without: &Record, column: usize) -> Option<f64> {
-    let values = whole.series.values.get(column)?;
-    let scale = scale_of(whole, column);
-    let others = without.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
-    if scale == 0.0 {
-        // If the probe is zero with the effect, any other value without the effect counts as a relative change of 1.
-        let largest = others.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
-        return (!values.is_empty()).then_some(if largest > 0.0 { 1.0 } else { 0.0 });
-    }
-    if others.len() != values.len() {
-        return Some(f64::NAN);
-    }
-    let off =
-        values.iter().zip(others).filter(|(value, _)| value.is_finite()).map(|(value, other)| (other - value).abs());
-    Some(off.fold(0.0, |most: f64, off| if off.is_nan() || most.is_nan() { f64::NAN } else { most.max(off) }) / scale)
 }
 
 #[cfg(test)]

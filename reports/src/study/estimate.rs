@@ -1,0 +1,597 @@
+//! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
+
+use super::page::figure;
+use crate::number;
+use crate::page::{scrolling, slug};
+use crate::plot::DrawError;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use maud::{Markup, html};
+use serde::{Deserialize, Serialize};
+
+/// Errors for which the cost is stated, as fractions of the scale of the quantity.
+pub const TARGETS: [f64; 3] = super::cost::TARGETS;
+/// Error of the sentence that summarises a study.
+pub const TARGET: f64 = 0.01;
+/// Number of quantities whose figures are visible without a click.
+const OPEN: usize = 3;
+/// Smallest plotted error.
+const LEAST: f64 = 1e-12;
+
+/// Value of a time series that is compared between levels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Reduction {
+    /// Last sample.
+    End,
+    /// Mean over time, for chaotic scenes.
+    Mean,
+}
+
+impl Reduction {
+    /// Returns the reduction in words.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::End => "at the end",
+            Self::Mean => "mean over time",
+        }
+    }
+}
+
+/// Method by which a reference value is estimated.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum Basis {
+    /// Richardson's extrapolation of three levels with a visible order.
+    Extrapolated,
+    /// The finest level, with the spread of the last levels as uncertainty.
+    Spread,
+    /// Mean of the last levels of a chaotic scene.
+    Ensemble,
+}
+
+impl Basis {
+    /// Returns the method in words.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Extrapolated => "extrapolated",
+            Self::Spread => "finest level, spread of three",
+            Self::Ensemble => "mean of three levels",
+        }
+    }
+}
+
+/// Status of a run at one level.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "kebab-case")]
+pub enum LevelStatus {
+    /// The run ended, and its quantities are finite.
+    Measured,
+    /// The run broke.
+    Failed,
+    /// The run was ended because it would exceed the time budget.
+    OverBudget,
+    /// The solver cannot represent the scene.
+    Unsupported,
+    /// The program is not installed.
+    NotAvailable,
+}
+
+impl LevelStatus {
+    /// Returns the status in words.
+    #[must_use]
+    pub const fn word(self) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Failed => "failed",
+            Self::OverBudget => "over the budget",
+            Self::Unsupported => "cannot run the scene",
+            Self::NotAvailable => "not installed",
+        }
+    }
+}
+
+/// Run of a solver at one level.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Level {
+    /// Name of the solver.
+    pub solver: String,
+    /// Resolution in words, with the change of the scene if there is one.
+    pub setting: String,
+    /// Status of the run.
+    pub status: LevelStatus,
+    /// Median wall-clock time of the stepping loop (s). For a failed run, the time until the failure.
+    pub wall_seconds: Option<f64>,
+    /// Number of timed repetitions.
+    pub repetitions: usize,
+    /// Number of steps.
+    pub steps: u64,
+    /// Error message of a run that did not end.
+    pub detail: Option<String>,
+}
+
+/// Reference value of a quantity by one solver.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Estimate {
+    /// Name of the solver.
+    pub solver: String,
+    /// Kind of evidence: the levels of the solver itself.
+    pub evidence: Evidence,
+    /// Estimate of the value at infinite resolution.
+    pub value: f64,
+    /// Half-width of the interval of this value.
+    pub uncertainty: f64,
+    /// Observed order; none if it is not visible.
+    pub order: Option<f64>,
+    /// Method of the estimate.
+    pub basis: Basis,
+}
+
+/// Value of a quantity at one level, with its estimated error.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct EstimatedPoint {
+    /// Name of the solver.
+    pub solver: String,
+    /// Resolution in words.
+    pub setting: String,
+    /// Median wall-clock time of the stepping loop (s).
+    pub wall_seconds: f64,
+    /// Value.
+    pub value: f64,
+    /// |value − reference of the solver|/scale.
+    pub error: f64,
+    /// Uncertainty of the error, divided by the scale.
+    pub uncertainty: f64,
+    /// True if the contacts are softer than in the scene. The error then contains the influence of the stiffness.
+    pub softer: bool,
+}
+
+impl EstimatedPoint {
+    /// Returns the upper end of the interval of the error.
+    #[must_use]
+    pub fn at_most(&self) -> f64 {
+        self.error + self.uncertainty
+    }
+}
+
+/// Difference of the reference values of two solvers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Difference<'a> {
+    /// Names of the solvers.
+    pub solvers: [&'a str; 2],
+    /// |difference|/scale.
+    pub size: f64,
+    /// Uncertainty of the difference, divided by the scale.
+    pub uncertainty: f64,
+}
+
+/// Quantity of a scene: a column of a probe.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Quantity {
+    /// Column of the time series, such as `ball.vx`.
+    pub name: String,
+    /// Unit.
+    pub unit: String,
+    /// Largest absolute value of the probe in this unit. Errors are fractions of it.
+    pub scale: f64,
+    /// One reference value for each solver with at least two levels.
+    pub estimates: Vec<Estimate>,
+    /// Values at all levels, for solvers with a reference value.
+    pub points: Vec<EstimatedPoint>,
+}
+
+impl Quantity {
+    /// Returns the fastest setting of a solver whose error is certainly at most `target`. Softer contacts are left out.
+    #[must_use]
+    pub fn cheapest(&self, solver: &str, target: f64) -> Option<&EstimatedPoint> {
+        let within = self.of_solver(solver).filter(|point| point.at_most() <= target);
+        within.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))
+    }
+
+    /// Returns the points of a solver with the contacts of the scene.
+    pub fn of_solver<'a, 's>(&'a self, solver: &'s str) -> impl Iterator<Item = &'a EstimatedPoint> + use<'a, 's> {
+        self.points.iter().filter(move |point| point.solver == solver && !point.softer)
+    }
+
+    /// Returns the differences between the reference values of all pairs of solvers.
+    #[must_use]
+    pub fn differences(&self) -> Vec<Difference<'_>> {
+        let mut found = Vec::new();
+        for (at, a) in self.estimates.iter().enumerate() {
+            for b in &self.estimates[at + 1..] {
+                found.push(Difference {
+                    solvers: [&a.solver, &b.solver],
+                    size: (a.value - b.value).abs() / self.scale,
+                    uncertainty: a.uncertainty.hypot(b.uncertainty) / self.scale,
+                });
+            }
+        }
+        found
+    }
+}
+
+/// Cost of accuracy of a scene without an exact solution.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct SceneCost {
+    /// Path of the scene.
+    pub scene: String,
+    /// Time budget (s).
+    pub budget: f64,
+    /// Time that the study took (s), without stored levels of an earlier study.
+    pub spent: f64,
+    /// Compared value of the time series.
+    pub reduction: Reduction,
+    /// All runs.
+    pub levels: Vec<Level>,
+    /// Target quantities.
+    pub quantities: Vec<Quantity>,
+    /// Remarks, such as the reason why a solver was not measured.
+    pub notes: Vec<String>,
+}
+
+impl SceneCost {
+    /// Returns the solvers with at least one run, in the order of their first run.
+    #[must_use]
+    pub fn solvers(&self) -> Vec<&str> {
+        super::stability::distinct(self.levels.iter().map(|level| level.solver.as_str()))
+    }
+
+    /// Returns the fastest setting of a solver with which the error of each quantity is certainly at most `target`, and its
+    /// time (s).
+    #[must_use]
+    pub fn cheapest_for_all(&self, solver: &str, target: f64) -> Option<(&str, f64)> {
+        let quantities = || self.quantities.iter().filter(|quantity| quantity.of_solver(solver).next().is_some());
+        let is_enough = |setting: &str| {
+            quantities().all(|quantity| {
+                quantity.of_solver(solver).any(|point| point.setting == setting && point.at_most() <= target)
+            })
+        };
+        let settings = quantities().next()?.of_solver(solver).filter(|point| is_enough(&point.setting));
+        let best = settings.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))?;
+        Some((&best.setting, best.wall_seconds))
+    }
+
+    /// Returns the sentence about the cost of an error of at most `target` in all quantities.
+    #[must_use]
+    pub fn sentence(&self, target: f64) -> String {
+        let solvers = self.estimated();
+        let reached = solvers.iter().filter_map(|solver| Some((*solver, self.cheapest_for_all(solver, target)?)));
+        let unreached = |solver: &str| {
+            let own = || self.quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
+            let (quantity, error) = own().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let (within, all) = (own().filter(|(_, error)| *error <= target).count(), own().count());
+            let at_best = format!("at best {}", number::fraction(error));
+            Some(match all {
+                1 => format!("{solver} does not reach it ({at_best})"),
+                _ => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
+            })
+        };
+        let count = self.quantities.len();
+        let of_all = if count == 1 { String::new() } else { format!(" in each of {count} quantities") };
+        let target_words = format!("{}{of_all}", number::fraction(target));
+        words(&target_words, reached, &solvers, &unreached, self.budget)
+    }
+
+    /// Returns the sentence about the cost of an error of at most `target` in one quantity.
+    #[must_use]
+    pub fn sentence_of(&self, quantity: &Quantity, target: f64) -> String {
+        let solvers = self.estimated();
+        let reached = solvers.iter().filter_map(|solver| {
+            let point = quantity.cheapest(solver, target)?;
+            Some((*solver, (point.setting.as_str(), point.wall_seconds)))
+        });
+        let unreached = |solver: &str| {
+            let at_best = number::fraction(least(quantity, solver)?);
+            Some(format!("{solver} does not reach it (at best {at_best})"))
+        };
+        words(&number::fraction(target), reached, &solvers, &unreached, self.budget)
+    }
+
+    /// Returns the solvers with a reference value of at least one quantity.
+    fn estimated(&self) -> Vec<&str> {
+        let has = |solver: &&str| self.quantities.iter().any(|quantity| quantity.of_solver(solver).next().is_some());
+        self.solvers().into_iter().filter(has).collect()
+    }
+}
+
+/// Returns the smallest upper end of the error of a solver.
+fn least(quantity: &Quantity, solver: &str) -> Option<f64> {
+    quantity.of_solver(solver).map(EstimatedPoint::at_most).min_by(f64::total_cmp)
+}
+
+/// Returns a sentence of the settings and times (s) at which solvers reach an error. `unreached` describes the errors of a
+/// solver that does not reach it.
+fn words<'a>(
+    target: &str,
+    reached: impl Iterator<Item = (&'a str, (&'a str, f64))>,
+    solvers: &[&str],
+    unreached: &dyn Fn(&str) -> Option<String>,
+    budget: f64,
+) -> String {
+    let mut reached: Vec<_> = reached.collect();
+    reached.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
+    let fastest = reached.first().map_or(f64::NAN, |first| first.1.1);
+    let mut parts: Vec<String> = reached
+        .iter()
+        .map(|(solver, (setting, seconds))| {
+            let times = seconds / fastest;
+            let times = if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
+            format!("{solver} {}{times} with {setting}", number::seconds(*seconds))
+        })
+        .collect();
+    if parts.is_empty() {
+        parts.push(format!("no solver reaches it within the budget of {}", number::seconds(budget)));
+    }
+    let others = solvers.iter().filter(|solver| reached.iter().all(|(name, _)| name != *solver));
+    parts.extend(others.filter_map(|solver| unreached(solver)));
+    format!("{target}: {}.", parts.join("; "))
+}
+
+/// Returns one figure for each quantity: estimated error against time.
+#[must_use]
+pub fn figures(cost: &SceneCost) -> Vec<Figure> {
+    let drawn = cost.quantities.iter().filter(|quantity| !quantity.points.is_empty());
+    drawn.map(|quantity| error_figure(cost, quantity)).collect()
+}
+
+fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
+    let place = |point: &EstimatedPoint| (point.wall_seconds, point.error.max(0.1 * point.uncertainty).max(LEAST));
+    let mut curves = Vec::new();
+    for solver in cost.estimated() {
+        let mut points: Vec<_> = quantity.of_solver(solver).map(place).collect();
+        points.sort_by(|a, b| a.0.total_cmp(&b.0));
+        if !points.is_empty() {
+            curves.push(Curve::new(solver, Stroke::MarkedLine, points));
+        }
+        let softer = quantity.points.iter().filter(|point| point.solver == solver && point.softer);
+        let softer: Vec<_> = softer.map(place).collect();
+        if !softer.is_empty() {
+            curves.push(Curve::new("", Stroke::Beside, softer));
+        }
+    }
+    let bar = |point: &EstimatedPoint| {
+        let (time, error) = place(point);
+        let high = point.at_most().max(error);
+        [(time, (point.error - point.uncertainty).max(high / 30.0).min(error)), (time, high)]
+    };
+    curves.push(Curve::new("uncertainty", Stroke::Bars, quantity.points.iter().flat_map(bar).collect()));
+    let times = || quantity.points.iter().map(|point| point.wall_seconds);
+    let ends = [times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max)];
+    curves.push(Curve::new("1 %", Stroke::Dashed, ends.map(|time| (time, TARGET)).to_vec()));
+    let softer = quantity.points.iter().any(|point| point.softer);
+    let softer = if softer { " Hollow markers: softer contacts." } else { "" };
+    Figure::graph(
+        &format!("error-{}", slug(&quantity.name)),
+        &format!("{}: estimated error against time", quantity.name),
+        &format!(
+            "Each marker is a level of a solver. Its error is the distance from the solver's own reference value, divided by \
+             {}. Grey bars are uncertainties.{softer} The figure does not show differences between the methods.",
+            number::with_unit(quantity.scale, &quantity.unit)
+        ),
+        [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("estimated |error| / scale")],
+        curves,
+    )
+}
+
+/// Renders the section of the page.
+pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
+    let pictures: Vec<(&Quantity, Markup)> = cost
+        .quantities
+        .iter()
+        .filter(|quantity| !quantity.points.is_empty())
+        .map(|quantity| Ok((quantity, figure(&error_figure(cost, quantity))?)))
+        .collect::<Result<_, DrawError>>()?;
+    let folded = pictures.len().saturating_sub(OPEN);
+    Ok(html! {
+        header id="summary" {
+            p.kicker { "grainbench" }
+            h1 { "What accuracy costs in " (cost.scene) }
+            p.lead { b { (cost.sentence(TARGET)) } }
+            p { @for target in TARGETS.into_iter().filter(|target| *target != TARGET) { (cost.sentence(target)) " " } }
+            p {
+                "The scene has no exact solution. The reference value of each solver is estimated from its own levels \
+                 (evidence: " (Evidence::Convergence.word()) "). Errors are estimates with an uncertainty, and nothing passes or \
+                 fails. An error is reached if it is certain up to its uncertainty. Agreement of two methods does not show \
+                 that they are right."
+            }
+            p.note {
+                "Compared value of each probe: " (cost.reduction.word()) ". The study took " (number::seconds(cost.spent))
+                " of a budget of " (number::seconds(cost.budget)) "."
+            }
+            @for note in &cost.notes { p.note { (note) } }
+            h3 { "Which solver at 1 %" }
+            (costs(cost))
+            h3 { "Reference values" }
+            (references(cost))
+            (agreement(cost))
+            div.figures { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
+            @if folded > 0 {
+                details {
+                    summary { "Figures of " (folded) " further quantities" }
+                    div.figures { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
+                }
+            }
+            (softer(cost))
+            details {
+                summary { "Every run" }
+                (levels(&cost.levels))
+            }
+        }
+    })
+}
+
+/// Renders the fastest setting of each solver for an error of 1 %, by quantity.
+fn costs(cost: &SceneCost) -> Markup {
+    let solvers = cost.estimated();
+    let table = html! {
+        table.cases {
+            thead { tr { th scope="col" { "Quantity" } @for solver in &solvers { th scope="col" { (solver) } } } }
+            tbody {
+                @for quantity in &cost.quantities {
+                    tr {
+                        th scope="row" { (quantity.name) }
+                        @for solver in &solvers {
+                            td {
+                                @match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
+                                    (Some(point), _) => {
+                                        (number::seconds(point.wall_seconds))
+                                        span.fine { (point.setting) ", error " (interval(point)) }
+                                    }
+                                    (None, Some(error)) => { "at best " (number::fraction(error)) }
+                                    (None, None) => { "—" }
+                                }
+                            }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Which solver at 1 %", &table)
+}
+
+/// Returns an error with its uncertainty.
+fn interval(point: &EstimatedPoint) -> String {
+    format!("{} ± {}", number::fraction(point.error), number::fraction(point.uncertainty))
+}
+
+fn references(cost: &SceneCost) -> Markup {
+    let table = html! {
+        table.rows {
+            thead {
+                tr {
+                    th scope="col" { "Quantity" }
+                    th scope="col" { "Solver" }
+                    th.n scope="col" { "Reference" }
+                    th.n scope="col" { "Uncertainty" }
+                    th.n scope="col" { "of the scale" }
+                    th.n scope="col" { "Order" }
+                    th scope="col" { "Estimate" }
+                    th scope="col" { "Evidence" }
+                }
+            }
+            tbody {
+                @for quantity in &cost.quantities {
+                    @for row in &quantity.estimates {
+                        tr {
+                            th scope="row" { (quantity.name) }
+                            td { (row.solver) }
+                            td.n { (number::with_unit(row.value, &quantity.unit)) }
+                            td.n { "± " (number::significant(row.uncertainty, 2)) }
+                            td.n { (number::fraction(row.uncertainty / quantity.scale)) }
+                            td.n { (row.order.map_or("—".to_owned(), |order| number::significant(order, 2))) }
+                            td { (row.basis.word()) }
+                            td { (row.evidence.word()) }
+                        }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Reference values", &table)
+}
+
+/// Returns the difference of two solvers in words.
+#[must_use]
+pub fn difference_words(difference: &Difference<'_>) -> String {
+    let [a, b] = difference.solvers;
+    let [size, uncertainty] = [difference.size, difference.uncertainty].map(number::fraction);
+    if difference.size <= difference.uncertainty {
+        format!("{a} and {b} agree within their uncertainties ({size} ± {uncertainty})")
+    } else {
+        format!("{a} and {b} differ by {size} ± {uncertainty}")
+    }
+}
+
+fn agreement(cost: &SceneCost) -> Markup {
+    let rows: Vec<(&Quantity, Vec<Difference<'_>>)> = cost
+        .quantities
+        .iter()
+        .map(|quantity| (quantity, quantity.differences()))
+        .filter(|(_, differences)| !differences.is_empty())
+        .collect();
+    html! {
+        @if !rows.is_empty() {
+            h3 { "Agreement between the methods" }
+            p.note {
+                "The methods model contacts differently. Agreement is not evidence of truth, and a difference does not tell which \
+                 method is wrong."
+            }
+            ul {
+                @for (quantity, differences) in &rows {
+                    li { (quantity.name) ": " (differences.iter().map(difference_words).collect::<Vec<_>>().join("; ")) }
+                }
+            }
+        }
+    }
+}
+
+/// Returns, for each setting with softer contacts, its time relative to the same level of the scene, and the largest change
+/// of a quantity with its name.
+#[must_use]
+pub fn softer_words(cost: &SceneCost) -> Vec<String> {
+    let points =
+        || cost.quantities.iter().flat_map(|quantity| quantity.points.iter().map(move |point| (quantity, point)));
+    let settings =
+        super::stability::distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));
+    let sentence = |setting: &str| {
+        let own = || points().filter(move |(_, point)| point.setting == setting);
+        let (quantity, worst) = own().max_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+        Some(format!(
+            "{} {setting}: {}, largest change {} in {}",
+            worst.solver,
+            number::seconds(worst.wall_seconds),
+            interval(worst),
+            quantity.name
+        ))
+    };
+    settings.into_iter().filter_map(sentence).collect()
+}
+
+fn softer(cost: &SceneCost) -> Markup {
+    let sentences = softer_words(cost);
+    html! {
+        @if !sentences.is_empty() {
+            h3 { "Softer contacts" }
+            p.note {
+                "Stiffness divided by a factor, with dashpots that keep the coefficient of restitution. The time step grows with \
+                 the critical one. The scene itself is not changed."
+            }
+            ul { @for sentence in &sentences { li { (sentence) } } }
+        }
+    }
+}
+
+fn levels(rows: &[Level]) -> Markup {
+    let table = html! {
+        table.rows {
+            thead {
+                tr {
+                    th scope="col" { "Solver" }
+                    th scope="col" { "Setting" }
+                    th scope="col" { "Run" }
+                    th.n scope="col" { "Wall time" }
+                    th.n scope="col" { "Repetitions" }
+                    th.n scope="col" { "Steps" }
+                    th scope="col" { "Message" }
+                }
+            }
+            tbody {
+                @for row in rows {
+                    tr class=(if row.status == LevelStatus::Measured { "" } else { "amber" }) {
+                        th scope="row" { (row.solver) }
+                        td { (row.setting) }
+                        td { (row.status.word()) }
+                        td.n { (row.wall_seconds.map_or("—".to_owned(), number::seconds)) }
+                        td.n { (row.repetitions) }
+                        td.n { (number::count(row.steps)) }
+                        td.wide { (row.detail.as_deref().unwrap_or("")) }
+                    }
+                }
+            }
+        }
+    };
+    scrolling("Every run", &table)
+}

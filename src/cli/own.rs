@@ -1,0 +1,362 @@
+//! Cost, stability and effects of a scene of the user's, which has no exact solution.
+
+use super::exit::{Fault, Outcome, check_writable};
+use super::progress::Progress;
+use super::provenance::provenance;
+use super::publish::{Output, publish_study};
+use super::strangers::NamedSolvers;
+use super::subject::{self, Variant};
+use super::value::duration;
+use grainbench::cases::folder::{self as case_folder, CLAIMS};
+use grainbench::cases::registry::CASES;
+use grainbench::harness::case::Case;
+use grainbench::reports::number;
+use grainbench::reports::study::effects::Entry;
+use grainbench::reports::study::estimate::{SceneCost, TARGETS, difference_words, softer_words};
+use grainbench::reports::study::stability::Limit;
+use grainbench::reports::study::{Study, write_study};
+use grainbench::scene::scene::{Duration as SceneDuration, Scene};
+use grainbench::solver::recorder::Recorder;
+use grainbench::store::{WriteError, key};
+use grainbench::studies::own::cost::{MATTERS, Measurement, PARTS, SceneStudy, StudyFollower};
+use grainbench::studies::own::effects::Importance;
+use grainbench::studies::own::ladder::DEFAULT;
+use grainbench::studies::own::limit;
+use grainbench::studies::own::storage::RunStore;
+use std::collections::BTreeMap;
+use std::path::Path;
+use std::time::{Duration, Instant};
+
+/// Time budget if the user gives none.
+const BUDGET: Duration = Duration::from_secs(60);
+/// Shortest time between two updates of the report.
+const EVERY: Duration = Duration::from_secs(5);
+/// Directory of finished runs in the directory of the report.
+const RUNS: &str = "runs";
+/// Name of the scene file in a folder.
+const SCENE: &str = "scene.toml";
+
+/// Options for a scene of the user's.
+#[derive(clap::Args)]
+pub(crate) struct Options {
+    /// Time for a scene of your own, such as `90s`, `2m` or `1h`. Default: 1m.
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    budget: Option<Duration>,
+}
+
+impl Options {
+    /// Returns an error if an option for a scene is given with cases, which would ignore it. `others` is true if another such
+    /// option is given.
+    pub(crate) fn refuse_for_cases(&self, others: bool) -> Result<(), Fault> {
+        if self.budget.is_none() && !others {
+            return Ok(());
+        }
+        Err(Fault::input(
+            "--budget, --quantity: expected a scene without exact claims, found cases or claims, which set their own levels",
+        ))
+    }
+
+    fn budget(&self) -> Duration {
+        self.budget.unwrap_or(BUDGET)
+    }
+}
+
+/// Scene, solvers and output of a study.
+pub(crate) struct Input<'a> {
+    /// Path of the scene.
+    pub(crate) path: String,
+    /// Words of the command line, for the report.
+    pub(crate) words: Vec<String>,
+    /// Names or manifests of the solvers; the usual ones if empty.
+    pub(crate) solvers: &'a [String],
+    /// Target quantities; all if empty.
+    pub(crate) quantities: &'a [String],
+    pub(crate) no_cache: bool,
+    pub(crate) out: &'a Path,
+    pub(crate) json: bool,
+}
+
+impl Input<'_> {
+    /// Returns the words of the command for the report.
+    fn words(&self, command: &str, budget: Duration) -> Vec<String> {
+        let mut words = vec![command.to_owned()];
+        words.extend(self.words.iter().cloned());
+        words.extend(self.quantities.iter().map(|quantity| format!("--quantity {quantity}")));
+        words.push(format!("--budget {}s", budget.as_secs_f64()));
+        words
+    }
+}
+
+/// Returns the path of the scene that the arguments name: a file, or the scene of a folder; none for cases.
+pub(crate) fn scene(names: &[String]) -> Result<Option<String>, Fault> {
+    let is_case = |name: &str| CASES.iter().any(|case| name.split('/').next() == Some(case.name));
+    let is_file = |name: &str| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
+    let is_scene = |name: &&String| is_file(name) || (!is_case(name) && Path::new(name).is_dir());
+    let Some(name) = names.iter().find(is_scene) else { return Ok(None) };
+    if names.len() > 1 {
+        return Err(Fault::input(format!("{name}: expected one scene alone, found {} names", names.len())));
+    }
+    Ok(Some(if is_file(name) { name.clone() } else { Path::new(name).join(SCENE).display().to_string() }))
+}
+
+/// Returns the case of the folder with claims that the arguments name; none for scene files, folders without claims, and cases.
+pub(crate) fn folder(names: &[String]) -> Result<Option<&'static Case>, Fault> {
+    let Some(path) = scene(names)? else { return Ok(None) };
+    match names {
+        [name] if *name != path && Path::new(name).join(CLAIMS).is_file() => {
+            Ok(Some(Variant::read_with_folders(name)?.case))
+        }
+        _ => Ok(None),
+    }
+}
+
+/// Returns a text that changes with the files of a case in a folder; empty for built-in cases, which are part of the program.
+pub(crate) fn edition(case: &Case) -> String {
+    if case.home.made.is_some() {
+        return String::new();
+    }
+    let files = case_folder::files(&case.directory()).unwrap_or_default();
+    files.iter().map(|file| key::of_file(file)).collect()
+}
+
+/// Reads a scene, and checks that a study can compare its probes.
+fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
+    let (scene, _) = subject::scene(path, &[])?;
+    if scene.probes.is_empty() {
+        return Err(Fault::input(format!(
+            "{path}: expected probes, whose values are compared between levels, found none; for example `[probes]` with `all = \
+             {{ system = true }}`"
+        )));
+    }
+    if !matches!(scene.duration, SceneDuration::Seconds(_)) {
+        return Err(Fault::input(format!(
+            "{path}: duration: expected seconds, because time steps change; found cycles"
+        )));
+    }
+    let (series, _) = Recorder::new(&scene, 1.0, 1).finish();
+    let columns: Vec<&str> = series.columns.iter().map(|column| column.name.as_str()).collect();
+    for name in quantities {
+        if !columns.iter().any(|column| *column == name || column.starts_with(&format!("{name}."))) {
+            return Err(Fault::unknown("a probe, or a column of a probe,", name, columns.iter().copied()));
+        }
+    }
+    Ok(scene)
+}
+
+/// Returns the names of the solvers of a study: the named ones, or the usual ones.
+fn solver_names(named: Vec<String>) -> Vec<String> {
+    if named.is_empty() { DEFAULT.map(str::to_owned).into() } else { named }
+}
+
+/// Measures cost, stability and effects of a scene within the budget, and writes one report.
+pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
+    let scene = read(&input.path, input.quantities)?;
+    let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
+    check_writable(input.out)?;
+    let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let words = input.words("cost", options.budget());
+    let study = SceneStudy {
+        name: input.path.clone(),
+        scene: &scene,
+        names: solver_names(named),
+        solvers: &solvers,
+        quantities: input.quantities.to_vec(),
+        budget: options.budget(),
+        cache: &cache,
+        program: key::of_this_program(),
+    };
+    let mut follower = Follower::new(&study, input.out, &words);
+    let mut measured = Measurement::new(&study);
+    measured.levels(&mut follower).map_err(Fault::writing)?;
+    measured.variations(&mut follower).map_err(Fault::writing)?;
+    let importance = Importance { study: &study, matters: MATTERS };
+    let (ledger, skipped) = importance.measure(&measured, &mut follower).map_err(Fault::writing)?;
+    follower.ledger = ledger;
+    // A note tells why a solver has no level. Its stable step would take too long or does not exist.
+    let names = measured.measured_solvers();
+    follower.limits = limits((&study, &names), &solvers, &mut |part| measured.remaining(part), &mut follower.bar)?;
+    measured.repetitions(&mut follower).map_err(Fault::writing)?;
+    let mut result = measured.result();
+    result.notes.extend(skipped);
+    let is_red = result.quantities.iter().all(|quantity| quantity.estimates.is_empty());
+    let study = follower.study(result, false);
+    let text = text(&study);
+    drop(follower);
+    let output = Output { text: Some(text), ..Output::new(input.out, input.json, false) };
+    publish_study(&study, output, is_red)
+}
+
+/// Finds the largest stable step of each solver.
+fn limits(
+    (study, names): (&SceneStudy<'_>, &[String]),
+    solvers: &NamedSolvers,
+    remaining: &mut dyn FnMut(f64) -> f64,
+    bar: &mut Bar,
+) -> Result<Vec<Limit>, Fault> {
+    use grainbench::harness::solvers::Solvers as _;
+    let mut found = Vec::new();
+    for (at, solver) in names.iter().enumerate() {
+        bar.now(&format!("{solver}: largest stable step"), study.budget.as_secs_f64() - remaining(1.0));
+        let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
+        let deadline = Instant::now() + Duration::from_secs_f64(share);
+        let program = study.program.clone() + &solvers.edition(solver);
+        let limit = limit::of_scene((&study.name, study.scene), (solvers, solver), deadline, (&program, study.cache));
+        found.push(limit.map_err(Fault::writing)?.0);
+    }
+    Ok(found)
+}
+
+/// Finds the largest stable step of each solver in a scene, and writes the report.
+pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
+    let (scene, _) = subject::scene(&input.path, &[])?;
+    let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
+    check_writable(input.out)?;
+    let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let study = SceneStudy {
+        name: input.path.clone(),
+        scene: &scene,
+        names: solver_names(named),
+        solvers: &solvers,
+        quantities: Vec::new(),
+        budget: options.budget(),
+        cache: &cache,
+        program: key::of_this_program(),
+    };
+    let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
+    let mut bar = Bar::new(budget);
+    // The bisection may use the whole budget.
+    let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
+    let limits = limits((&study, &study.names), &solvers, &mut remaining, &mut bar)?;
+    drop(bar);
+    let mut written = Study::new(provenance(input.words("stability", options.budget()), start.elapsed().as_secs_f64()));
+    written.limits = limits;
+    written.sources = sources(&study.names);
+    let is_red = written.limits.iter().all(|limit| limit.found.is_none());
+    let output = Output { text: Some(limits_text(&written.limits)), ..Output::new(input.out, input.json, false) };
+    publish_study(&written, output, is_red)
+}
+
+/// Returns the hashes of the solvers' sources, by solver name.
+fn sources(names: &[String]) -> BTreeMap<String, String> {
+    names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
+}
+
+/// Returns one line for each largest stable step.
+fn limits_text(limits: &[Limit]) -> String {
+    let number = |value: Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));
+    let line = |limit: &Limit| {
+        let Limit { scene, solver, unit, found, exact, error, detail, .. } = limit;
+        let exact = exact.map_or(String::new(), |_| format!(", exact {} ({})", number(*exact), number::error(*error)));
+        format!("{scene:<32} {solver:<22} {} {unit}{exact}; above: {detail}\n", number(*found))
+    };
+    limits.iter().map(line).collect()
+}
+
+/// Progress bar over the time budget.
+struct Bar {
+    progress: Progress,
+    budget: f64,
+}
+
+impl Bar {
+    fn new(budget: f64) -> Self {
+        Self { progress: Progress::new(budget.ceil() as u64, "s of the budget"), budget }
+    }
+
+    fn now(&self, what: &str, spent: f64) {
+        self.progress.set(spent.clamp(0.0, self.budget) as u64, self.budget.ceil() as u64);
+        self.progress.now(what);
+    }
+}
+
+/// Follower that shows the progress, prints a line after each level and updates the report.
+struct Follower<'a> {
+    bar: Bar,
+    out: &'a Path,
+    words: &'a [String],
+    names: &'a [String],
+    start: Instant,
+    written: Instant,
+    limits: Vec<Limit>,
+    ledger: Vec<Entry>,
+}
+
+impl<'a> Follower<'a> {
+    fn new(study: &'a SceneStudy<'_>, out: &'a Path, words: &'a [String]) -> Self {
+        let (start, bar) = (Instant::now(), Bar::new(study.budget.as_secs_f64()));
+        Self { bar, out, words, names: &study.names, start, written: start, limits: Vec::new(), ledger: Vec::new() }
+    }
+
+    fn study(&self, cost: SceneCost, is_unfinished: bool) -> Study {
+        let mut options = self.words.to_vec();
+        if is_unfinished {
+            options.push("unfinished".to_owned());
+        }
+        let mut study = Study::new(provenance(options, self.start.elapsed().as_secs_f64()));
+        study.scenes.push(cost);
+        study.limits.clone_from(&self.limits);
+        study.ledger.clone_from(&self.ledger);
+        study.sources = sources(self.names);
+        study
+    }
+}
+
+impl StudyFollower for Follower<'_> {
+    fn now(&mut self, run: &str, spent: f64) {
+        self.bar.now(run, spent);
+    }
+
+    fn result(&mut self, line: &str, so_far: &dyn Fn() -> SceneCost) -> Result<(), WriteError> {
+        self.bar.progress.tell(line);
+        if self.written.elapsed() > EVERY {
+            write_study(self.out, &self.study(so_far(), true))
+                .map_err(|error| WriteError::new(self.out, std::io::Error::other(error)))?;
+            self.written = Instant::now();
+        }
+        Ok(())
+    }
+}
+
+/// Returns the summary of a study.
+fn text(study: &Study) -> String {
+    let mut text = String::new();
+    for cost in &study.scenes {
+        text.push_str(&format!(
+            "{}, {}; errors are estimates from the levels of each solver\n",
+            cost.scene,
+            cost.reduction.word()
+        ));
+        for target in TARGETS {
+            text.push_str(&format!("  {}\n", cost.sentence(target)));
+        }
+        for quantity in &cost.quantities {
+            text.push_str(&format!("{} ({})\n", quantity.name, quantity.unit));
+            for row in &quantity.estimates {
+                let order =
+                    row.order.map_or(String::new(), |order| format!(", order {}", number::significant(order, 2)));
+                let value = number::significant(row.value, 6);
+                let uncertainty = number::significant(row.uncertainty, 2);
+                text.push_str(&format!("  {:<14} {value} ± {uncertainty}{order} [{}]\n", row.solver, row.basis.word()));
+            }
+            for difference in quantity.differences() {
+                text.push_str(&format!("  {}\n", difference_words(&difference)));
+            }
+            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1])));
+        }
+        for sentence in softer_words(cost) {
+            text.push_str(&format!("softer contacts: {sentence}\n"));
+        }
+    }
+    if !study.limits.is_empty() {
+        text.push_str("largest stable steps\n");
+        text.push_str(&limits_text(&study.limits));
+    }
+    for entry in study.ledger.iter() {
+        text.push_str(&format!("{}: {} ({})\n", entry.effect, entry.worth.word(), entry.key));
+    }
+    for cost in &study.scenes {
+        cost.notes.iter().for_each(|note| text.push_str(&format!("note: {note}\n")));
+        text.push_str(&format!("{} of a budget of {}\n", number::seconds(cost.spent), number::seconds(cost.budget)));
+    }
+    text
+}

@@ -1,0 +1,720 @@
+//! Cost of accuracy of a scene: levels of each solver within a time budget, and their estimated errors.
+
+use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, scatter};
+use super::ladder::Ladder;
+use super::schedule::{self, Finished};
+use super::storage::RunStore;
+use super::within::Within;
+use crate::chaos::{perturbed_runs, scale_of};
+use crate::run_cache::key_of_run;
+use grainbench_harness::evidence::Evidence;
+use grainbench_harness::solvers::Solvers;
+use grainbench_harness::statistics::median;
+use grainbench_reports::number;
+use grainbench_reports::study::estimate::{
+    Estimate, EstimatedPoint, Level, LevelStatus, Quantity, Reduction, SceneCost,
+};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::scene::Scene;
+use grainbench_solver::Solver;
+use grainbench_solver::failure::{RunError, StorageError};
+use grainbench_solver::observer::Observer;
+use grainbench_solver::record::{Record, Snapshot};
+use grainbench_solver::resolution::Resolution;
+use grainbench_store::{WriteError, key};
+use serde::{Deserialize, Serialize};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+
+/// Fractions of the budget at which the parts of the study end: levels; half steps and softer contacts; effects; largest
+/// stable steps; repetitions.
+pub const PARTS: [f64; 5] = [0.7, 0.78, 0.85, 0.93, 0.97];
+/// Fraction of the budget at which any run is interrupted.
+const LATEST: f64 = 1.1;
+/// Fraction of the remaining time that the first level of a solver may take.
+const FIRST: f64 = 0.3;
+/// Smallest relevant change of a probe in the test for chaos, relative to its largest value.
+pub const MATTERS: f64 = 0.01;
+/// Largest number of timed repetitions of a level.
+const REPETITIONS: usize = 9;
+/// Uncertainty relative to the scale below which no further level is useful.
+const ENOUGH: f64 = 1e-7;
+/// Difference relative to the scale that counts as rounding error.
+const ROUNDING: f64 = 1e-12;
+/// Value relative to the scale below which a column is zero apart from rounding.
+const ZERO: f64 = 1e-9;
+/// Factors by which the stiffness of contacts is divided.
+const SOFTER: [f64; 2] = [10.0, 100.0];
+/// Number of failures in a row after which a solver gets no further level.
+const FAILURES: usize = 4;
+/// Columns that count something. They change in jumps, and are target quantities only if the user names them.
+const COUNTS: [&str; 6] = ["slipping", "contacts", "slipping_contacts", "present", "entered", "left"];
+
+/// Scene, solvers and extent of a study.
+pub struct SceneStudy<'a> {
+    /// Path of the scene.
+    pub name: String,
+    /// Scene.
+    pub scene: &'a Scene,
+    /// Names of the solvers.
+    pub names: Vec<String>,
+    /// Solvers by name.
+    pub solvers: &'a dyn Solvers,
+    /// Columns of probes that are target quantities; all if empty.
+    pub quantities: Vec<String>,
+    /// Time budget.
+    pub budget: Duration,
+    /// Storage of finished runs.
+    pub cache: &'a RunStore,
+    /// Hash of this program.
+    pub program: String,
+}
+
+/// Receiver of the progress and of preliminary results.
+pub trait StudyFollower {
+    /// Called when a run begins, with the time that is spent (s).
+    fn now(&mut self, _run: &str, _spent: f64) {}
+    /// Called after each level, with the results so far.
+    ///
+    /// # Errors
+    /// When the results cannot be written.
+    fn result(&mut self, _line: &str, _so_far: &dyn Fn() -> SceneCost) -> Result<(), WriteError> {
+        Ok(())
+    }
+}
+
+/// Follower that ignores everything.
+impl StudyFollower for () {}
+
+/// Column of a finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct StoredColumn {
+    name: String,
+    unit: String,
+    end: f64,
+    mean: f64,
+    /// Largest absolute value of the column.
+    largest: f64,
+    /// Largest absolute value of the probe in this unit.
+    scale: f64,
+}
+
+/// Finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct StoredRun {
+    status: LevelStatus,
+    /// Time of the first run (s), start-up included.
+    seconds: f64,
+    /// Times of the stepping loop (s).
+    walls: Vec<f64>,
+    steps: u64,
+    detail: Option<String>,
+    columns: Vec<StoredColumn>,
+}
+
+/// Purpose of a run.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Purpose {
+    /// Level of a solver.
+    Level,
+    /// Same cells with half of the time step.
+    HalfStep,
+    /// Softer contacts.
+    Softer,
+}
+
+/// Run with its place in the study.
+struct Run {
+    solver: usize,
+    fineness: f64,
+    resolution: Resolution,
+    setting: String,
+    purpose: Purpose,
+    name: String,
+    stored: StoredRun,
+}
+
+/// Values of the perturbed runs of a chaotic scene, by column: name and means over time.
+type Perturbed = Vec<(String, Vec<f64>)>;
+
+/// Study in progress.
+pub struct Measurement<'a> {
+    study: &'a SceneStudy<'a>,
+    /// Scene without snapshots, whose writing is no part of the cost.
+    scene: Scene,
+    ladders: Vec<Ladder>,
+    found: Vec<Option<Arc<dyn Solver>>>,
+    finished: Vec<Finished>,
+    runs: Vec<Run>,
+    perturbed: Option<Perturbed>,
+    notes: Vec<String>,
+    start: Instant,
+    /// Time of stored runs (s), which counts as spent.
+    stored: f64,
+    /// Time of the stored repetitions (s), which counts as spent when levels are timed again.
+    repeated: f64,
+    /// True if all runs are stored runs.
+    is_reused: bool,
+}
+
+/// Observer that stores no snapshot.
+struct NoSnapshots;
+
+impl Observer for NoSnapshots {
+    fn snapshot(&mut self, _snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
+        Ok(None)
+    }
+}
+
+impl<'a> Measurement<'a> {
+    /// Begins a study.
+    #[must_use]
+    pub fn new(study: &'a SceneStudy<'a>) -> Self {
+        let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..study.scene.clone() };
+        let ladders: Vec<Ladder> = study.names.iter().map(|name| Ladder::new(name, &scene, study.solvers)).collect();
+        let finished = ladders
+            .iter()
+            .map(|ladder| Finished {
+                exponent: ladder.exponent(),
+                listed: ladder.listed.clone(),
+                ..Finished::default()
+            })
+            .collect();
+        let found = study.names.iter().map(|name| study.solvers.find_within(name, study.budget)).collect();
+        Self {
+            study,
+            scene,
+            ladders,
+            found,
+            finished,
+            runs: Vec::new(),
+            perturbed: None,
+            notes: Vec::new(),
+            start: Instant::now(),
+            stored: 0.0,
+            repeated: 0.0,
+            is_reused: true,
+        }
+    }
+
+    /// Returns the time that is spent (s). The time of reused runs counts, so that a continued study makes the same choices.
+    #[must_use]
+    pub fn spent(&self) -> f64 {
+        self.stored + self.start.elapsed().as_secs_f64()
+    }
+
+    /// Returns the time (s) until a part of the budget is used up.
+    #[must_use]
+    pub fn remaining(&self, part: f64) -> f64 {
+        part * self.study.budget.as_secs_f64() - self.spent()
+    }
+
+    /// Returns the time at which a run is interrupted, if it may take this time (s).
+    #[must_use]
+    pub fn deadline(&self, seconds: f64) -> Instant {
+        Instant::now() + Duration::from_secs_f64(seconds.clamp(0.0, 1e9))
+    }
+
+    /// Returns the solvers with at least one measured level.
+    #[must_use]
+    pub fn measured_solvers(&self) -> Vec<String> {
+        let is_measured = |at: &usize| !self.measured(*at, Purpose::Level).is_empty();
+        (0..self.study.names.len()).filter(is_measured).map(|at| self.study.names[at].clone()).collect()
+    }
+
+    /// Returns true if perturbed runs part, so that means over time are compared.
+    #[must_use]
+    pub fn is_chaotic(&self) -> bool {
+        self.perturbed.as_ref().is_some_and(|perturbed| !perturbed.is_empty())
+    }
+
+    /// Returns the name of the first solver with measured levels and time steps, its finest resolution for whose run at most
+    /// `seconds` are expected, and the expected time of a run (s). If no level is that fast, the coarsest level is returned.
+    #[must_use]
+    pub fn resolution_within(&self, solver: &str, seconds: f64) -> Option<(Resolution, f64)> {
+        let at = self.study.names.iter().position(|name| name == solver)?;
+        let levels = self.measured(at, Purpose::Level);
+        let fits = levels.iter().rev().find(|run| run.stored.seconds <= seconds && run.fineness <= 4.0);
+        let run = fits.or_else(|| levels.first())?;
+        Some((run.resolution, run.stored.seconds))
+    }
+
+    /// Runs the levels of all solvers, and the test for chaos after the first two levels.
+    ///
+    /// # Errors
+    /// When a result cannot be stored.
+    pub fn levels(&mut self, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
+        for (at, name) in self.study.names.iter().enumerate() {
+            if self.found[at].is_none() {
+                self.finished[at].closed = true;
+                self.notes.push(format!("{name}: there is no such solver."));
+            }
+        }
+        while let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0])) {
+            self.level(at, fineness, follower)?;
+            let line = self.line();
+            follower.result(&line, &|| self.result())?;
+        }
+        Ok(())
+    }
+
+    /// Runs a level of a solver, and the test for chaos after the first two levels.
+    fn level(&mut self, at: usize, fineness: f64, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
+        let resolution = self.ladders[at].at(fineness);
+        let scene = self.scene.clone();
+        let run = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)?;
+        let (status, seconds) = (run.stored.status, run.stored.seconds);
+        let last = self.finished[at].levels.last().map_or(0.0, |(last, _)| *last);
+        self.finished[at].levels.push((fineness, seconds));
+        self.runs.push(run);
+        let is_last_factor = last > 0.0 && self.ladders[at].listed.is_empty() && fineness < 1.9 * last;
+        let failures = self.own(at).rev().take_while(|run| run.stored.status == LevelStatus::Failed).count();
+        let is_over = !matches!(status, LevelStatus::Measured | LevelStatus::Failed);
+        if is_over || is_last_factor || failures >= FAILURES || self.is_converged(at) {
+            self.finished[at].closed = true;
+        }
+        if self.perturbed.is_none() && self.measured(at, Purpose::Level).len() >= 2 {
+            self.test_for_chaos(at, follower);
+        }
+        Ok(())
+    }
+
+    /// Runs half of the time step on the grid, and softer contacts.
+    ///
+    /// # Errors
+    /// When a result cannot be stored.
+    pub fn variations(&mut self, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
+        for at in 0..self.ladders.len() {
+            let levels = self.measured(at, Purpose::Level);
+            if self.ladders[at].has_cells() {
+                let limit = 0.5 * self.remaining(PARTS[2]);
+                let fits = levels.iter().rev().find(|run| 2.0 * run.stored.seconds <= limit);
+                let Some((fineness, Resolution::Grid { cells, points, courant })) =
+                    fits.map(|run| (run.fineness, run.resolution))
+                else {
+                    continue;
+                };
+                let half = Resolution::Grid { cells, points, courant: 0.5 * courant };
+                let scene = self.scene.clone();
+                let run = self.run(at, (fineness, half, Purpose::HalfStep), &scene, String::new(), follower)?;
+                self.runs.push(run);
+            } else if self.study.names[at] == "dem" && self.scene.laws.iter().flatten().any(ContactLaw::has_stiffness) {
+                let limit = 0.5 * self.remaining(PARTS[2]);
+                let fits = levels.iter().rev().find(|run| run.fineness <= 4.0 && run.stored.seconds <= limit);
+                let Some((fineness, resolution)) = fits.map(|run| (run.fineness, run.resolution)) else { continue };
+                for factor in SOFTER {
+                    let mut scene = self.scene.clone();
+                    soften(&mut scene, factor);
+                    let words = format!(", contacts softer by {factor}");
+                    let run = self.run(at, (fineness, resolution, Purpose::Softer), &scene, words, follower)?;
+                    self.runs.push(run);
+                }
+            }
+        }
+        Ok(())
+    }
+
+    /// Times levels again until the budget is used up, or each level is timed often enough.
+    ///
+    /// # Errors
+    /// When a result cannot be stored.
+    pub fn repetitions(&mut self, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
+        // A study that was finished before is not timed again.
+        if self.repeated > 0.0 && self.is_reused {
+            return Ok(());
+        }
+        self.stored += std::mem::take(&mut self.repeated);
+        loop {
+            let time =
+                |run: &Run| if run.stored.status == LevelStatus::Measured { run.stored.seconds } else { f64::INFINITY };
+            // Softer contacts are timed once.
+            let count = |run: &Run| if run.purpose == Purpose::Softer { REPETITIONS } else { run.stored.walls.len() };
+            let levels: Vec<(f64, usize)> = self.runs.iter().map(|run| (time(run), count(run))).collect();
+            let Some(at) = schedule::again(&levels, self.remaining(PARTS[4]), REPETITIONS) else { return Ok(()) };
+            let run = &self.runs[at];
+            follower.now(&format!("{} {} again", self.study.names[run.solver], run.setting), self.spent());
+            let Some(solver) = self.found[run.solver].clone() else { return Ok(()) };
+            let within = Within::new(&*solver, self.deadline(self.remaining(LATEST)));
+            let begin = Instant::now();
+            let Ok(record) = within.run(&self.scene, &run.resolution, &mut NoSnapshots) else { return Ok(()) };
+            let wall = wall_seconds(&record, begin.elapsed().as_secs_f64());
+            let run = &mut self.runs[at];
+            run.stored.walls.push(wall);
+            self.study.cache.put(&run.name, &run.stored)?;
+        }
+    }
+
+    /// Returns the runs of a solver.
+    fn own(&self, solver: usize) -> impl DoubleEndedIterator<Item = &Run> {
+        self.runs.iter().filter(move |run| run.solver == solver)
+    }
+
+    /// Returns the measured runs of a solver for a purpose, from coarse to fine.
+    fn measured(&self, solver: usize, purpose: Purpose) -> Vec<&Run> {
+        let is_measured = |run: &&Run| run.purpose == purpose && run.stored.status == LevelStatus::Measured;
+        self.own(solver).filter(is_measured).collect()
+    }
+
+    /// Runs a level, or takes it from the storage. `words` describes a change of the scene.
+    fn run(
+        &mut self,
+        at: usize,
+        (fineness, resolution, purpose): (f64, Resolution, Purpose),
+        scene: &Scene,
+        words: String,
+        follower: &mut dyn StudyFollower,
+    ) -> Result<Run, WriteError> {
+        let solver_name = &self.study.names[at];
+        let setting = format!("{resolution}{words}");
+        let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
+        let name = key_of_run(&program, solver_name, scene, &resolution, "scene without claims");
+        follower.now(&format!("{solver_name} {setting}"), self.spent());
+        let stored = match self.study.cache.take::<StoredRun>(&name) {
+            Some(stored) => {
+                self.stored += stored.seconds;
+                self.repeated += stored.walls.iter().skip(1).sum::<f64>();
+                stored
+            }
+            None => {
+                let stored = self.measure(at, scene, &resolution);
+                self.is_reused &= stored.status == LevelStatus::OverBudget;
+                if stored.status != LevelStatus::OverBudget {
+                    self.study.cache.put(&name, &stored)?;
+                }
+                stored
+            }
+        };
+        match stored.status {
+            LevelStatus::Measured | LevelStatus::Failed => {}
+            _ => {
+                let detail = stored.detail.clone().unwrap_or_default();
+                let is_named = detail.starts_with(solver_name.as_str());
+                self.notes.push(if is_named { detail } else { format!("{solver_name}: {detail}") });
+            }
+        }
+        Ok(Run { solver: at, fineness, resolution, setting, purpose, name, stored })
+    }
+
+    fn measure(&self, at: usize, scene: &Scene, resolution: &Resolution) -> StoredRun {
+        let mut stored = StoredRun {
+            status: LevelStatus::NotAvailable,
+            seconds: 0.0,
+            walls: Vec::new(),
+            steps: 0,
+            detail: Some("there is no such solver".to_owned()),
+            columns: Vec::new(),
+        };
+        let Some(solver) = &self.found[at] else { return stored };
+        // A first level of unknown cost must not use the time of the other solvers.
+        let limit = match self.finished[at].levels.is_empty() {
+            true => FIRST * self.remaining(PARTS[0]),
+            false => self.remaining(LATEST),
+        };
+        let within = Within::new(&**solver, self.deadline(limit));
+        let begin = Instant::now();
+        let record = within.run(scene, resolution, &mut NoSnapshots);
+        stored.seconds = begin.elapsed().as_secs_f64();
+        match record {
+            Ok(record) => {
+                stored.status = LevelStatus::Measured;
+                stored.walls = vec![wall_seconds(&record, stored.seconds)];
+                stored.steps = record.cost.steps;
+                stored.detail = None;
+                stored.columns = columns(&record);
+            }
+            Err(error) => {
+                (stored.status, stored.detail) = failure(&error, within.completed(), stored.seconds, resolution);
+                if stored.status == LevelStatus::Failed {
+                    stored.walls = vec![stored.seconds];
+                }
+            }
+        }
+        stored
+    }
+
+    /// Repeats a level with a tiny displacement of one grain. If the probes change, the scene is chaotic.
+    fn test_for_chaos(&mut self, at: usize, follower: &mut dyn StudyFollower) {
+        let Some(run) = self.measured(at, Purpose::Level).first().copied() else { return };
+        let (resolution, name) = (run.resolution, key::of_words(&run.name, &["perturbed"]));
+        if let Some((seconds, perturbed)) = self.study.cache.take::<(f64, Perturbed)>(&name) {
+            self.stored += seconds;
+            self.perturbed = Some(perturbed);
+            return;
+        }
+        let Some(solver) = self.found[at].clone() else { return };
+        follower.now(&format!("{} {resolution}, test for chaos", self.study.names[at]), self.spent());
+        let begin = Instant::now();
+        let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])));
+        let mut again = |scene: &Scene| within.run(scene, &resolution, &mut NoSnapshots);
+        let whole = again(&self.scene);
+        let found = whole.and_then(|whole| {
+            let others = perturbed_runs(&self.scene, &whole, MATTERS, &mut again)?;
+            Ok((whole, others))
+        });
+        let Ok((whole, others)) = found else {
+            self.notes.push("The test for chaos did not end within the budget.".to_owned());
+            self.perturbed = Some(Vec::new());
+            return;
+        };
+        let mut perturbed = Perturbed::new();
+        if !others.is_empty() {
+            let all: Vec<Vec<StoredColumn>> = [&whole].into_iter().chain(&others).map(columns).collect();
+            for column in &all[0] {
+                let named = all.iter().filter_map(|columns| columns.iter().find(|other| other.name == column.name));
+                perturbed.push((column.name.clone(), named.map(|column| column.mean).collect()));
+            }
+        }
+        // A result that cannot be stored is computed again.
+        let _ = self.study.cache.put(&name, &(begin.elapsed().as_secs_f64(), &perturbed));
+        self.perturbed = Some(perturbed);
+    }
+
+    /// Returns true if no further level of a solver can improve the result.
+    fn is_converged(&self, at: usize) -> bool {
+        let result = self.result();
+        let name = &self.study.names[at];
+        let own = || {
+            result
+                .quantities
+                .iter()
+                .map(|quantity| (quantity, quantity.estimates.iter().find(|row| row.solver == *name)))
+        };
+        let is_exact = |(quantity, row): (&Quantity, Option<&Estimate>)| {
+            row.is_some_and(|row| row.uncertainty <= ENOUGH * quantity.scale)
+        };
+        self.measured(at, Purpose::Level).len() >= 3 && own().all(is_exact)
+    }
+
+    /// Returns a line about the last run.
+    fn line(&self) -> String {
+        let Some(run) = self.runs.last() else { return String::new() };
+        let solver = &self.study.names[run.solver];
+        let what = match (&run.stored.detail, run.stored.status) {
+            (Some(detail), _) => detail.clone(),
+            (None, _) => number::seconds(median(&run.stored.walls)),
+        };
+        format!("{solver} {}: {what}", run.setting)
+    }
+
+    /// Returns the results so far.
+    #[must_use]
+    pub fn result(&self) -> SceneCost {
+        let reduction = if self.is_chaotic() { Reduction::Mean } else { Reduction::End };
+        let level = |run: &Run| Level {
+            solver: self.study.names[run.solver].clone(),
+            setting: run.setting.clone(),
+            status: run.stored.status,
+            wall_seconds: (!run.stored.walls.is_empty()).then(|| median(&run.stored.walls)),
+            repetitions: run.stored.walls.len(),
+            steps: run.stored.steps,
+            detail: run.stored.detail.clone(),
+        };
+        let mut notes = self.notes.clone();
+        if self.is_chaotic() {
+            notes.push(
+                "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes by more \
+                 than 1 %. Means over time are compared, with the scatter of perturbed runs."
+                    .to_owned(),
+            );
+        }
+        SceneCost {
+            scene: self.study.name.clone(),
+            budget: self.study.budget.as_secs_f64(),
+            spent: self.start.elapsed().as_secs_f64(),
+            reduction,
+            levels: self.runs.iter().map(level).collect(),
+            quantities: self.quantities(reduction),
+            notes,
+        }
+    }
+
+    fn quantities(&self, reduction: Reduction) -> Vec<Quantity> {
+        let mut found: Vec<Quantity> = Vec::new();
+        for column in self.runs.iter().flat_map(|run| &run.stored.columns) {
+            let is_known = found.iter().any(|known| known.name == column.name);
+            if is_known || !self.is_wanted(column) {
+                continue;
+            }
+            // The scale is that of the finest run of the first solver.
+            let finest = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
+            let named = |run: &&Run| run.stored.columns.iter().any(|other| other.name == column.name);
+            let first = finest.clone().find(named).map_or(0, |run| run.solver);
+            let scales = finest.filter(|run| run.solver == first);
+            let mut scales = scales.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
+            let scale = scales.next_back().map_or(0.0, |column| column.scale);
+            let all = self.runs.iter().flat_map(|run| &run.stored.columns);
+            let largest =
+                all.filter(|other| other.name == column.name).fold(0.0, |most: f64, other| most.max(other.largest));
+            if scale <= self.negligible(&column.unit) || largest <= ZERO * scale {
+                continue;
+            }
+            let mut quantity = Quantity {
+                name: column.name.clone(),
+                unit: column.unit.clone(),
+                scale,
+                estimates: Vec::new(),
+                points: Vec::new(),
+            };
+            for at in 0..self.ladders.len() {
+                self.estimate(at, reduction, &mut quantity);
+            }
+            found.push(quantity);
+        }
+        found
+    }
+
+    /// Adds the reference value and the points of a solver to a quantity.
+    fn estimate(&self, at: usize, reduction: Reduction, quantity: &mut Quantity) {
+        let value = |run: &Run| {
+            let column = run.stored.columns.iter().find(|column| column.name == quantity.name)?;
+            Some(if reduction == Reduction::End { column.end } else { column.mean })
+        };
+        let ladder = &self.ladders[at];
+        let levels = self.measured(at, Purpose::Level);
+        let mut values: Vec<LevelValue> = levels
+            .iter()
+            .filter_map(|run| {
+                Some(LevelValue { size: ladder.size(run.fineness, run.stored.steps), value: value(run)? })
+            })
+            .collect();
+        values.sort_by(|a, b| b.size.total_cmp(&a.size));
+        let perturbed = self.perturbed.iter().flatten().find(|(name, _)| *name == quantity.name);
+        let spread = perturbed.map_or(0.0, |(_, values)| deviation(values));
+        let found = match reduction {
+            Reduction::End => reference(&values, ladder.order(), ROUNDING * quantity.scale),
+            Reduction::Mean => ensemble(&values, spread),
+        };
+        let Some(Reference { value: limit, mut uncertainty, order, basis }) = found else { return };
+        for half in self.measured(at, Purpose::HalfStep) {
+            let same = levels.iter().find(|run| run.fineness == half.fineness);
+            if let (Some(half), Some(whole)) = (value(half), same.and_then(|run| value(run))) {
+                uncertainty += (half - whole).abs();
+            }
+        }
+        let scatter = if reduction == Reduction::Mean { scatter(spread) } else { 0.0 };
+        let point = |run: &Run, softer: bool| {
+            let value = value(run)?;
+            Some(EstimatedPoint {
+                solver: self.study.names[at].clone(),
+                setting: run.setting.clone(),
+                wall_seconds: median(&run.stored.walls),
+                value,
+                error: (value - limit).abs() / quantity.scale,
+                uncertainty: uncertainty.hypot(scatter) / quantity.scale,
+                softer,
+            })
+        };
+        let points: Vec<EstimatedPoint> = levels.iter().filter_map(|run| point(run, false)).collect();
+        let softer = self.measured(at, Purpose::Softer).into_iter().filter_map(|run| {
+            let mut softer = point(run, true)?;
+            // The error of the time step is not part of the influence of the stiffness.
+            let same = levels.iter().position(|level| level.fineness == run.fineness)?;
+            softer.uncertainty += points.get(same)?.error;
+            Some(softer)
+        });
+        let softer: Vec<EstimatedPoint> = softer.collect();
+        quantity.points.extend(points.into_iter().chain(softer));
+        quantity.estimates.push(Estimate {
+            solver: self.study.names[at].clone(),
+            evidence: Evidence::Convergence,
+            value: limit,
+            uncertainty,
+            order,
+            basis,
+        });
+    }
+
+    /// Returns true if a column is a target quantity.
+    fn is_wanted(&self, column: &StoredColumn) -> bool {
+        let wanted = &self.study.quantities;
+        if wanted.is_empty() {
+            let quantity = column.name.rsplit_once('.').map_or("", |(_, quantity)| quantity);
+            return !COUNTS.contains(&quantity);
+        }
+        wanted.iter().any(|name| *name == column.name || column.name.starts_with(&format!("{name}.")))
+    }
+
+    /// Returns the value of a unit below which a probe is zero apart from rounding.
+    fn negligible(&self, unit: &str) -> f64 {
+        let length = self.scene.reference_length;
+        let time = self.scene.duration.seconds().unwrap_or(1.0);
+        let mass = self.scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
+        let natural = match unit {
+            "m" => length,
+            "m/s" => length / time,
+            "rad" | "1" => 1.0,
+            "rad/s" => 1.0 / time,
+            "N" => mass * length / (time * time),
+            "N s" | "kg m/s" => mass * length / time,
+            "J" => mass * (length / time).powi(2),
+            "kg m²/s" => mass * length * length / time,
+            _ => 0.0,
+        };
+        ZERO * natural
+    }
+}
+
+/// Divides the stiffness of all contacts by a factor. Dashpots that are not relative to the stiffness change so that the
+/// coefficient of restitution stays.
+fn soften(scene: &mut Scene, factor: f64) {
+    scene.change_laws(|law| {
+        law.springs = law.springs.scaled([1.0 / factor; 2]);
+        law.normal_damping /= factor.sqrt();
+        law.tangential_damping /= factor.sqrt();
+        law.stiffness_damping *= factor.sqrt();
+    });
+}
+
+/// Returns the time of the stepping loop (s), or the time of the whole run if the program does not report it.
+fn wall_seconds(record: &Record, whole: f64) -> f64 {
+    Some(record.cost.wall_seconds).filter(|wall| wall.is_finite() && *wall > 0.0).unwrap_or(whole)
+}
+
+/// Returns the finite columns of a record. The mean is weighted by the time between samples.
+fn columns(record: &Record) -> Vec<StoredColumn> {
+    let series = &record.series;
+    let column = |(at, column): (usize, &grainbench_solver::record::Column)| {
+        let values = series.values.get(at)?;
+        let (first, last) = (series.time.first()?, series.time.last()?);
+        let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
+        let mean = if last > first { areas.sum::<f64>() / (last - first) } else { *values.first()? };
+        let stored = StoredColumn {
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            end: *values.last()?,
+            mean,
+            largest: values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
+            scale: scale_of(record, at),
+        };
+        (values.iter().all(|value| value.is_finite()) && mean.is_finite()).then_some(stored)
+    };
+    series.columns.iter().enumerate().filter_map(column).collect()
+}
+
+/// Returns the status and the message of a run that did not end.
+fn failure(
+    error: &RunError,
+    completed: Option<f64>,
+    seconds: f64,
+    resolution: &Resolution,
+) -> (LevelStatus, Option<String>) {
+    let status = match error {
+        RunError::Unsupported { .. } => LevelStatus::Unsupported,
+        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
+        RunError::Interrupted { .. } => LevelStatus::OverBudget,
+        _ => LevelStatus::Failed,
+    };
+    let whole =
+        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
+    let detail = match status {
+        LevelStatus::OverBudget => {
+            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
+        }
+        _ => error.to_string(),
+    };
+    (status, Some(detail))
+}
+
+#[cfg(test)]
+#[path = "drawn.rs"]
+mod tests;

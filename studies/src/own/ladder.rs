@@ -1,0 +1,122 @@
+//! Resolution levels of a solver for any scene, from coarse to fine.
+
+use grainbench_harness::solvers::{ExternalSolver, Solvers};
+use grainbench_scene::method::Method;
+use grainbench_scene::scene::{Duration, Scene};
+use grainbench_solver::resolution::Resolution;
+
+/// Time step of the coarsest level, as a fraction of the critical one.
+const COARSEST: f64 = 0.4;
+/// Number of steps of the coarsest level, for scenes without a critical time step.
+const STEPS: f64 = 50.0;
+/// Cells per reference length of the coarsest level.
+const CELLS: f64 = 2.0;
+/// Solvers of a study if the user names none.
+pub const DEFAULT: [&str; 3] = ["dem", "rigid", "mpm"];
+
+/// Resolution that a solver refines.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Refined {
+    /// Time step as a fraction of the critical one.
+    Fraction(f64),
+    /// Time step (s).
+    Step(f64),
+    /// Substeps of a rigid-body engine.
+    Substeps,
+    /// Cells per reference length.
+    Cells(f64),
+}
+
+/// Resolution levels of a solver.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Ladder {
+    /// Name of the solver.
+    pub solver: String,
+    refined: Refined,
+    /// Finenesses to which an external solver is limited; empty if there is no limit.
+    pub listed: Vec<f64>,
+    dimensions: usize,
+}
+
+impl Ladder {
+    /// Returns the levels of a solver for a scene. A scene without contacts has no critical time step, so that its levels
+    /// have time steps in seconds.
+    #[must_use]
+    pub fn new(solver: &str, scene: &Scene, solvers: &dyn Solvers) -> Self {
+        let stranger = solvers.strangers().into_iter().find(|stranger| stranger.name == solver);
+        let method = stranger.as_ref().map_or_else(|| Method::from_name(solver), |_| None);
+        let time_step = || match scene.duration {
+            Duration::Seconds(seconds) if !scene.critical_time_step().is_finite() => Refined::Step(seconds / STEPS),
+            _ => Refined::Fraction(COARSEST),
+        };
+        let (refined, listed) = match (&stranger, method) {
+            (Some(ExternalSolver { deforms: true, cells, .. }), _) => listed(Refined::Cells(CELLS), cells, false),
+            (Some(stranger), _) => listed(time_step(), &stranger.fractions, true),
+            (None, Some(Method::Rigid)) => (Refined::Substeps, Vec::new()),
+            (None, Some(Method::Grid)) => (Refined::Cells(CELLS), Vec::new()),
+            (None, _) => (time_step(), Vec::new()),
+        };
+        Self { solver: solver.to_owned(), refined, listed, dimensions: scene.dimension.count() }
+    }
+
+    /// Returns the resolution of a fineness; 1 is the coarsest level.
+    #[must_use]
+    pub fn at(&self, fineness: f64) -> Resolution {
+        match self.refined {
+            Refined::Fraction(coarsest) => Resolution::CriticalFraction(coarsest / fineness),
+            Refined::Step(coarsest) => Resolution::TimeStep(coarsest / fineness),
+            Refined::Substeps => Resolution::substeps(fineness.round() as u32),
+            Refined::Cells(coarsest) => Resolution::grid(coarsest * fineness, Resolution::POINTS),
+        }
+    }
+
+    /// Returns the nominal exponent of the run time: time ∝ finenessⁿ. Cells change the number of points and the time step.
+    #[must_use]
+    pub fn exponent(&self) -> f64 {
+        match self.refined {
+            Refined::Cells(_) => self.dimensions as f64 + 1.0,
+            _ => 1.0,
+        }
+    }
+
+    /// Returns the order of the method for smooth motion.
+    #[must_use]
+    pub fn order(&self) -> f64 {
+        if self.refined == Refined::Substeps { 1.0 } else { 2.0 }
+    }
+
+    /// Returns true if the levels have cells.
+    #[must_use]
+    pub const fn has_cells(&self) -> bool {
+        matches!(self.refined, Refined::Cells(_))
+    }
+
+    /// Returns true if the levels have time steps and the solver has springs.
+    #[must_use]
+    pub const fn has_steps(&self) -> bool {
+        matches!(self.refined, Refined::Fraction(_) | Refined::Step(_))
+    }
+
+    /// Returns the size of a level: of a time step or a cell, relative to the coarsest level. The number of steps of a run
+    /// gives it exactly, because the step is shortened to a whole number of steps.
+    #[must_use]
+    pub fn size(&self, fineness: f64, steps: u64) -> f64 {
+        if self.has_steps() && steps > 0 { 1.0 / steps as f64 } else { 1.0 / fineness }
+    }
+}
+
+/// Returns a ladder whose values are limited to `values`, and its finenesses.
+fn listed(refined: Refined, values: &[f64], are_steps: bool) -> (Refined, Vec<f64>) {
+    let coarsest = values.iter().copied().reduce(if are_steps { f64::max } else { f64::min });
+    let Some(coarsest) = coarsest else { return (refined, Vec::new()) };
+    let mut finenesses: Vec<f64> =
+        values.iter().map(|value| if are_steps { coarsest / value } else { value / coarsest }).collect();
+    finenesses.sort_by(f64::total_cmp);
+    finenesses.dedup();
+    match refined {
+        Refined::Cells(_) => (Refined::Cells(coarsest), finenesses),
+        Refined::Fraction(_) => (Refined::Fraction(coarsest), finenesses),
+        // A time step in seconds replaces the fractions of a critical step that does not exist.
+        other => (other, finenesses),
+    }
+}

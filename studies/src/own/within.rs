@@ -1,0 +1,115 @@
+//! Solver whose runs end at a deadline.
+
+use grainbench_scene::end_state::EndState;
+use grainbench_scene::scene::Scene;
+use grainbench_solver::Solver;
+use grainbench_solver::brief::Brief;
+use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
+use grainbench_solver::failure::{RunError, StorageError};
+use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
+use grainbench_solver::record::{PartialOutput, Record, Snapshot};
+use grainbench_solver::resolution::Resolution;
+use std::sync::atomic::{AtomicU64, Ordering};
+use std::time::Instant;
+
+/// Fraction of the time limit after which the progress of a run is believed.
+const SURE: f64 = 0.2;
+/// Expected time of a run, relative to the time limit, above which it is ended before its deadline.
+const HOPELESS: f64 = 2.0;
+
+/// Solver whose runs are interrupted at a deadline. An external program has its own time limit instead.
+pub struct Within<'a> {
+    solver: &'a dyn Solver,
+    deadline: Instant,
+    /// Numbers of completed steps and of all steps of the last run.
+    progress: [AtomicU64; 2],
+}
+
+impl<'a> Within<'a> {
+    /// Returns the solver with a deadline.
+    #[must_use]
+    pub const fn new(solver: &'a dyn Solver, deadline: Instant) -> Self {
+        Self { solver, deadline, progress: [AtomicU64::new(0), AtomicU64::new(0)] }
+    }
+
+    /// Returns the completed fraction of the last run; none if it has not begun.
+    #[must_use]
+    pub fn completed(&self) -> Option<f64> {
+        let [done, total] = [0, 1].map(|at: usize| self.progress[at].load(Ordering::Relaxed) as f64);
+        (done > 0.0 && total > 0.0).then(|| done / total)
+    }
+}
+
+impl Solver for Within<'_> {
+    fn name(&self) -> String {
+        self.solver.name()
+    }
+
+    fn available(&self) -> Result<(), RunError> {
+        self.solver.available()
+    }
+
+    fn has_springs(&self) -> bool {
+        self.solver.has_springs()
+    }
+
+    fn deforms(&self) -> bool {
+        self.solver.deforms()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        self.progress.iter().for_each(|count| count.store(0, Ordering::Relaxed));
+        self.solver.run(scene, resolution, &mut Watch { solver: self, observer, begin: Instant::now() })
+    }
+}
+
+/// Observer that passes everything on, and ends the run at the deadline.
+struct Watch<'a> {
+    solver: &'a Within<'a>,
+    observer: &'a mut dyn Observer,
+    begin: Instant,
+}
+
+impl Observer for Watch<'_> {
+    fn options(&self) -> RunOptions {
+        self.observer.options()
+    }
+
+    fn begin(&mut self, ahead: RunOutline) {
+        self.observer.begin(ahead);
+    }
+
+    fn progress(&mut self, done: u64, total: u64) {
+        self.solver.progress[0].store(done, Ordering::Relaxed);
+        self.solver.progress[1].store(total, Ordering::Relaxed);
+        self.observer.progress(done, total);
+    }
+
+    fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {
+        self.observer.snapshot(snapshot)
+    }
+
+    fn in_short(&mut self, brief: Brief, rows: u64) {
+        self.observer.in_short(brief, rows);
+    }
+
+    fn end_state(&mut self, state: EndState) {
+        self.observer.end_state(state);
+    }
+
+    fn is_over(&self) -> bool {
+        let (now, deadline) = (Instant::now(), self.solver.deadline);
+        let (elapsed, limit) = (now - self.begin, deadline.saturating_duration_since(self.begin));
+        let whole = self.solver.completed().map_or(0.0, |completed| elapsed.as_secs_f64() / completed);
+        let is_hopeless = elapsed > limit.mul_f64(SURE) && whole > HOPELESS * limit.as_secs_f64();
+        now >= deadline || is_hopeless || self.observer.is_over()
+    }
+
+    fn broke(&mut self, remains: PartialOutput) {
+        self.observer.broke(remains);
+    }
+
+    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
+        self.observer.checkpoint(checkpoint)
+    }
+}
