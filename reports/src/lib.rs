@@ -24,6 +24,7 @@ pub mod store;
 mod stored_figure;
 pub mod study;
 pub mod sweep;
+pub mod table;
 pub mod terminal;
 pub mod trend;
 

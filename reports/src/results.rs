@@ -2,8 +2,11 @@
 
 use grainbench_harness::verdict::{Control, Severity, Verdict};
 use serde::Serialize;
+use std::io;
 
 use crate::report::{Provenance, Report};
+use crate::row;
+use crate::table::{Column, Format, Table};
 
 /// Content of `results.json`, whose keys are a public interface.
 #[derive(Serialize)]
@@ -81,25 +84,19 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
 ///
 /// # Errors
 /// When a line cannot be encoded. This does not occur in reports of this project.
-pub fn points_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    // The header is written separately, so that it exists without any run.
-    table.write_record([
-        "case",
-        "variant",
-        "solver",
-        "resolution",
-        "time_step",
-        "fraction",
-        "steps",
-        "particle_steps",
-        "contact_evaluations",
-        "wall_seconds",
-    ])?;
-    for point in points(report) {
-        table.serialize(point)?;
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+pub fn points_csv(report: &Report) -> io::Result<Vec<u8>> {
+    let columns = ["case", "variant", "solver", "resolution"].map(Column::text).into_iter();
+    let columns = columns.chain(["time_step", "fraction"].map(Column::number));
+    let counts = ["steps", "particle_steps", "contact_evaluations"].map(|name| Column::new(name, Format::Count));
+    let columns = columns.chain(counts).chain([Column::number("wall_seconds")]);
+    let row = |point: Point<'_>| {
+        let Point { case, variant, solver, resolution, time_step, fraction, steps, particle_steps, .. } = point;
+        let (contacts, wall) = (point.contact_evaluations, point.wall_seconds);
+        row![case, variant, solver, resolution, time_step, fraction, steps, particle_steps, contacts, wall]
+    };
+    let mut bytes = Vec::new();
+    Table::new("points", columns, points(report).map(row)).csv(&mut bytes)?;
+    Ok(bytes)
 }
 
 #[cfg(test)]
@@ -140,7 +137,7 @@ mod tests {
     fn points_have_a_header_even_without_runs() {
         let mut report = sample::report();
         let text = String::from_utf8(points_csv(&report).unwrap()).unwrap();
-        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,0.00002,0.1,25000,25000,25000,0.001");
+        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,2e-5,0.1,25000,25000,25000,0.001");
         report.sections.clear();
         assert_eq!(
             String::from_utf8(points_csv(&report).unwrap()).unwrap(),

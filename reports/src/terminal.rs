@@ -6,6 +6,8 @@ use crate::headline::{self, Headline};
 use crate::line;
 use crate::number;
 use crate::report::{Report, Section};
+use crate::row;
+use crate::table::{Column, Row, Table};
 
 /// Returns one row per case, the counts, and all failures. There are no colour codes, because the text is also written
 /// to files.
@@ -13,18 +15,8 @@ use crate::report::{Report, Section};
 pub fn summary_table(report: &Report) -> String {
     let (counts, all) = (Headline::of_report(report), report);
     let report = &*report.view();
-    let head = ["case", "solvers", "passed", "amber", "worst, of allowed", "controls red"];
-    let mut rows = vec![head.map(str::to_owned)];
-    rows.extend(report.sections.iter().map(row));
-    let widths = [0, 1, 2, 3, 4, 5].map(|column| rows.iter().map(|row| row[column].chars().count()).max().unwrap_or(0));
-    let mut text = String::new();
-    for (index, row) in rows.iter().enumerate() {
-        push_line(&mut text, row, &widths);
-        if index == 0 {
-            let rule = widths.map(|width| "─".repeat(width));
-            push_line(&mut text, &rule, &widths);
-        }
-    }
+    let columns = ["case", "solvers", "passed", "amber", "worst, of allowed", "controls red"].map(Column::text);
+    let mut text = Table::new("", columns, report.sections.iter().map(row)).text();
     text.push_str(&format!("\n{}\n", counts.sentence()));
     let failing = failing_lines(all);
     if !failing.is_empty() {
@@ -63,7 +55,7 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
     lines
 }
 
-fn row(section: &Section) -> [String; 6] {
+fn row(section: &Section) -> Row {
     let counts = Headline::of_section(section);
     let worst = headline::worst(section).map_or_else(
         || "—".to_owned(),
@@ -75,20 +67,14 @@ fn row(section: &Section) -> [String; 6] {
             format!("{shown} {}", verdict.quantity)
         },
     );
-    [
-        section.name.clone(),
+    row![
+        &section.name,
         headline::solvers(section).join(", "),
         format!("{}/{}", counts.pass, counts.rows()),
         counts.amber().to_string(),
         worst,
         format!("{}/{}", counts.controls_red, counts.controls),
     ]
-}
-
-fn push_line(text: &mut String, cells: &[String; 6], widths: &[usize; 6]) {
-    let padded: Vec<String> = cells.iter().zip(widths).map(|(cell, width)| format!("{cell:<width$}")).collect();
-    text.push_str(padded.join("  ").trim_end());
-    text.push('\n');
 }
 
 #[cfg(test)]

@@ -9,6 +9,7 @@ use crate::headline::used_tolerance;
 use crate::judged::{ExternalResults, Row};
 use crate::number;
 use crate::report::{Report, Section};
+use crate::table::{self, scrolling};
 
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
@@ -131,28 +132,18 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
     if fields.len() < 2 || solvers.is_empty() {
         return html! {};
     }
-    let table = html! {
-        table.physics {
-            thead { tr { th scope="col" { "Passed / judged" } @for solver in &solvers { th scope="col" { (broken(solver)) } } } }
-            tbody {
-                @for physics in fields {
-                    tr {
-                        th scope="row" { (physics.title()) }
-                        @for solver in &solvers { td { (count(physics, solver).unwrap_or_default()) } }
-                    }
-                }
-            }
-        }
+    // A long name may break after its colon.
+    let columns = solvers.iter().map(|solver| table::Column::text(solver.replace(':', ":\u{200b}")));
+    let columns = [table::Column::heading("Passed / judged")].into_iter().chain(columns);
+    let row = |physics: &Physics| {
+        let counts = solvers.iter().map(|solver| count(*physics, solver).unwrap_or_default().into());
+        table::Row::from([physics.title().into()].into_iter().chain(counts).collect::<Vec<table::Cell>>())
     };
+    let table = table::Table::new("Passed results by field of physics and solver", columns, fields.iter().map(row));
     html! {
         h3 { a href="#matrix" { "Which solver for which physics" } }
-        (super::scrolling("Passed results by field of physics and solver", &table))
+        (table.page("physics"))
     }
-}
-
-/// Renders a solver's name that may break after its colon.
-fn broken(solver: &str) -> Markup {
-    html! { @for part in solver.split_inclusive(':') { (part) wbr; } }
 }
 
 /// Renders the matrix. The cases are grouped by field of physics.
@@ -193,7 +184,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     html! {
         div.matrix {
             h2 id="matrix" { "Largest error / tolerance, by case and solver" }
-            (super::scrolling("Cases by solvers", &table))
+            (scrolling("Cases by solvers", &table))
             p.key {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 × tolerance" }
                 span { i.k0 {} i.k1 {} i.k2 {} "known error: ≤ 10, ≤ 1000, > 1000 × tolerance" }

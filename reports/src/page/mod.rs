@@ -152,11 +152,6 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     }
 }
 
-/// Returns a table in a box that scrolls, also by keyboard, if the screen is narrower than the table.
-pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
-    html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -4,7 +4,9 @@ use super::Study;
 use super::point::{Counts, Diagram, Point, PointStatus};
 use crate::number;
 use crate::plot::palette::SOLVERS;
+use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use std::io;
 
 /// Errors for which the cost is stated, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -262,35 +264,20 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
 ///
 /// # Errors
 /// When a line cannot be encoded. This does not occur in studies of this project.
-pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let mut head = vec![
-        "case",
-        "variant",
-        "quantity",
-        "solver",
-        "resolution",
-        "knobs",
-        "standing",
-        "error",
-        "wall_seconds",
-        "wall_spread",
-        "cpu_seconds",
-        "start_up_seconds",
-    ];
-    head.extend(Counts::default().named().map(|(name, _)| name));
-    table.write_record(head)?;
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
-    for point in study.diagrams.iter().flat_map(|diagram| &diagram.points) {
-        let mut row: Vec<String> =
-            [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs]
-                .map(Clone::clone)
-                .into();
-        row.push(word(point.standing).to_owned());
+pub fn points_csv(study: &Study) -> io::Result<Vec<u8>> {
+    let columns = ["case", "variant", "quantity", "solver", "resolution", "knobs", "standing"].map(Column::text);
+    let times = ["error", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"].map(Column::number);
+    let counts = Counts::default().named().map(|(name, _)| Column::new(name, Format::Count));
+    let rows = study.diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| {
+        let names = [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs];
+        let mut row: Vec<Cell> = names.map(Cell::from).into();
+        row.push(word(point.standing).into());
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
-        row.extend(times.map(number));
-        row.extend(point.counts.named().map(|(_, count)| count.map_or(String::new(), |count| count.to_string())));
-        table.write_record(row)?;
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+        row.extend(times.map(Cell::from));
+        row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
+        Row::from(row)
+    });
+    let mut bytes = Vec::new();
+    Table::new("points", columns.into_iter().chain(times).chain(counts), rows).csv(&mut bytes)?;
+    Ok(bytes)
 }

@@ -4,8 +4,9 @@ use super::Study;
 use super::page::figure;
 use crate::measured::{Hold, Stability};
 use crate::number;
-use crate::page::scrolling;
 use crate::plot::DrawError;
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
@@ -196,37 +197,18 @@ fn against_exact(limits: &[Limit]) -> Option<Figure> {
 
 /// Renders a table with one row per solver: its largest stable time steps, and its outcomes in hard cases.
 fn totals(lines: &[Hold]) -> Markup {
-    let table = html! {
-        table {
-            thead {
-                tr {
-                    th scope="col" { "Solver" }
-                    th scope="col" { "Largest stable step over the exact limit" }
-                    th.n scope="col" { "Hard cases that hold" }
-                    th.n scope="col" { "at a smaller step" }
-                    th.n scope="col" { "end in an error" }
-                    th.n scope="col" { "wrong without an error" }
-                }
-            }
-            tbody {
-                @for line in lines {
-                    tr {
-                        th scope="row" { (line.solver) }
-                        td {
-                            @if let Some(([low, high], count)) = line.limit {
-                                (number::significant(low, 4)) " … " (number::significant(high, 4)) " in " (count) " assemblies"
-                            } @else { "—" }
-                        }
-                        td.n { (line.holds) " of " (line.asked()) }
-                        td.n { (line.smaller) }
-                        td.n { (line.typed) }
-                        td.n { (line.wrong) }
-                    }
-                }
-            }
-        }
+    let numbers = ["Hard cases that hold", "at a smaller step", "end in an error", "wrong without an error"];
+    let columns = [Column::heading("Solver"), Column::text("Largest stable step over the exact limit")].into_iter();
+    let columns = columns.chain(numbers.map(|name| Column::new(name, Format::Count)));
+    let row = |line: &Hold| {
+        let limit = line.limit.map(|([low, high], count)| {
+            let [low, high] = [low, high].map(|end| number::significant(end, 4));
+            format!("{low} … {high} in {count} assemblies")
+        });
+        let holds = format!("{} of {}", line.holds, line.asked());
+        row![&line.solver, limit, holds, line.smaller, line.typed, line.wrong]
     };
-    scrolling("Totals", &table)
+    Table::new("Totals", columns, lines.iter().map(row)).page("")
 }
 
 /// Renders the section of the page.
@@ -278,31 +260,23 @@ pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
 
 fn matrix(rows: &[HardCaseResult]) -> Markup {
     let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
-    let table = html! {
-        table.cases {
-            thead { tr { th scope="col" { "Case and requirement" } @for solver in &solvers { th scope="col" { (solver) } } } }
-            tbody {
-                @for case in distinct(rows.iter().map(|row| row.case.as_str())) {
-                    tr {
-                        th scope="row" {
-                            (case)
-                            span.title { (rows.iter().find(|row| row.case == case).map_or("", |row| row.must.as_str())) }
-                        }
-                        @for solver in &solvers {
-                            td {
-                                @if let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) {
-                                    @let (symbol, class) = sign(row.standing);
-                                    span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
-                                    @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
-                                }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+    let columns =
+        [Column::heading("Case and requirement")].into_iter().chain(solvers.iter().copied().map(Column::text));
+    let row = |case: &str| {
+        let result = |solver: &&str| {
+            let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) else { return "".into() };
+            let (symbol, class) = sign(row.standing);
+            Cell::from(html! {
+                span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
+                @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
+            })
+        };
+        let must = rows.iter().find(|row| row.case == case).map_or("", |row| row.must.as_str());
+        let name = html! { (case) span.title { (must) } };
+        Row::from([Cell::from(name)].into_iter().chain(solvers.iter().map(result)).collect::<Vec<_>>())
     };
-    scrolling("Hard cases", &table)
+    let cases = distinct(rows.iter().map(|row| row.case.as_str()));
+    Table::new("Hard cases", columns, cases.into_iter().map(row)).page("cases")
 }
 
 fn details_of(rows: &[HardCaseResult]) -> Markup {
@@ -320,41 +294,23 @@ fn details_of(rows: &[HardCaseResult]) -> Markup {
 }
 
 fn limits(rows: &[Limit]) -> Markup {
-    let number = |value: Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));
-    let table = html! {
-        table.rows {
-            thead {
-                tr {
-                    th scope="col" { "Assembly" }
-                    th scope="col" { "Solver" }
-                    th.n scope="col" { "Found" }
-                    th.n scope="col" { "Exact" }
-                    th.n scope="col" { "Error" }
-                    th scope="col" { "Unit" }
-                    th.n scope="col" { "Default" }
-                    th.n scope="col" { "Margin" }
-                    th scope="col" { "How it fails above" }
-                }
-            }
-            tbody {
-                @for row in rows {
-                    tr {
-                        th scope="row" {
-                            (row.scene)
-                            @if let Some(at) = row.at { span.fine { (row.knob) " = " (number::significant(at, 4)) } }
-                        }
-                        td { (row.solver) }
-                        td.n { (number(row.found)) }
-                        td.n { (number(row.exact)) }
-                        td.n { (number::error(row.error)) }
-                        td { (row.unit) }
-                        td.n { (number(row.default)) }
-                        td.n { (number(row.margin)) }
-                        td.wide { (row.detail) }
-                    }
-                }
-            }
-        }
+    let number = |name| Column::new(name, Format::Digits(4));
+    let columns = [
+        Column::heading("Assembly"),
+        Column::text("Solver"),
+        number("Found"),
+        number("Exact"),
+        Column::new("Error", Format::Error),
+        Column::text("Unit"),
+        number("Default"),
+        number("Margin"),
+        Column::text("How it fails above").class("wide"),
+    ];
+    let row = |row: &Limit| {
+        let at = row.at.map(|at| format!("{} = {}", row.knob, number::significant(at, 4)));
+        let scene = html! { (row.scene) @if let Some(at) = at { span.fine { (at) } } };
+        let Limit { solver, found, exact, error, unit, default, margin, detail, .. } = row;
+        row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
     };
-    scrolling("Largest stable steps", &table)
+    Table::new("Largest stable steps", columns, rows.iter().map(row)).page("rows")
 }
