@@ -1,6 +1,5 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
@@ -19,36 +18,15 @@ pub struct ExternalResults {
     /// Version of grainbench, date and machine.
     pub provenance: Provenance,
     /// Results in the order of the registry.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ExternalResult>,
 }
 
-/// A result of an external solver.
+/// A result of an external solver, with the outcome of its negative control.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Row {
-    /// Name of the case.
-    pub case: String,
-    /// Variant of the scene.
-    pub variant: String,
-    /// Resolution in words, such as `dt=.01`.
-    pub resolution: String,
-    /// Measured quantity, in words.
-    pub quantity: String,
-    /// Unit of `value` and `expected`.
-    pub unit: String,
-    /// Measured value; absent if nothing was measured.
-    pub value: Option<f64>,
-    /// Expected value, bound, band or order; absent if it is unknown.
-    pub expected: Option<ExpectedValue>,
-    /// Signed error, divided by the scale of the result.
-    pub error: Option<f64>,
-    /// Largest |error| that passes.
-    pub allowed: f64,
-    /// Outcome of the result.
-    pub verdict: Outcome,
-    /// Reason for an outcome other than pass or fail, or details of a failure, such as the time of the first sample outside
-    /// the tolerance.
-    pub detail: Option<String>,
+pub struct ExternalResult {
+    /// Result of the claim.
+    #[serde(flatten)]
+    pub result: Verdict,
     /// True if the negative control failed as required; absent if the control was not run.
     pub control_red: Option<bool>,
 }
@@ -82,18 +60,8 @@ impl ExternalResults {
             let is_of = |control: &&Control| {
                 (&control.case, &control.variant, &control.quantity) == (&row.case, &row.variant, &row.quantity)
             };
-            Row {
-                case: row.case.clone(),
-                variant: row.variant.clone(),
-                resolution: row.resolution.clone(),
-                quantity: row.quantity.clone(),
-                unit: row.unit.clone(),
-                value: row.value,
-                expected: row.expected,
-                error: row.error,
-                allowed: row.allowed,
-                verdict: row.outcome,
-                detail: row.detail.clone(),
+            ExternalResult {
+                result: row.clone(),
                 control_red: controls().find(is_of).map(|control| control.turned_red),
             }
         };
@@ -107,26 +75,25 @@ impl ExternalResults {
     #[must_use]
     pub fn otherwise(&self, report: &Report) -> Vec<String> {
         let now = Self::from_report(self.program.clone(), String::new(), String::new(), report);
-        let words = |row: &Row| {
+        let words = |row: &ExternalResult| {
             let control = match row.control_red {
                 Some(true) => ", its control red",
                 Some(false) => ", its control not red",
                 None => "",
             };
-            format!("{}{control}", row.verdict.word())
+            format!("{}{control}", row.result.outcome.word())
         };
-        let line = |row: &Row| {
-            let kept = self.rows.iter().find(|kept| {
-                (&kept.case, &kept.variant, &kept.resolution, &kept.quantity)
-                    == (&row.case, &row.variant, &row.resolution, &row.quantity)
-            });
+        let key = |row: &Verdict| [&row.case, &row.variant, &row.resolution, &row.quantity].map(String::clone);
+        let line = |found: &ExternalResult| {
+            let row = &found.result;
+            let kept = self.rows.iter().find(|kept| key(&kept.result) == key(row));
             let words_kept = kept.map_or_else(|| "no such row".to_owned(), words);
-            let found = words(row);
+            let found = words(found);
             let place = || format!("{}/{} · {}", row.case, row.variant, row.quantity);
             if words_kept != found {
                 return Some(format!("{}: {found}; kept: {words_kept}", place()));
             }
-            let errors = kept.and_then(|kept| kept.error).zip(row.error);
+            let errors = kept.and_then(|kept| kept.result.error).zip(row.error);
             let (was, is) = errors.filter(|(was, is)| (was - is).abs() > row.allowed.max(was.abs() * ROUNDING))?;
             Some(format!("{}: {found}, error {is:e}; kept: error {was:e}, allowed {:e}", place(), row.allowed))
         };
@@ -153,15 +120,18 @@ impl ExternalResults {
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
         let mut count = Count::default();
-        for row in self.rows.iter().filter(|row| case.is_none_or(|case| case == row.case)) {
-            match row.verdict.severity() {
+        for ExternalResult { result: row, control_red } in &self.rows {
+            if case.is_some_and(|case| case != row.case) {
+                continue;
+            }
+            match row.outcome.severity() {
                 Severity::Green => count.pass += 1,
                 Severity::Red => count.red += 1,
                 Severity::Amber => count.amber += 1,
             }
-            count.controls += usize::from(row.control_red.is_some());
-            count.controls_red += usize::from(row.control_red == Some(true));
-            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.verdict, row.error) {
+            count.controls += usize::from(control_red.is_some());
+            count.controls_red += usize::from(*control_red == Some(true));
+            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.outcome, row.error) {
                 // An error of zero uses no tolerance, even if none is allowed.
                 let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
                 count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
@@ -182,8 +152,8 @@ impl ExternalResults {
 pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
     let mut cases = Vec::new();
     for row in judged.iter().flat_map(|results| &results.rows) {
-        if !cases.contains(&row.case.as_str()) {
-            cases.push(&row.case);
+        if !cases.contains(&row.result.case.as_str()) {
+            cases.push(&row.result.case);
         }
     }
     cases
@@ -207,6 +177,18 @@ mod tests {
         assert!(count.controls > 0 && count.controls_red <= count.controls);
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
         assert!(ExternalResults::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
+        // Files of earlier versions lack some keys of a result.
+        let mut stored = serde_json::to_value(&judged).unwrap();
+        for row in stored["rows"].as_array_mut().unwrap() {
+            let row = row.as_object_mut().unwrap();
+            for key in ["solver", "scale", "tolerance", "because", "evidence", "source", "severity"] {
+                assert!(row.remove(key).is_some(), "{key}");
+            }
+        }
+        let earlier = ExternalResults::read(&stored.to_string()).unwrap();
+        assert_eq!(earlier.count(None), count);
+        stored["rows"][0].as_object_mut().unwrap().remove("quantity");
+        assert!(ExternalResults::read(&stored.to_string()).is_err());
     }
 
     #[test]

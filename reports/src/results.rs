@@ -1,6 +1,6 @@
 //! Result files for other programs.
 
-use grainbench_harness::verdict::{Control, Severity, Verdict};
+use grainbench_harness::verdict::{Control, Verdict};
 use serde::Serialize;
 use std::io;
 
@@ -12,25 +12,11 @@ use crate::table::{Column, Format, Table};
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
-    verdicts: Vec<Row<'a>>,
+    verdicts: Vec<&'a Verdict>,
     controls: Vec<&'a Control>,
     points: Vec<Point<'a>>,
     /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],
-}
-
-/// A result with its outcome and colour.
-#[derive(Serialize)]
-struct Row<'a> {
-    #[serde(flatten)]
-    verdict: &'a Verdict,
-    severity: Severity,
-}
-
-impl<'a> Row<'a> {
-    const fn new(verdict: &'a Verdict) -> Self {
-        Self { verdict, severity: verdict.outcome.severity() }
-    }
 }
 
 /// Cost of a run: one line of `points.csv`, and one entry of `points` in `results.json`.
@@ -72,7 +58,7 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
-        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).map(Row::new).collect(),
+        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
         controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
         points: points(report).collect(),
         red_because: &report.red_because,
@@ -124,6 +110,7 @@ mod tests {
             "evidence",
             "source",
             "verdict",
+            "severity",
         ] {
             assert!(!row[key].is_null(), "{key}");
         }

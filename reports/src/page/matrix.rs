@@ -6,7 +6,7 @@ use maud::{Markup, html};
 
 use super::cards::{self, meaning};
 use crate::headline::used_tolerance;
-use crate::judged::{ExternalResults, Row};
+use crate::judged::ExternalResults;
 use crate::number;
 use crate::report::{Report, Section};
 use crate::table::{self, scrolling};
@@ -228,12 +228,12 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
 }
 
 fn theirs(results: &ExternalResults, case: &str) -> Markup {
-    let rows: Vec<&Row> = results.rows.iter().filter(|row| row.case == case).collect();
-    let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
+    let outcomes = results.rows.iter().filter(|row| row.result.case == case).map(|row| row.result.outcome);
+    let Some(worst) = outcomes.clone().max_by_key(|outcome| order(*outcome)) else { return html! {} };
     let used = results.count(Some(case)).worst;
-    let counts = counts(rows.iter().map(|row| row.verdict));
+    let counts = counts(outcomes);
     let words = description(case, &results.program, &counts);
-    html! { span class={ (class(worst.verdict, used)) (stripe(&counts)) } title=(words) { (text(worst.verdict, used)) } }
+    html! { span class={ (class(worst, used)) (stripe(&counts)) } title=(words) { (text(worst, used)) } }
 }
 
 #[cfg(test)]

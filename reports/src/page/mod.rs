@@ -21,8 +21,9 @@ pub use cards::meaning;
 use std::collections::BTreeSet;
 
 use grainbench_harness::verdict::{Outcome, Severity};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
 
+use self::section::CaseSection;
 use crate::headline::Headline;
 use crate::plot::{DrawError, markup};
 use crate::report::Report;
@@ -56,26 +57,29 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
     let names = figure_names(report);
-    let mut pieces = vec![budget::Piece::Fixed(String::new())];
+    let mut sections = Vec::new();
     for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
-        pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
+        sections.push(CaseSection::new(section, anchor, names, &mut taken)?);
     }
-    let head = overview::render(report, counts, &anchors, &|_| true).into_string();
+    let contents = contents::render(report, &anchors);
     let studies = questions::sections(&report.measured)?;
-    let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
-    pieces.push(budget::Piece::Fixed(foot));
-    pieces[0] = budget::Piece::Fixed(head.clone());
-    let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
-    let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
-    let below = main.strip_prefix(&head).unwrap_or_default();
-    // Results that were moved out of the page have no anchor in it.
-    let head =
-        overview::render(report, counts, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
+    let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) };
+    // The first screen is largest if the page contains all results.
+    let head = |has_rows: &dyn Fn(&str) -> bool| overview::render(report, counts, &anchors, has_rows);
+    let texts = [&contents, &foot, &head(&|_| true)].map(|part| part.0.len());
+    let fixed = FRAME + CSS.len() + SCRIPT.len() + texts.iter().sum::<usize>();
+    let whole: usize = sections.iter().map(|section| section.render().0.len()).sum();
+    let mut parts: Vec<&mut budget::Part> = sections.iter_mut().flat_map(CaseSection::parts).collect();
+    let own = whole - parts.iter().map(|part| part.whole.0.len()).sum::<usize>();
+    let beside = budget::fit(&mut parts, fixed + own, budget::PAGE);
+    let has_rows = |case: &str| {
+        report.sections.iter().zip(&sections).any(|(section, shown)| section.name == case && shown.has_rows())
+    };
     let body = html! {
         a.skip href="#summary" { "To the summary" }
         div.frame {
-            (contents::render(report, &anchors))
-            main { (PreEscaped(head)) (PreEscaped(below)) }
+            (contents)
+            main { (head(&has_rows)) @for section in &sections { (section) } (foot) }
         }
     };
     Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })

@@ -4,11 +4,11 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
 
 use crate::headline;
-use crate::judged::{self, Count, ExternalResults, Row};
+use crate::judged::{self, Count, ExternalResults};
 use crate::number;
 use crate::report::Report;
 use crate::row;
-use crate::table::{Cell, Column, Row as TableRow, Table};
+use crate::table::{Cell, Column, Row, Table};
 
 /// Renders the section; it is empty if there are no external solvers.
 pub(crate) fn render(report: &Report) -> Markup {
@@ -65,7 +65,7 @@ fn by_case(report: &Report) -> Table<'_> {
     let row = |case| {
         let worst = ours(report, case).map(|worst| number::significant(worst, 2));
         let counts = report.judged.iter().map(|results| Cell::from(cell(&results.count(Some(case)))));
-        TableRow::from([Cell::from(case), worst.into()].into_iter().chain(counts).collect::<Vec<_>>())
+        Row::from([Cell::from(case), worst.into()].into_iter().chain(counts).collect::<Vec<_>>())
     };
     let columns = [Column::heading("Case"), Column::text("ours")].into_iter().chain(programs);
     Table::new("Programs by case", columns, judged::cases(&report.judged).into_iter().map(row))
@@ -82,10 +82,11 @@ fn cell(count: &Count) -> Markup {
 /// Returns the largest |error|/allowed of our results in a case, over the quantities and resolutions that external
 /// solvers also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
-    let asked = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.case == case);
+    let asked = report.judged.iter().flat_map(|results| &results.rows).map(|row| &row.result);
+    let asked = asked.filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {
         let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
-        let is_it = |theirs: &Row| {
+        let is_it = |theirs: &Verdict| {
             (&theirs.variant, &theirs.quantity, &theirs.resolution) == (&row.variant, &row.quantity, &row.resolution)
         };
         is_judged && asked.clone().any(is_it)

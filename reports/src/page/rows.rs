@@ -15,7 +15,7 @@ use crate::table::{Column, head};
 /// in every report.
 pub(crate) fn address(verdict: &Verdict) -> String {
     let mut hasher = blake3::Hasher::new();
-    for part in [&verdict.case, &verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity] {
+    for part in verdict.key() {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }
