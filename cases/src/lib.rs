@@ -17,4 +17,4 @@ pub mod uncertainty;
 mod varied;
 
 pub use grainbench_harness::case::Case;
-pub use registry::runner;
+pub use solvers::runner;

@@ -12,6 +12,7 @@ pub mod deck;
 mod execution;
 pub mod grain_dump;
 pub mod live;
+pub mod names;
 pub mod observer;
 pub mod outputs;
 pub mod outside;

@@ -7,7 +7,8 @@ use grainbench_solver::record::{Column, Series};
 use grainbench_solver::recorder::Recorder;
 
 use crate::clock::Clock;
-use crate::observer::{DumpObserver, DumpRecord, Names};
+use crate::names::Names;
+use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::read_log;

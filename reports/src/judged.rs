@@ -3,7 +3,8 @@
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
-use crate::report::{Provenance, Report};
+use crate::provenance::Provenance;
+use crate::section::Section;
 
 /// Results of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -52,10 +53,10 @@ pub struct Count {
 }
 
 impl ExternalResults {
-    /// Collects the results of a report that contains only this solver.
+    /// Returns the results of all cases, which contain only this solver. `names` are program, version and adapter.
     #[must_use]
-    pub fn from_report(program: String, version: String, adapter: String, report: &Report) -> Self {
-        let controls = || report.sections.iter().flat_map(|section| &section.controls);
+    pub fn new(names: [String; 3], provenance: &Provenance, sections: &[Section]) -> Self {
+        let controls = || sections.iter().flat_map(|section| &section.controls);
         let row = |row: &Verdict| {
             let is_of = |control: &&Control| {
                 (&control.case, &control.variant, &control.quantity) == (&row.case, &row.variant, &row.quantity)
@@ -65,16 +66,17 @@ impl ExternalResults {
                 control_red: controls().find(is_of).map(|control| control.turned_red),
             }
         };
-        let rows = report.sections.iter().flat_map(|section| &section.verdicts).map(row).collect();
-        Self { program, version, adapter, provenance: report.provenance.clone(), rows }
+        let rows = sections.iter().flat_map(|section| &section.verdicts).map(row).collect();
+        let [program, version, adapter] = names;
+        Self { program, version, adapter, provenance: provenance.clone(), rows }
     }
 
-    /// Returns the differences between the stored results and a report of the same solver, one line each. A line states
+    /// Returns the differences between the stored results and present ones of the same solver, one line each. A line states
     /// an outcome or control that differs, a result that is not stored, or an error that changed by more than the
     /// tolerance.
     #[must_use]
-    pub fn otherwise(&self, report: &Report) -> Vec<String> {
-        let now = Self::from_report(self.program.clone(), String::new(), String::new(), report);
+    pub fn otherwise(&self, sections: &[Section]) -> Vec<String> {
+        let now = Self::new([const { String::new() }; 3], &self.provenance, sections);
         let words = |row: &ExternalResult| {
             let control = match row.control_red {
                 Some(true) => ", its control red",
@@ -167,8 +169,11 @@ mod tests {
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
         let report = sample::report();
-        let judged =
-            ExternalResults::from_report("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
+        let judged = ExternalResults::new(
+            ["other", "other 1.0", "hash"].map(str::to_owned),
+            &report.provenance,
+            &report.sections,
+        );
         assert_eq!(ExternalResults::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
@@ -197,12 +202,12 @@ mod tests {
         // The sample report has results of several solvers; an external solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
-        let kept = ExternalResults::from_report("other".to_owned(), String::new(), String::new(), &report);
-        assert_eq!(kept.otherwise(&report), Vec::<String>::new());
+        let kept = ExternalResults::new(["other", "", ""].map(str::to_owned), &report.provenance, &report.sections);
+        assert_eq!(kept.otherwise(&report.sections), Vec::<String>::new());
         report.sections[0].verdicts[0].outcome = Outcome::Stale;
-        let [line] = &kept.otherwise(&report)[..] else { panic!("one row ends otherwise") };
+        let [line] = &kept.otherwise(&report.sections)[..] else { panic!("one row ends otherwise") };
         assert!(line.contains(": stale") && line.contains("; kept: pass"), "{line}");
         report.sections[0].verdicts[0].quantity = "another".to_owned();
-        assert!(kept.otherwise(&report)[0].ends_with("kept: no such row"));
+        assert!(kept.otherwise(&report.sections)[0].ends_with("kept: no such row"));
     }
 }

@@ -5,6 +5,7 @@ pub(crate) mod budget;
 mod cards;
 mod contents;
 pub(crate) mod figures;
+mod layout;
 mod matrix;
 mod overview;
 mod peers;
@@ -17,21 +18,19 @@ pub(crate) mod summary;
 mod tables;
 
 pub use cards::meaning;
+pub use layout::slug;
+use layout::{CSS, SCRIPT};
+pub(crate) use layout::{captioned, rows_of, shell, sign, unique};
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{Outcome, Severity};
-use maud::{DOCTYPE, Markup, PreEscaped, Render, html};
+use maud::{Render, html};
 
 use self::section::CaseSection;
 use crate::headline::Headline;
-use crate::plot::{DrawError, markup};
+use crate::plot::DrawError;
 use crate::report::Report;
 
-/// Style sheet of the page.
-const CSS: &str = include_str!("style.css");
-/// Optional script of the page for search, filters and films.
-const SCRIPT: &str = include_str!("page.js");
 /// Allowance for the HTML tags around the content of the page (bytes).
 const FRAME: usize = 2_000;
 
@@ -85,11 +84,6 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })
 }
 
-/// Returns the anchor of the table with all results of a case.
-pub(crate) fn rows_of(anchor: &str) -> String {
-    format!("{anchor}-rows")
-}
-
 /// Returns the file names of all figures, grouped by section.
 pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
     let mut taken = BTreeSet::new();
@@ -98,62 +92,6 @@ pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
         section.figures.iter().map(|figure| unique(&stem(figure), &mut taken)).collect()
     };
     report.sections.iter().map(section_names).collect()
-}
-
-/// Returns a complete HTML page with the given body.
-pub(crate) fn shell(title: &str, body: &Markup) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                // Without an icon link, a browser would request an icon from the server.
-                link rel="icon" href="data:,";
-                title { (title) }
-                style { (PreEscaped(CSS)) }
-            }
-            body { (body) script { (PreEscaped(SCRIPT)) } }
-        }
-    };
-    markup(&page.into_string())
-}
-
-/// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
-#[must_use]
-pub fn slug(name: &str) -> String {
-    let mut slug = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_alphanumeric() {
-            slug.push(letter.to_ascii_lowercase());
-        } else if !slug.is_empty() && !slug.ends_with('-') {
-            slug.push('-');
-        }
-    }
-    let slug = slug.trim_end_matches('-');
-    if slug.is_empty() { "unnamed" } else { slug }.to_owned()
-}
-
-/// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.
-pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
-    let mut name = stem.to_owned();
-    let mut next = 2;
-    while !taken.insert(name.clone()) {
-        name = format!("{stem}-{next}");
-        next += 1;
-    }
-    name
-}
-
-/// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
-/// colour.
-pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
-    match outcome.severity() {
-        Severity::Green => ("✓", "pass"),
-        Severity::Red => ("✗", "fail"),
-        Severity::Amber => ("▲", "amber"),
-    }
 }
 
 #[cfg(test)]

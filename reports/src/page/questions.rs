@@ -10,7 +10,8 @@ use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
 use crate::report::Report;
 use crate::study::effects::{EffectResult, Entry, change, median};
-use crate::study::stability::{Hardness, distinct, sign};
+use crate::study::stability::{Hardness, distinct};
+use crate::study::stability_page::{self, sign};
 use crate::study::{cost, effects, stability};
 use crate::table::{Cell, Column, Row, Table};
 
@@ -56,7 +57,7 @@ pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
 /// # Errors
 /// When a figure cannot be drawn.
 pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
-    let stable = measured.stability.as_ref().map(stability::tables).transpose()?;
+    let stable = measured.stability.as_ref().map(stability_page::tables).transpose()?;
     let effects = measured.effects.as_ref().map(|effects| effects::heat(&effects.ledger));
     Ok(html! {
         @if stable.is_some() || effects.is_some() {

@@ -1,6 +1,5 @@
 //! Study of effects: the effects that each scene contains, and the error and cost if an effect is left out.
 
-use super::Study;
 use crate::number;
 use crate::row;
 use crate::table::{Cell, Column, Row, Table};
@@ -81,8 +80,8 @@ pub struct Entry {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(study: &Study) -> Markup {
-    let count = |worth: EffectResult| study.ledger.iter().filter(|entry| entry.worth == worth).count();
+pub(crate) fn render(ledger: &[Entry]) -> Markup {
+    let count = |worth: EffectResult| ledger.iter().filter(|entry| entry.worth == worth).count();
     html! {
         header id="summary" {
             p.kicker { "grainbench" }
@@ -98,9 +97,9 @@ pub(crate) fn render(study: &Study) -> Markup {
                 (count(EffectResult::Inert)) " inert, " (count(EffectResult::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }
-            (heat(&study.ledger))
+            (heat(ledger))
             h3 { "All effects" }
-            (table(&study.ledger))
+            (table(ledger))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Cost of a step with 1, 100 and 10,000 grains, without start-up: data, table and figure.
 
-use super::page::figure as framed;
 use crate::number;
+use crate::page::captioned;
 use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Column, Format, Table};
@@ -71,7 +71,7 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
 /// # Errors
 /// When the figure cannot be drawn.
 pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
-    let picture = figure(loads).map(|figure| framed(&figure)).transpose()?;
+    let picture = figure(loads).map(|figure| captioned(&figure)).transpose()?;
     const TIMES: [&str; 4] = ["Start-up", "A step", "A grain in a step", "A simulated second"];
     let columns = [Column::heading("Discs, solver")].into_iter();
     let columns =

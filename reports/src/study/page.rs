@@ -1,14 +1,13 @@
 //! Page of a study.
 
 use super::point::{Diagram, Point, PointStatus};
-use super::{Study, cost, effects, load, stability, step};
+use super::{Study, cost, effects, load, stability_page, step};
 use crate::measured::Costs;
 use crate::number;
-use crate::page::{provenance, shell, slug, summary, unique};
-use crate::plot::{self, DrawError};
+use crate::page::{captioned as figure, provenance, shell, slug, summary, unique};
+use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
-use grainbench_harness::figure::Figure;
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
@@ -29,11 +28,11 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
     let mut title = "what accuracy costs";
     if !(study.limits.is_empty() && study.hard.is_empty()) {
         title = "what stays stable";
-        sections.push(stability::render(study)?);
+        sections.push(stability_page::render(study)?);
     }
     if !study.ledger.is_empty() {
         title = "influence of each effect";
-        sections.push(effects::render(study));
+        sections.push(effects::render(&study.ledger));
     }
     let body = html! {
         main.alone {
@@ -42,16 +41,6 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
         }
     };
     Ok(shell(&format!("grainbench · {title}"), &body))
-}
-
-/// Renders a figure with its caption.
-pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
-    Ok(html! {
-        figure {
-            div class="plot graph" { (PreEscaped(plot::draw(figure)?)) }
-            figcaption { (figure.caption) }
-        }
-    })
 }
 
 /// Returns one sentence for each error, about the cost over all cases.
@@ -83,7 +72,7 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
 
 fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
     let costs = Costs::from_study(study, &|solver| study.sources.get(solver).cloned());
-    let scatters: Vec<Markup> = cost::scatters(study).iter().map(figure).collect::<Result<_, _>>()?;
+    let scatters: Vec<Markup> = cost::scatters(&study.diagrams).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         header id="summary" {
             p.kicker { "grainbench" }
