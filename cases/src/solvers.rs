@@ -8,7 +8,7 @@ use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
 use grainbench_harness::runner::Runner;
-use grainbench_harness::solvers::{Solvers, StoredResult};
+use grainbench_harness::solvers::{References, Solvers, StoredResult};
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::LiveProgram;
@@ -99,6 +99,12 @@ impl Solvers for Registry {
         Program::by_name(name).map_or_else(String::new, |program| LiveProgram::find(program).edition())
     }
 
+    fn references(&self) -> &dyn References {
+        self
+    }
+}
+
+impl References for Registry {
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
     }
