@@ -80,9 +80,7 @@ pub fn points_csv(report: &Report) -> io::Result<Vec<u8>> {
         let (contacts, wall) = (point.contact_evaluations, point.wall_seconds);
         row![case, variant, solver, resolution, time_step, fraction, steps, particle_steps, contacts, wall]
     };
-    let mut bytes = Vec::new();
-    Table::new("points", columns, points(report).map(row)).csv(&mut bytes)?;
-    Ok(bytes)
+    Table::new("points", columns, points(report).map(row)).csv_bytes()
 }
 
 #[cfg(test)]

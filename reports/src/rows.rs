@@ -44,9 +44,7 @@ fn table(report: &Report) -> Table<'_> {
 /// # Errors
 /// When a line cannot be encoded. This does not occur in reports of this project.
 pub fn rows_csv(report: &Report) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    table(report).csv(&mut bytes)?;
-    Ok(bytes)
+    table(report).csv_bytes()
 }
 
 /// Returns the table as Parquet.

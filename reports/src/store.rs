@@ -174,9 +174,7 @@ fn graph_csv(graph: &Graph) -> io::Result<Vec<u8>> {
         }
         curve.points.iter().map(move |(x, y)| row![name, Cell::finite(Some(*x)), Cell::finite(Some(*y))])
     });
-    let mut bytes = Vec::new();
-    Table::new("points", columns, rows).csv(&mut bytes)?;
-    Ok(bytes)
+    Table::new("points", columns, rows).csv_bytes()
 }
 
 impl Report {

@@ -276,7 +276,5 @@ pub fn points_csv(diagrams: &[Diagram]) -> io::Result<Vec<u8>> {
         row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
         Row::from(row)
     });
-    let mut bytes = Vec::new();
-    Table::new("points", columns.into_iter().chain(times).chain(counts), rows).csv(&mut bytes)?;
-    Ok(bytes)
+    Table::new("points", columns.into_iter().chain(times).chain(counts), rows).csv_bytes()
 }
