@@ -1,7 +1,7 @@
 //! Time steps and samples of a deck.
 
-use grainbench_solver::recorder::Recorder;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 
 /// Time steps and samples of a run.
