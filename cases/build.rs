@@ -101,8 +101,12 @@ fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
 /// Returns the code of the case modules and of the registry.
 fn registry(root: &Path) -> Result<String, Failure> {
     let names = folders_with(root, "scene.toml")?;
-    let mut code = String::new();
+    let (mut code, mut heads) = (String::new(), String::new());
     for name in &names {
+        if let Some(head) = head(&root.join(name), name, "case.toml")? {
+            let constant = name.replace('-', "_").to_uppercase();
+            writeln!(heads, "pub(crate) const {constant}: Case = Case {{ {head}..EMPTY }};")?;
+        }
         let module = name.replace('-', "_");
         let file = root.join(name).join("case.rs");
         match of_claims(&root.join(name), name)? {
@@ -110,6 +114,8 @@ fn registry(root: &Path) -> Result<String, Failure> {
             None => writeln!(code, "#[path = {file:?}]\nmod {module};")?,
         }
     }
+    writeln!(code, "/// Cases with the texts of their `case.toml` and without claims.\npub(crate) mod heads {{")?;
+    writeln!(code, "use crate::{{Case, folder::EMPTY}};\n{heads}}}")?;
     writeln!(code, "/// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
     for name in &names {
         writeln!(code, "    &{}::CASE,", name.replace('-', "_"))?;
@@ -119,9 +125,10 @@ fn registry(root: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Returns the Rust code of a case whose claims are in `claims.toml`; `None` if the folder has no such file.
-fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
-    let file = folder.join("claims.toml");
+/// Returns the fields of a case that a file of its folder states, and its scene and derivation, as Rust code. `None` if
+/// the folder has no such file.
+fn head(folder: &Path, name: &str, file: &str) -> Result<Option<String>, Failure> {
+    let file = folder.join(file);
     if !file.is_file() {
         return Ok(None);
     }
@@ -131,19 +138,35 @@ fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
         let text = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
         text.ok_or_else(|| wrong(&format!("expected a text `{key}`")))
     };
-    let [title, claim, weakness] = [text("title")?, text("claim")?, text("weakness")?];
-    let physics = text("physics")?;
+    let [title, claim, physics] = [text("title")?, text("claim")?, text("physics")?];
     let physics = physics[..1].to_uppercase() + &physics[1..];
-    let [claims, scene, derivation] = ["claims.toml", "scene.toml", "derivation.md"].map(|name| folder.join(name));
-    Ok(Some(format!(
-        "static CLAIMS: std::sync::OnceLock<Vec<grainbench_harness::claim::Claim>> = std::sync::OnceLock::new();\n\
-         pub(crate) static CASE: crate::Case = crate::Case {{\n\
-         name: {name:?}, title: {title:?}, claim: {claim:?}, weakness: {weakness:?},\n\
-         physics: grainbench_harness::case::Physics::{physics},\n\
-         scene: include_str!({scene:?}), derivation: include_str!({derivation:?}),\n\
-         claims: &|| CLAIMS.get_or_init(|| crate::folder::claims(&CASE, include_str!({claims:?}))).clone(),\n\
-         ..crate::folder::EMPTY }};\n"
-    )))
+    let mut code = format!(
+        "name: {name:?}, title: {title:?}, claim: {claim:?},\nphysics: grainbench_harness::case::Physics::{physics},\n"
+    );
+    // Cases may share their limitations, which are then in Rust.
+    if table.contains_key("weakness") {
+        writeln!(code, "weakness: {:?},", text("weakness")?)?;
+    }
+    for (key, file) in [("scene", "scene.toml"), ("derivation", "derivation.md")] {
+        let path = folder.join(file);
+        if path.is_file() {
+            writeln!(code, "{key}: include_str!({path:?}),")?;
+        }
+    }
+    Ok(Some(code))
+}
+
+/// Returns the Rust code of a case whose claims are in `claims.toml`; `None` if the folder has no such file.
+fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
+    let claims = folder.join("claims.toml");
+    Ok(head(folder, name, "claims.toml")?.map(|head| {
+        format!(
+            "static CLAIMS: std::sync::OnceLock<Vec<grainbench_harness::claim::Claim>> = std::sync::OnceLock::new();\n\
+             pub(crate) static CASE: crate::Case = crate::Case {{\n{head}\
+             claims: &|| CLAIMS.get_or_init(|| crate::folder::claims(&CASE, include_str!({claims:?}))).clone(),\n\
+             ..crate::folder::EMPTY }};\n"
+        )
+    }))
 }
 
 /// Adds a module for each case that has a `cost.rs`, and the list of the functions in these modules. Each function

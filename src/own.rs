@@ -9,7 +9,7 @@
 //! ```
 
 use grainbench_cases::registry;
-use grainbench_cases::solvers::Registry;
+use grainbench_cases::solvers::{self, Registry};
 use grainbench_harness::conformance;
 use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
@@ -77,11 +77,11 @@ fn names() -> String {
 /// When a case does not exist or has no solver-independent claim.
 pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement, JudgementError> {
     let solver: Arc<dyn Solver> = Arc::new(solver);
-    let solvers: Arc<dyn Solvers> = Arc::new(Registry);
+    let all: Arc<dyn Solvers> = Arc::new(Registry);
     let mut judgement = Judgement::default();
     for &name in cases {
         let case = registry::by_name(name).ok_or_else(|| JudgementError::NoSuchCase(name.to_owned()))?;
-        let runner = registry::runner(case).with_solver(Arc::clone(&solver));
+        let runner = solvers::runner(case).with_solver(Arc::clone(&solver));
         let claims = runner.claims();
         if claims.is_empty() {
             return Err(JudgementError::NothingFair(name.to_owned()));
@@ -92,7 +92,7 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
             judgement.controls.extend(control);
             rows.push(Some(verdict));
         }
-        mistake::explain(case, &solvers, &claims, &mut rows);
+        mistake::explain(case, &all, &claims, &mut rows);
         judgement.verdicts.extend(rows.into_iter().flatten());
     }
     Ok(judgement)

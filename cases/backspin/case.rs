@@ -16,23 +16,8 @@ const VARIANTS: [&str; 2] = ["disc", "sphere"];
 const RIGID: &[Row] =
     &[Row { variant: "disc", rolls: true, lifts: None }, Row { variant: "sphere", rolls: true, lifts: None }];
 
-pub(crate) static CASE: Case = Case {
-    name: "backspin",
-    title: "Backspin",
-    physics: Physics::Rolling,
-    claim: "A spinning grain on a flat plane slides, is accelerated forwards by friction, and finally rolls at f RΩ₀, \
-            with f = 1/3 for a disc and 2/7 for a sphere.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on friction, stiffness or damping, so a solver with a wrong friction \
-               law would pass the claim about it. The displacement depends on friction. The case has one contact and a \
-               constant load.",
-    levels: LEVELS,
-    default_level: LEVELS[2],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BACKSPIN };
 
 const SOURCE: Source =
     Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");

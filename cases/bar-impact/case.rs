@@ -16,22 +16,8 @@ const VELOCITY: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "bar-impact",
-    title: "Two bars meet end to end",
-    physics: Physics::Waves,
-    claim: "Two equal bars collide, are in contact for the time of a wave to the free end and back, and exchange their \
-            velocities.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The faces are flat and aligned with the grid. Contact that starts one cell too early shifts the impact by one \
-               cell over v, and no other claim detects it.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::BAR_IMPACT };
 
 /// Impact velocity (m/s), wave speed (m/s), length (m) and density (kg/m³).
 struct Impact {

@@ -22,22 +22,8 @@ const STOPPED: Source = Source::Derived(
                                          (derivation)",
 );
 
-pub(crate) static CASE: Case = Case {
-    name: "belt",
-    title: "A grain on a belt",
-    physics: Physics::Rolling,
-    claim: "A grain on a belt of speed V slides with the acceleration μ g and then rolls at f V, with f = 1/3 for a \
-            disc and 2/7 for a sphere. When the belt stops, the grain comes to rest.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The final velocity does not depend on friction, stiffness or damping; velocity and displacement during sliding \
-               depend on friction. The case has one contact and a constant load, and the belt moves only along itself.",
-    levels: LEVELS,
-    default_level: LEVELS[2],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BELT };
 
 struct Belt {
     grain: OneGrain,

@@ -8,20 +8,11 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
 
 pub(crate) static CASE: Case = Case {
-    name: "bulk-pairs",
-    title: "Pairs of the round robin of bulk processes",
-    physics: Physics::Contacts,
-    claim: "In oblique impacts between M1, M2 and steel, and at steel walls, force and torque agree with LIGGGHTS in \
-            each step.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Each pair has one impact at one speed and one spin. LIGGGHTS runs without its tangential dashpot, \
-               because our law has none. The tangential dashpots of the published codes are unknown.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures: |_| Ok(Vec::new()),
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::BULK_PAIRS
 };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.

@@ -8,20 +8,8 @@ use grainbench_scene::nalgebra::Vector3;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[2];
 
-pub(crate) static CASE: Case = Case {
-    name: "carried-grain",
-    title: "A grain moves in a circle between two grains",
-    physics: Physics::Rolling,
-    claim: "Tangential springs between grains rotate with their contact: with its normal and about its normal.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "No contact slips. The springs are linear, with equal stiffness along the normal and the tangent.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::CARRIED_GRAIN };
 
 /// Parameters of motion, springs and run that determine the exact position of the carried grain.
 struct Motion {

@@ -23,22 +23,8 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
     logarithmic: true,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "chain",
-    title: "A linear chain, driven at one end",
-    physics: Physics::Waves,
-    claim: "A disturbance travels along a chain of discs with the dispersion of the discrete lattice: bead velocities \
-            follow the Bessel solution to second order in Δt.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The case has one dimension, no friction and linear springs. Contacts never open and grains never rotate. It \
-               tests transport along many contacts and not the contact law.",
-    levels: LEVELS,
-    default_level: LEVELS[3],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::CHAIN };
 
 fn run(level: Level) -> Run {
     Run::new(PLAIN, "dem", level.resolution)

@@ -28,23 +28,8 @@ const HERTZ: Source = Source::Derived("energy and a quadrature of F = kδ^{3/2} 
 const RESTITUTION: Source = Source::Derived("damped oscillator in δ^{5/4}: v′/v = −e (derivation)");
 const SLIDING: Source = Source::Derived("a contact that slides throughout has the impulse μ(1+e) m v_n (derivation)");
 
-pub(crate) static CASE: Case = Case {
-    name: "chung-ooi",
-    title: "Impacts of Hertz spheres",
-    physics: Physics::Contacts,
-    claim: "Elastic impacts have the overlap, force and duration of Hertz. A prescribed coefficient of restitution is \
-            reproduced exactly. Velocity and spin after a sliding contact follow from the friction impulse, on a plane \
-            and between equal and unequal spheres. Angular momentum about the contact is conserved on any branch.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Each impact has one contact. Only friction and restitution influence the sliding branch: any tangential \
-               spring that soon reaches the Coulomb limit passes. Mindlin's stiffness is plotted and not tested.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::CHUNG_OOI };
 
 fn claims() -> Vec<Claim> {
     let mut claims = [elastic(), restitution(), oblique(), rigid(), turning::claims(), fair::claims()].concat();

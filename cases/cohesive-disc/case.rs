@@ -10,22 +10,8 @@ const STRENGTH: Source = Source::Derived(
     "rolls iff m g sin θ/3 ≤ μ m g cos θ + c (derivation; the strength is Cundall & Strack 1979, eq. 19)",
 );
 
-pub(crate) static CASE: Case = Case {
-    name: "cohesive-disc",
-    title: "A cohesive disc on an inclined plane",
-    physics: Physics::Rolling,
-    claim: "Cohesion adds to the strength of a contact: the threshold between rolling and sliding is correct to a \
-            thousandth, and beyond it the slip grows at the exact rate.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Cohesion is here a shear strength without load, and only for overlapping grains. Tension is not tested, because \
-               this law has none.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::COHESIVE_DISC };
 
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {

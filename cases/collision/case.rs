@@ -12,23 +12,8 @@ const LEVELS: &[Level] =
 const FINEST: Level = LEVELS[3];
 const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-zeta.2"];
 
-pub(crate) static CASE: Case = Case {
-    name: "collision",
-    title: "Two discs collide",
-    physics: Physics::Contacts,
-    claim: "A linear spring and dashpot give the restitution of their closed form, with and without tension of the \
-            dashpot at release. Momentum is conserved to rounding, and angular momentum too if the tangential forces \
-            act at one point.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The restitution is one number of a head-on impact. Damping that depends on the overlap could give the same \
-               value at this speed. The case has two grains of similar mass and no wall.",
-    levels: LEVELS,
-    default_level: LEVELS[3],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::COLLISION };
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();

@@ -17,21 +17,8 @@ const DISPLACEMENT: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "column",
-    title: "A column under its own weight",
-    physics: Physics::Bodies,
-    claim: "A column vibrates about its static shape with the period 4H/c, and comes to rest with the stress of its \
-            weight.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Small strain, one direction, no contact.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::COLUMN };
 
 /// Height (m), density (kg/m³), modulus (Pa) and gravity (m/s²).
 struct Column {

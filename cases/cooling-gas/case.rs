@@ -9,22 +9,8 @@ use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
-pub(crate) static CASE: Case = Case {
-    name: "cooling-gas",
-    title: "A gas that cools",
-    physics: Physics::Flows,
-    claim: "Ten thousand smooth discs with e = .9 lose their energy according to Haff's law, at the rate of hard \
-            discs. LAMMPS and LIGGGHTS have the same cooling rate for the same gas.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The result is a mean over the gas, so an error in one of a hundred collisions is invisible. The gas has fifteen \
-               collisions per disc. Clusters form later and are not tested.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::COOLING_GAS };
 
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.

@@ -6,22 +6,8 @@ use grainbench_scene::scene::Duration;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
 
-pub(crate) static CASE: Case = Case {
-    name: "disc-gas",
-    title: "A gas of discs",
-    physics: Physics::Flows,
-    claim: "Without damping and friction the sum of kinetic and elastic energy is conserved over 10⁵ steps and \
-            hundreds of collisions.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "A wrong conservative force would pass, and so would a grain that crosses another grain. Few discs are in \
-               contact at the same time.",
-    levels: LEVELS,
-    default_level: LEVELS[2],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::DISC_GAS };
 
 /// Time steps of the runs in the figure, as fractions of the critical time step.
 const FRACTIONS: [f64; 3] = [0.1, 0.03, FINEST];

@@ -29,23 +29,8 @@ const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
 
-pub(crate) static CASE: Case = Case {
-    name: "disk-chains",
-    title: "Chains of discs, struck at one end",
-    physics: Physics::Waves,
-    claim: "The arrival times of the force at the contacts of a line and of a zig-zag of discs follow from the modes \
-            of the assembly. A sticking zig-zag, and the line, transmit the force faster than a slipping zig-zag.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "In DEM a disc is one mass on springs, without internal stress waves or fringes. The arrival at a contact \
-               depends on the chosen stiffness. The paper gives the order of the speeds from fringes and prints no arrival \
-               times.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::DISK_CHAINS };
 
 /// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {

@@ -20,24 +20,8 @@ use zones::{COUNTED, ZONES};
 
 const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) }];
 
-pub(crate) static CASE: Case = Case {
-    name: "drum-mixing",
-    title: "Mixing in a rotating drum",
-    physics: Physics::Flows,
-    claim: "From the published start, the number of small spheres in the lower quarter of the drum agrees with \
-            LIGGGHTS and MUSEN at every tenth of a second up to one second. In a small drum the bed moves as in \
-            LIGGGHTS.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The published initial state is not part of the repository. Without it the claims that need it are \
-               `not-available`. The remaining claims test 0.06 s of a small drum with little mixing. After 1 s the \
-               published codes differ by more than 1 %, and nothing is tested.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::DRUM_MIXING };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];

@@ -22,22 +22,8 @@ const RADIAL: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "expanding-ring",
-    title: "An expanding ring",
-    physics: Physics::Bodies,
-    claim: "An elastic ring with an initial outward velocity vibrates with the frequency of its breathing mode, thin \
-            or thick, and keeps its amplitude and energy.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Small strain and one mode. Shear has little influence. Large rotations do not occur. Two points \
-               represent the ring.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::EXPANDING_RING };
 
 /// Breathing mode of a ring, U(r) = σ_Y(b) J₁(kr) − σ_J(b) Y₁(kr). σ_J(b) and σ_Y(b) are the stresses σ_rr of J₁(kr)
 /// and Y₁(kr) at the outer radius b.

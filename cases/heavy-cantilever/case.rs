@@ -16,22 +16,8 @@ const SINKING: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "heavy-cantilever",
-    title: "A heavy cantilever",
-    physics: Physics::Bodies,
-    claim: "A strip whose weight is ten times EI/L³ per length comes to rest in the shape of the elastica, .70 of its \
-            length below its clamp, and stays there, although its upper face is under tension.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The strain at the clamp is a tenth, which the elastica neglects. One position represents the whole \
-               strip.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::HEAVY_CANTILEVER };
 
 /// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]

@@ -14,22 +14,8 @@ const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 /// Number of beads between the two probed contacts.
 const BEADS: f64 = 40.0;
 
-pub(crate) static CASE: Case = Case {
-    name: "hertz-chain",
-    title: "A solitary wave in a chain of spheres",
-    physics: Physics::Waves,
-    claim: "A pulse in a chain of touching Hertz spheres travels at a speed ∝ F^{1/6} with the coefficient of the discrete \
-            chain.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "One dimension, no friction, no damping. A wrong E* changes speed and force together, and the coefficient \
-               depends only on its cube root.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::HERTZ_CHAIN };
 
 /// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave. The time
 /// step is adapted to the contact stiffness at the overlap of the wave: Δt ∝ v^{-1/5}. The critical time step refers to

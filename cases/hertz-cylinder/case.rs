@@ -21,19 +21,11 @@ const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");
 
 pub(crate) static CASE: Case = Case {
-    name: "hertz-cylinder",
-    title: "An elastic cylinder on an elastic block",
-    physics: Physics::Bodies,
-    claim: "A cylinder pressed on a block of another modulus has the contact width and the peak pressure of Hertz.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Hertz's theory assumes half-spaces and small strain. Bodies of 8 b and strains of 5 % leave an error of 1 to 2 \
-               %. The stress of material points one cell below the surface is not the surface traction.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::HERTZ_CYLINDER
 };
 
 /// Half-width (m) and peak pressure (Pa) of a contact between half-spaces.

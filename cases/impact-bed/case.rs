@@ -34,27 +34,12 @@ const DERIVATION: &str = {
 };
 
 pub(crate) static CASE: Case = Case {
-    name: "impact-bed",
-    title: "Impact of a ball on a bed",
-    physics: Physics::Flows,
-    claim: "The position and the rebound of a steel ball that falls into a bed of 25,000 spheres agree with seven \
-            codes of the round robin of 2024, within the spread between codes and between beds.",
-    scene: include_str!("scene.toml"),
     derivation: DERIVATION,
-    weakness: "The preparation of the published beds is unknown. Our beds are filled with a friction of 0.1, which \
-               gives the published packing fraction of about 0.60; the ball penetrates a looser bed farther. After 35 \
-               ms the results depend more on the bed than on the code, and on the grain caught between ball and floor: \
-               two of five beds rebound more slowly than the spread allows. Restitution is hardly tested: e = 0.9 \
-               moves the ball by 0.2 mm at 30 ms, because friction dissipates nearly everything, and the data contains \
-               only the height of the ball, not its energy. A bed of 100,000 spheres is tested at 30 ms only; at rest \
-               the ball lies 1.5 to 2 mm deeper in our bed. In our beds of 50,000 spheres the ball is 1 mm deeper at \
-               30 ms, because their filling differs from the published one. These beds are therefore tested only with \
-               the published data, which was not available during development.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::IMPACT_BED
 };
 
 /// Time step of most claims.

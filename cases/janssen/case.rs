@@ -16,23 +16,8 @@ const LEVELS: &[Level] = &[
     Level { name: "dt=3e-4 s", resolution: Resolution::TimeStep(3e-4) },
 ];
 
-pub(crate) static CASE: Case = Case {
-    name: "janssen",
-    title: "Janssen's silo",
-    physics: Physics::Packings,
-    claim: "The floor of a column of spheres that slides down its side carries the load of Janssen's law, with the \
-            mobilised friction and the stress ratio measured at half height. Without friction the floor carries all of \
-            the weight. LAMMPS gives the same loads from the same start.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Janssen's law is a model. It assumes a constant stress ratio K over the height, which is correct here to a few \
-               per cent. The filling is one random sample.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::JANSSEN };
 
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");

@@ -14,22 +14,8 @@ const STEP: Resolution = Resolution::TimeStep(1e-4);
 const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 
-pub(crate) static CASE: Case = Case {
-    name: "mesh-seam",
-    title: "A sphere on a mesh",
-    physics: Physics::Walls,
-    claim: "The seams of coplanar triangles have no effect on a rolling sphere. A mesh of a plane gives the result of \
-            the plane to 1e-9. At ridges, at corners and inside corners the mesh acts like the solid that it bounds.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The floors are flat and the angles are right angles. A surface with many small angles, such as a drum of \
-               facets, has its own solution and is not compared with the smooth one.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::MESH_SEAM };
 
 fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> =

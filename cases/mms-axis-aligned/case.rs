@@ -19,21 +19,11 @@ const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
 pub(crate) static CASE: Case = Case {
-    name: "mms-axis-aligned",
-    title: "Manufactured motion along an axis",
-    physics: Physics::Bodies,
-    claim: "Displacements converge at second order with smooth basis functions; with hat functions the error stalls, \
-            as expected.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The motion is periodic and along the grid: no boundary, no shear, no rotation. The order is the order in the \
-               cell size, at a tenth of the Courant limit and with many points per cell. With the default step and few points \
-               the order decreases beyond 64 cells.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::MMS_AXIS_ALIGNED
 };
 
 fn runs(solver: &'static str, points: u32) -> Vec<Run> {

@@ -30,23 +30,11 @@ const MODES: Source =
     Source::Derived("modal solution of the nine discs without slip (derivation), of Cundall & Strack 1979, Fig. 5");
 
 pub(crate) static CASE: Case = Case {
-    name: "nine-discs",
-    title: "Nine discs in a box",
-    physics: Physics::Contacts,
-    claim: "Compressed without slip, nine discs come to rest at closed-form forces and oscillate in two known modes: \
-            the solver follows the continuous solution to second order in Δt and the exact solution of its cycle to \
-            rounding. The findings of the paper on loading speed, damping, stiffness ratio and friction angle are \
-            reproduced.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "By symmetry no disc rotates, so inertia and lever arm have no influence before the distortion. The curves of \
-               the distortion are compared only with statements of the paper. Contacts never open. A code that treats all \
-               discs alike but detects contacts wrongly in irregular packings would pass.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::NINE_DISCS
 };
 
 fn claims() -> Vec<Claim> {

@@ -9,20 +9,11 @@ const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), f
 const VARIANTS: [&str; 2] = ["elastic", "damped"];
 
 pub(crate) static CASE: Case = Case {
-    name: "oblique-impact",
-    title: "A disc meets a wall at an angle",
-    physics: Physics::Rolling,
-    claim: "A disc that slips on a wall throughout an impact leaves with the velocities that Coulomb's limit on the whole \
-            normal force gives, elastic or damped.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The disc slips all the time, so the tangential stiffness and the history of sticking have no influence. The \
-               case has one plane wall and one angle.",
     levels: LEVELS,
     default_level: LEVELS[2],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::OBLIQUE_IMPACT
 };
 
 /// Velocities after the impact.

@@ -20,22 +20,11 @@ const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells
 const STEP: Resolution = Resolution::TimeStep(5e-3);
 
 pub(crate) static CASE: Case = Case {
-    name: "photoelastic-packing",
-    title: "197 discs between four walls",
-    physics: Physics::Packings,
-    claim: "Packings of the discs of the photoelastic test, with the ratio of wall forces of its stage A, are in \
-            equilibrium. After shear until the vertical force has grown by 4.348 %, the horizontal force is between \
-            the value of the experiment and the largest value of the paper's runs. LAMMPS and LIGGGHTS give the same \
-            forces from the same start. Elastic discs, whose contacts need no stiffness, behave like discs on springs.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The photographed packing is lost. The random packings have its grain sizes but not its positions, so \
-               single forces cannot be compared. The range of F_H/F_V is wide, and stage A determines much of it.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::PHOTOELASTIC_PACKING
 };
 
 /// Packings with the parameters of each table of the paper. Eleven packings were tried for each table. The lists

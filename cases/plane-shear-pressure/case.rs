@@ -18,21 +18,11 @@ const LEVELS: &[Level] = &[
 ];
 
 pub(crate) static CASE: Case = Case {
-    name: "plane-shear-pressure",
-    title: "Plane shear at a given pressure",
-    physics: Physics::Flows,
-    claim: "A layer that is sheared under a pressed lid carries the pressure of the lid and the shear stress of its walls \
-            everywhere. Its friction and packing fraction depend on the inertial number alone, and agree with LAMMPS \
-            from the same start.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "With 420 discs the walls are ten diameters from the middle. The mean of one run is one random sample; the \
-               tolerances come from the spread over packings. There is no published curve to compare with.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::PLANE_SHEAR_PRESSURE
 };
 
 /// Variants, each with its approximate inertial number.

@@ -13,24 +13,8 @@ const LEVELS: &[Level] = &[
     Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
 ];
 
-pub(crate) static CASE: Case = Case {
-    name: "plane-shear",
-    title: "Ten thousand discs in plane shear",
-    physics: Physics::Flows,
-    claim: "In the conventions of LAMMPS and LIGGGHTS a dense, polydisperse, frictional and damped packing in shear \
-            moves as in these programs until rounding differences dominate. Afterwards it has the same mean energy, \
-            stress and coordination.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The references are other programs and not an exact solution, so a common error is invisible. After the \
-               horizon the packing is still accelerating. Therefore only differences between runs are judged \
-               statistically, not the means.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::PLANE_SHEAR };
 
 /// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";

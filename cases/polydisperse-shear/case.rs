@@ -35,23 +35,11 @@ const LEVELS: &[Level] = &[
 ];
 
 pub(crate) static CASE: Case = Case {
-    name: "polydisperse-shear",
-    title: "A sheared slab of 369 grains",
-    physics: Physics::Flows,
-    claim: "Grains that stick to each other yield several times as much as grains with friction, which roll and slide \
-            past each other in a band at the moving side. The work of the walls is stored or dissipated by plastic \
-            flow and friction, with very little numerical loss.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The packing of the paper is not printed. Our packing has the printed sizes. Results differ between \
-               packings by factors of two to three, so ratios are compared. The long tier tests findings of the paper \
-               on half of its grid and over five packings. Grains two cells across do not resolve their internal \
-               stress.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::POLYDISPERSE_SHEAR
 };
 
 fn claims() -> Vec<Claim> {

@@ -22,20 +22,8 @@ const SPEED: f64 = 0.001;
 /// Duration of the run (s).
 const TIME: f64 = 20.0;
 
-pub(crate) static CASE: Case = Case {
-    name: "pressed-block",
-    title: "A block that yields is pressed between smooth sides",
-    physics: Physics::Bodies,
-    claim: "A compressed block flows according to von Mises with hardening. Its volume changes only elastically.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "One direction of flow and no rotation. Objective stress rates are not tested.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::PRESSED_BLOCK };
 
 /// Means over the points in the middle half of the block at the end. All points have the same mass.
 #[derive(Default)]

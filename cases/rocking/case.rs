@@ -6,21 +6,8 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case = Case {
-    name: "rocking",
-    title: "Rolling springs",
-    physics: Physics::Rolling,
-    claim: "The rolling spring yields at its limit, and a grain then rocks about its rest position. The stored angle \
-            belongs to the contact, for either order of the grains.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The scene has no rolling dashpot.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROCKING };
 
 /// Parameters of a sphere that rolls to rest.
 struct RollToRest {

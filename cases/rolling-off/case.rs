@@ -5,21 +5,8 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case = Case {
-    name: "rolling-off",
-    title: "A ball rolls off a fixed ball",
-    physics: Physics::Rolling,
-    claim: "A ball that rolls off another ball separates at the angle of the exact solution, cos θ = (10/17) cos θ₀ if \
-            it is rough, and according to Coulomb's law if it slips.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The point of separation is computed from the final spin and velocity, not from the contact itself.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROLLING_OFF };
 
 /// Fixed ball and rolling ball.
 struct Balls {

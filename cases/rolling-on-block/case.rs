@@ -7,19 +7,11 @@ use grainbench_harness::source::CitedNumber;
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 
 pub(crate) static CASE: Case = Case {
-    name: "rolling-on-block",
-    title: "A disc rolls on a deformable block",
-    physics: Physics::Rolling,
-    claim: "Between two deformable bodies the disc rolls as on a rigid plane: a deformable body at the contact does \
-            not reduce the accuracy.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The elastic reference is a prototype of the same family of methods and not a closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::ROLLING_ON_BLOCK
 };
 
 /// One slope with its reference.

@@ -12,19 +12,11 @@ const FLAT: [&str; 2] = ["sphere", "disc"];
 const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 
 pub(crate) static CASE: Case = Case {
-    name: "rolling-resistance",
-    title: "Rolling resistance",
-    physics: Physics::Rolling,
-    claim: "A rolling grain decelerates at μ_r g/(1 + i), and stays at rest on a slope up to tan θ = μ_r.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Only the limit of the rolling moment has an influence. The stiffness of the rolling spring differs between \
-               LIGGGHTS and other codes; it changes the last motion of a grain and no tested quantity.",
     levels: LEVELS,
     default_level: STEP,
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::ROLLING_RESISTANCE
 };
 
 fn rolling_friction(scene: &Scene) -> f64 {

@@ -9,21 +9,11 @@ use grainbench_scene::scene::Duration;
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 
 pub(crate) static CASE: Case = Case {
-    name: "settled-column",
-    title: "Spheres settle in a column",
-    physics: Physics::Packings,
-    claim: "Two thousand spheres that fall into a column come to rest, walls and floor carry their weight, and \
-            packing fraction and coordination agree with LAMMPS and LIGGGHTS within the spread of one column.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The results are sums over one column. An error smaller than the spread between columns is invisible. The load \
-               on the floor and the stress ratio have no claims: they scatter by 10 %, and friction hardly changes them in \
-               such a short column. The height is the height of the centre of mass.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SETTLED_COLUMN
 };
 
 /// Variants with columns from different random seeds. The spread between them gives the tolerances.

@@ -12,22 +12,11 @@ const LEVELS: &[Level] = &[
 ];
 
 pub(crate) static CASE: Case = Case {
-    name: "silo-discharge",
-    title: "Discharge of a silo",
-    physics: Physics::Flows,
-    claim: "A silo of 100,000 spheres (own filling) discharges through the large orifice at the mean rate of LIGGGHTS \
-            and MUSEN in the 2024 round robin, and through the small one at the rate of MUSEN.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The filling is our own: one of 100,000 spheres and five of 40,000. Curves are available for only two of \
-               the eight published codes; the mean of all codes, as quoted elsewhere, is 4.7 % below these two. The \
-               law has no rolling friction, which has the largest influence on the rates. The control of sliding \
-               without friction uses only 40,000 spheres; the large fillings use the other orifice as control.",
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SILO_DISCHARGE
 };
 
 /// Variant with the small orifice.

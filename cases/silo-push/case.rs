@@ -9,19 +9,12 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 
 pub(crate) static CASE: Case = Case {
-    name: "silo-push",
-    title: "Wide silo, pushed from below: averages over granular elements",
-    physics: Physics::Flows,
-    claim: "Elements of 2.5 d in a pushed deposit have the friction and the packing fraction of an independent \
-            prototype, and of LAMMPS from the same deposit.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SILO_PUSH
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };

@@ -9,19 +9,12 @@ use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = Case {
-    name: "silo-tall",
-    title: "Tall silo, drained: averages over granular elements",
-    physics: Physics::Flows,
-    claim: "Dilation, shear and stress of elements of 2.5 d in a draining silo agree with an independent prototype, \
-            and with LAMMPS from the same deposit.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SILO_TALL
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };

@@ -9,19 +9,12 @@ use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = Case {
-    name: "silo-wide",
-    title: "Wide silo, drained: averages over granular elements",
-    physics: Physics::Flows,
-    claim: "Elements of 2.5 d in a wide draining silo lie on the curves of the tall silo, as in an independent \
-            prototype, and in LAMMPS from the same deposit.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
     weakness: WEAKNESS,
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SILO_WIDE
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };

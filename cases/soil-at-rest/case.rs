@@ -6,21 +6,8 @@ use grainbench_scene::body::BlockShape;
 const LEVELS: &[Level] = &[cells("H/4", 4.0, 3), cells("H/8", 8.0, 3), cells("H/10", 10.0, 3)];
 const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg carries the weight (derivation)");
 
-pub(crate) static CASE: Case = Case {
-    name: "soil-at-rest",
-    title: "Soil at rest",
-    physics: Physics::Bodies,
-    claim: "Soil that starts with the stress of its own weight does not move, on any grid.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The soil is at rest. The case tests the initial state, the sign of the stress and fixed boundaries, but \
-               no motion.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::SOIL_AT_REST };
 
 /// Returns the height of the soil (m), and the settlement of its top, ρgH²/2M (m), if the soil starts without stress.
 fn soil(scene: &Scene) -> Option<[f64; 2]> {

@@ -17,19 +17,11 @@ const FLAT: &str = "nodal contact acts before surfaces touch and supports the sp
                     body's own normal";
 
 pub(crate) static CASE: Case = Case {
-    name: "sphere-on-block",
-    title: "A sphere rolls on a deformable plane",
-    physics: Physics::Rolling,
-    claim: "Between two deformable bodies in space the sphere rolls and slips as on a rigid plane, with backspin too; \
-            the nodal contacts of the papers have their known errors.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The elastic reference is a prototype of the same family of methods, on a rigid plane, and not a closed form.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SPHERE_ON_BLOCK
 };
 
 /// One slope with its references.

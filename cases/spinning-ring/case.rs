@@ -10,22 +10,8 @@ const LEVELS: &[Level] = &[cells("t/4", 4.0, 3)];
 const LAWS: [&str; 3] = ["hypoelastic", "metal", "rubber"];
 const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain (derivation)");
 
-pub(crate) static CASE: Case = Case {
-    name: "spinning-ring",
-    title: "A spinning ring",
-    physics: Physics::Bodies,
-    claim: "A spinning ring conserves its angular momentum and expands by the strain of the centrifugal forces, for \
-            laws of the total deformation and for rate laws.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Two dimensions, small strain, one turn. The sum over all points is insensitive to errors that do not \
-               change the second moment.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::SPINNING_RING };
 
 /// Ring that rotates about its centre.
 #[derive(Clone, Copy, Debug)]

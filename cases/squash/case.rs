@@ -23,22 +23,8 @@ const FORCES: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "squash",
-    title: "Two discs squashed between two walls",
-    physics: Physics::Contacts,
-    claim: "The calculation cycle is that of the 1979 paper: the forces of the first three cycles, and of 200 cycles, \
-            follow from the equations of the paper to rounding.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "One dimension, no friction, no rotation and no opening contact. The case tests the order of operations in a \
-               cycle and not contact detection: a code that detects contacts one step late would pass.",
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::SQUASH };
 
 fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)

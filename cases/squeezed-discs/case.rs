@@ -19,19 +19,11 @@ const SOURCE: Source = Source::Derived(
 );
 
 pub(crate) static CASE: Case = Case {
-    name: "squeezed-discs",
-    title: "Nine elastic discs squeezed",
-    physics: Physics::Bodies,
-    claim: "Elastic discs press on each other and on walls with the exact elastic force, equal at all contacts.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "At a squeeze of 0.01 R the contacts are narrower than a cell, and the force depends on the position of the \
-               grid.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::SQUEEZED_DISCS
 };
 
 /// Returns the distance by which each wall moves in (m).

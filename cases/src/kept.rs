@@ -3,7 +3,7 @@
 //! repeated only by commands that select its tier.
 
 use crate::registry::CASES;
-use crate::solvers::is_program;
+use crate::stored::is_program;
 use flate2::read::GzDecoder;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;

@@ -1,7 +1,7 @@
 //! Benchmark cases: scenes, levels of resolution, claims and their negative controls.
 //!
-//! A case is a folder beside `src` with `scene.toml`, its claims (`case.rs` or `claims.toml`) and `derivation.md`. The
-//! registry contains every folder that has a `scene.toml`.
+//! A case is a folder beside `src` with `scene.toml`, its claims (`claims.toml`, or `case.rs` with `case.toml`) and
+//! `derivation.md`. The registry contains every folder that has a `scene.toml`.
 
 pub mod exact;
 pub mod folder;
@@ -17,4 +17,4 @@ pub mod uncertainty;
 mod varied;
 
 pub use grainbench_harness::case::Case;
-pub use registry::runner;
+pub use solvers::runner;

@@ -1,7 +1,6 @@
 //! Registry of cases. Each folder with a `scene.toml` is a case.
 
 use grainbench_harness::case::{Case, Home, SceneCache};
-use grainbench_harness::runner::Runner;
 use grainbench_harness::subject::{TargetQuantity, from_claims};
 use grainbench_reference::data::folder;
 use grainbench_reference::{DataFile, parse_data};
@@ -11,7 +10,6 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Name of a case and the function in its `cost.rs`, which returns the target quantities of the cost study.
 type TargetFunction = (&'static str, fn() -> Vec<TargetQuantity>);
@@ -27,12 +25,6 @@ static MADE: SceneCache = SceneCache::new(Vec::new());
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static Case> {
     CASES.iter().copied().find(|case| case.name == name)
-}
-
-/// Returns a runner of a case with the solvers of [`crate::solvers::Registry`].
-#[must_use]
-pub fn runner(case: &'static Case) -> Runner {
-    Runner::new(case, Arc::new(crate::solvers::Registry))
 }
 
 /// Returns the target quantities of a case for the cost study: those of its `cost.rs`, or else those of its claims.

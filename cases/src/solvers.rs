@@ -1,12 +1,14 @@
 //! The registry of solvers.
 
+pub use crate::stored::is_program;
 use crate::{kept, stored, uncertainty, varied};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::Run;
-use grainbench_harness::solvers::{Solvers, StoredResult};
+use grainbench_harness::runner::Runner;
+use grainbench_harness::solvers::{References, Solvers, StoredResult};
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::data::missing;
 use grainbench_reference::deck::Program;
@@ -98,6 +100,12 @@ impl Solvers for Registry {
         Program::by_name(name).map_or_else(String::new, |program| LiveProgram::find(program).edition())
     }
 
+    fn references(&self) -> &dyn References {
+        self
+    }
+}
+
+impl References for Registry {
     fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
         stored::record(case, run, scene)
     }
@@ -125,8 +133,8 @@ impl Solvers for Registry {
     }
 }
 
-/// Returns true for the solver names `lammps` and `liggghts`.
+/// Returns a runner of a case with the solvers of [`Registry`].
 #[must_use]
-pub fn is_program(name: &str) -> bool {
-    Program::by_name(name).is_some()
+pub fn runner(case: &'static Case) -> Runner {
+    Runner::new(case, Arc::new(Registry))
 }

@@ -81,6 +81,12 @@ pub fn id(case: &Case, run: &Run) -> String {
     words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
 }
 
+/// Returns true for the solver names `lammps` and `liggghts`.
+#[must_use]
+pub fn is_program(name: &str) -> bool {
+    Program::by_name(name).is_some()
+}
+
 /// Returns true if there is a folder with the stored run.
 #[must_use]
 pub fn exists(case: &Case, run: &Run) -> bool {

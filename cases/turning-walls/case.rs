@@ -8,21 +8,8 @@ use std::f64::consts::TAU;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.02", 0.02)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case = Case {
-    name: "turning-walls",
-    title: "Grains on rotating walls",
-    physics: Physics::Rolling,
-    claim: "Grains at rest relative to rotating walls stay at rest relative to them: friction, tangential springs and \
-            rolling resistance include the spin of the walls.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Linear springs without dashpots, and one grain at a time.",
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::TURNING_WALLS };
 
 /// Returns the angular velocity of the walls (rad/s).
 fn spin(scene: &Scene) -> Vector3<f64> {

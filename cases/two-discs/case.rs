@@ -9,22 +9,8 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 /// Time of first contact of the discs of the Sulsky variant (s): 3 − √2.
 const TOUCH: f64 = 3.0 - SQRT_2;
 
-pub(crate) static CASE: Case = Case {
-    name: "two-discs",
-    title: "Two elastic discs collide",
-    physics: Physics::Bodies,
-    claim: "Contact of elastic discs begins when their surfaces touch and conserves energy and momentum. The rebound \
-            lacks only the energy of vibration, and friction gives the correct spins.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Restitution and spin come from an independent prototype of the same family of methods and not from a closed \
-               form.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::TWO_DISCS };
 
 /// Courant number: time step divided by the transit time of a wave through a cell. It is smaller than usual because of
 /// the contact springs and the waves of an impact.

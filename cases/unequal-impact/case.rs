@@ -8,20 +8,11 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.02", 0.02), fra
 const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
 
 pub(crate) static CASE: Case = Case {
-    name: "unequal-impact",
-    title: "A small grain meets a large one at an angle",
-    physics: Physics::Rolling,
-    claim: "Friction between grains of unequal size gives both the same impulse, and each grain a spin with its own \
-            lever arm.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "The grains slip all the time and have no dashpots: neither sticking nor a restitution below 1 is \
-               tested.",
     levels: LEVELS,
     default_level: LEVELS[1],
     claims: &claims,
     figures,
-    home: &crate::registry::HOME,
+    ..crate::registry::heads::UNEQUAL_IMPACT
 };
 
 /// Parameters and exact values of the impact.

@@ -42,21 +42,8 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     ..VELOCITY
 };
 
-pub(crate) static CASE: Case = Case {
-    name: "vibrating-bar",
-    title: "A bar vibrates along its length",
-    physics: Physics::Waves,
-    claim: "A bar in its first mode keeps its period, its amplitude and its energy. With viscous material it decays at \
-            the exact rate. A stretched and released bar follows the front that runs through it.",
-    scene: include_str!("scene.toml"),
-    derivation: include_str!("derivation.md"),
-    weakness: "Small strain, one direction, no contact.",
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures: no_more,
-    home: &crate::registry::HOME,
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::VIBRATING_BAR };
 
 /// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
 pub(crate) fn mode(scene: &Scene) -> (f64, f64) {

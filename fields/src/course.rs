@@ -4,36 +4,14 @@ use crate::average::{Mean, mean};
 use crate::column::{COLUMNS, Column, Grains};
 use crate::contact_stress::{Stress, tells_interval};
 use crate::element::{Element, elements_moving, interpolated, mean_grain};
+pub use crate::frame::Frame;
 use crate::grid::Grid;
-use crate::mask::{MaskReasons, Masks};
+use crate::mask::Masks;
 use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
 use grainbench_scene::dimension::Dimension;
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, Vector3};
-
-/// Elements of one snapshot.
-#[derive(Clone, Debug)]
-pub struct Frame {
-    /// Step number of the frame.
-    pub step: u64,
-    /// Time (s); NaN if unknown.
-    pub time: f64,
-    /// Elements in the order of [`Grid::place`].
-    pub elements: Vec<Element>,
-    /// For each element, the reasons for its exclusion from means, if any.
-    pub masked: Vec<MaskReasons>,
-    /// Number of grains or points whose centre is in no cell.
-    pub outside: usize,
-}
-
-impl Frame {
-    /// Returns the time (s), or the step if the time is unknown.
-    #[must_use]
-    pub fn clock(&self) -> f64 {
-        if self.time.is_finite() { self.time } else { self.step as f64 }
-    }
-}
 
 /// A series of snapshots as granular elements.
 #[derive(Clone, Debug)]

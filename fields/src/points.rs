@@ -1,7 +1,7 @@
 //! Material of a two-dimensional snapshot at each pixel of a view.
 
 use crate::grid::inside;
-use crate::paint::View;
+use crate::view::View;
 use grainbench_solver::record::{Owner, PointState, Snapshot};
 
 /// Largest distance from a pixel to its nearest material point, in units of the point's width √V.

@@ -1,7 +1,7 @@
 //! Tracer trajectories through a series of snapshots. They give quantities along the path of an element instead of in a
 //! fixed cell.
 
-use crate::course::Frame;
+use crate::frame::Frame;
 use crate::grid::Grid;
 use crate::tracers::{Tracer, hencky, tracers};
 use grainbench_solver::record::Snapshot;

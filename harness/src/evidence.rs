@@ -3,7 +3,7 @@
 use serde::{Deserialize, Serialize};
 
 /// Kind of evidence, ordered from strongest to weakest.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Evidence {
     /// An exact solution of the equations of the model.
@@ -21,6 +21,7 @@ pub enum Evidence {
     /// A law that holds for every solution: conservation, symmetry, determinism.
     Invariant,
     /// Value of an earlier version, stored to detect changes. It does not show that the value is correct.
+    #[default]
     Regression,
 }
 

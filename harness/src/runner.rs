@@ -180,7 +180,7 @@ impl Runner {
     /// Returns true if all runs of a claim are available: the data exist, and a result is stored or the solver is installed.
     #[must_use]
     pub fn is_available(&self, claim: &Claim) -> bool {
-        let is_stored = |run: &Run| !self.live && self.solvers.is_stored(self.case, run);
+        let is_stored = |run: &Run| !self.live && self.solvers.references().is_stored(self.case, run);
         let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
         let has_data = |run: &Run| run.data.is_none() || !matches!(self.scene(run), Err(RunError::NotAvailable { .. }));
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
@@ -313,7 +313,7 @@ impl Runner {
             && !self.live
             && by.solver == run.solver
             && by.defect.is_none()
-            && let Some(record) = self.solvers.stored(self.case, run, &scene)
+            && let Some(record) = self.solvers.references().stored(self.case, run, &scene)
         {
             return Ok(FinishedRun::new(scene, Arc::new(record?)));
         }
@@ -336,7 +336,7 @@ impl Runner {
             let reason = "no result is stored; `grainbench reference keep` makes it".to_owned();
             self.without_data(run).unwrap_or_else(|| self.unusable(run, reason))
         };
-        let kept = self.solvers.kept(self.case, run, scene, of_control).ok_or_else(none)?;
+        let kept = self.solvers.references().kept(self.case, run, scene, of_control).ok_or_else(none)?;
         let StoredResult { record, tables, made } = kept?;
         Ok((Arc::new(record), Arc::new(tables), Some(made)))
     }
@@ -433,7 +433,7 @@ impl Runner {
 
     /// Returns the error of a run of our cases if their data are not installed.
     fn without_data(&self, run: &Run) -> Option<RunError> {
-        let reason = self.solvers.missing_data().filter(|_| self.case.home.made.is_some())?;
+        let reason = self.solvers.references().missing_data().filter(|_| self.case.home.made.is_some())?;
         Some(RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
@@ -496,7 +496,7 @@ impl Runner {
             return Some(stated);
         }
         // If the estimate is not below the stated limit, the limit applies as engineering judgement.
-        let found = self.solvers.uncertainty(self.case, claim)?;
+        let found = self.solvers.references().uncertainty(self.case, claim)?;
         Some(if found < claim.tolerance.up_to { (found, tolerance::ToleranceOrigin::Estimated) } else { stated })
     }
 

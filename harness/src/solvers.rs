@@ -38,7 +38,7 @@ pub struct ExternalSolver {
     pub stays: bool,
 }
 
-/// Solvers by name, and stored runs of other programs.
+/// Solvers by name.
 pub trait Solvers: Send + Sync {
     /// Returns the solver with this name; none if there is none.
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>>;
@@ -69,6 +69,14 @@ pub trait Solvers: Send + Sync {
         String::new()
     }
 
+    /// Returns the stored runs and results. Without them, every run is simulated.
+    fn references(&self) -> &dyn References {
+        &NoReferences
+    }
+}
+
+/// Stored runs and results that claims use.
+pub trait References: Send + Sync {
     /// Returns the stored record of a run of another program; none if no record is stored.
     fn stored(&self, _case: &Case, _run: &Run, _scene: &Scene) -> Option<Result<Record, RunError>> {
         None
@@ -101,3 +109,8 @@ pub trait Solvers: Send + Sync {
         false
     }
 }
+
+/// References of solvers without stored runs.
+struct NoReferences;
+
+impl References for NoReferences {}

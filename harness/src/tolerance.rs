@@ -4,7 +4,7 @@ use crate::run::FinishedRun;
 use serde::{Deserialize, Serialize};
 
 /// Origin of the size of a tolerance.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Default, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum ToleranceOrigin {
     /// A formula, given in the tolerance's reason.
@@ -18,6 +18,7 @@ pub enum ToleranceOrigin {
     /// A requirement stated before the solver existed.
     Required,
     /// Engineering judgement, without formula or estimate.
+    #[default]
     Judged,
 }
 

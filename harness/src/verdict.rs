@@ -5,7 +5,8 @@ use crate::evidence::Evidence;
 use crate::expect::{ExpectedValue, Measurement};
 use crate::tolerance::ToleranceOrigin;
 use grainbench_solver::failure::RunError;
-use serde::{Deserialize, Serialize};
+use serde::ser::SerializeStruct;
+use serde::{Deserialize, Serialize, Serializer};
 
 /// Colour of a result. It determines exit codes, pages and summaries.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Serialize, Deserialize)]
@@ -102,14 +103,17 @@ impl From<&RunError> for Outcome {
     }
 }
 
-/// Result of a claim: a row of `results.json`.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+/// Result of a claim: a row of `results.json`, `report.json`, `rows.csv`, and of the stored results of external solvers.
+///
+/// Stored results of earlier versions lack the fields with a default.
+#[derive(Clone, Debug, PartialEq, Deserialize)]
 pub struct Verdict {
     /// Case name, such as `nine-discs`.
     pub case: String,
     /// Variant of the case's scene, such as `kappa-1`.
     pub variant: String,
     /// Solver and convention, such as `dem:lammps`.
+    #[serde(default)]
     pub solver: String,
     /// Resolution level, or first and last of several levels, such as `dt=.1`.
     pub resolution: String,
@@ -129,12 +133,16 @@ pub struct Verdict {
     /// Largest |error| that passes.
     pub allowed: f64,
     /// Origin of the tolerance.
+    #[serde(default)]
     pub tolerance: ToleranceOrigin,
     /// Reason for the tolerance.
+    #[serde(default)]
     pub because: String,
     /// Kind of evidence.
+    #[serde(default)]
     pub evidence: Evidence,
     /// Source of the expected value.
+    #[serde(default)]
     pub source: String,
     /// Outcome of the result.
     #[serde(rename = "verdict")]
@@ -144,7 +152,39 @@ pub struct Verdict {
     pub detail: Option<String>,
 }
 
+/// The keys are a public interface. The colour is written beside the outcome from which it follows.
+impl Serialize for Verdict {
+    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
+        let mut row = serializer.serialize_struct("Verdict", 18)?;
+        row.serialize_field("case", &self.case)?;
+        row.serialize_field("variant", &self.variant)?;
+        row.serialize_field("solver", &self.solver)?;
+        row.serialize_field("resolution", &self.resolution)?;
+        row.serialize_field("quantity", &self.quantity)?;
+        row.serialize_field("unit", &self.unit)?;
+        row.serialize_field("value", &self.value)?;
+        row.serialize_field("expected", &self.expected)?;
+        row.serialize_field("scale", &self.scale)?;
+        row.serialize_field("error", &self.error)?;
+        row.serialize_field("allowed", &self.allowed)?;
+        row.serialize_field("tolerance", &self.tolerance)?;
+        row.serialize_field("because", &self.because)?;
+        row.serialize_field("evidence", &self.evidence)?;
+        row.serialize_field("source", &self.source)?;
+        row.serialize_field("verdict", &self.outcome)?;
+        row.serialize_field("detail", &self.detail)?;
+        row.serialize_field("severity", &self.outcome.severity())?;
+        row.end()
+    }
+}
+
 impl Verdict {
+    /// Returns the key of the result in a report: case, variant, solver, resolution and quantity.
+    #[must_use]
+    pub fn key(&self) -> [&str; 5] {
+        [&self.case, &self.variant, &self.solver, &self.resolution, &self.quantity].map(String::as_str)
+    }
+
     /// Returns a result that is not judged yet. Its outcome is `Fail`.
     #[must_use]
     pub fn open(case: impl Into<String>, quantity: impl Into<String>, unit: impl Into<String>) -> Self {

@@ -7,7 +7,7 @@ use grainbench_scene::dimension::GrainShape;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
-use crate::observer::Names;
+use crate::names::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
 use crate::read::ids::Ids;

@@ -11,6 +11,7 @@ mod execution;
 mod first_sample;
 pub mod grain_dump;
 pub mod live;
+pub mod names;
 pub mod observer;
 pub mod outputs;
 pub mod outside;

@@ -9,7 +9,8 @@ use grainbench_solver::resolution::Resolution;
 
 use crate::clock::Clock;
 use crate::deck::{Deck, Program, logged, write_deck};
-use crate::observer::{DumpObserver, DumpRecord, Names};
+use crate::names::Names;
+use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::{Log, read_log};

@@ -6,7 +6,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use nalgebra::Vector3;
 
-use crate::observer::Names;
+use crate::names::Names;
 use crate::read::digits::Digits;
 use crate::read::numbers::quoted_names;
 use crate::read::read_error::ReadError;

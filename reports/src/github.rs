@@ -6,7 +6,9 @@ use grainbench_harness::verdict::Verdict;
 
 use crate::headline::Headline;
 use crate::line;
-use crate::report::Report;
+use crate::report::{Report, Section};
+use crate::row;
+use crate::table::{Column, Table, escaped};
 use crate::terminal::{failing_lines, is_red};
 
 /// Largest number of results in a summary. GitHub limits a job summary to 1 MB.
@@ -23,30 +25,18 @@ pub fn summary(report: &Report) -> String {
     if failing.len() > MOST {
         let _ = writeln!(text, "- and {} more", failing.len() - MOST);
     }
-    text.push_str("\n| case | passed | red | amber | controls red |\n|---|---|---|---|---|\n");
-    for section in &report.sections {
+    let row = |section: &Section| {
         let counts = Headline::of_section(section);
-        let red = counts.red();
-        let (name, controls) = (escaped(&section.name), format!("{}/{}", counts.controls_red, counts.controls));
-        let _ =
-            writeln!(text, "| {name} | {}/{} | {red} | {} | {controls} |", counts.pass, counts.rows(), counts.amber());
-    }
+        let [passed, controls] = [(counts.pass, counts.rows()), (counts.controls_red, counts.controls)]
+            .map(|(part, all)| format!("{part}/{all}"));
+        row![&section.name, passed, counts.red(), counts.amber(), controls]
+    };
+    let columns = ["case", "passed", "red", "amber", "controls red"].map(Column::text);
+    text.push('\n');
+    text.push_str(&Table::new("", columns, report.sections.iter().map(row)).markdown());
     let provenance = &report.provenance;
     let _ = write!(text, "\n{} {}, {}\n", provenance.version, provenance.commit, escaped(&provenance.machine));
     text
-}
-
-/// Returns a text with its Markdown characters escaped and its line breaks replaced by spaces.
-fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '\n' | '\r' => escaped.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '!' => escaped.extend(['\\', character]),
-            _ => escaped.push(character),
-        }
-    }
-    escaped
 }
 
 /// Returns one workflow command for each red result and each control that did not fail as required.

@@ -1,10 +1,10 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
-use crate::report::{Provenance, Report};
+use crate::provenance::Provenance;
+use crate::section::Section;
 
 /// Results of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -19,36 +19,15 @@ pub struct ExternalResults {
     /// Version of grainbench, date and machine.
     pub provenance: Provenance,
     /// Results in the order of the registry.
-    pub rows: Vec<Row>,
+    pub rows: Vec<ExternalResult>,
 }
 
-/// A result of an external solver.
+/// A result of an external solver, with the outcome of its negative control.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
-pub struct Row {
-    /// Name of the case.
-    pub case: String,
-    /// Variant of the scene.
-    pub variant: String,
-    /// Resolution in words, such as `dt=.01`.
-    pub resolution: String,
-    /// Measured quantity, in words.
-    pub quantity: String,
-    /// Unit of `value` and `expected`.
-    pub unit: String,
-    /// Measured value; absent if nothing was measured.
-    pub value: Option<f64>,
-    /// Expected value, bound, band or order; absent if it is unknown.
-    pub expected: Option<ExpectedValue>,
-    /// Signed error, divided by the scale of the result.
-    pub error: Option<f64>,
-    /// Largest |error| that passes.
-    pub allowed: f64,
-    /// Outcome of the result.
-    pub verdict: Outcome,
-    /// Reason for an outcome other than pass or fail, or details of a failure, such as the time of the first sample outside
-    /// the tolerance.
-    pub detail: Option<String>,
+pub struct ExternalResult {
+    /// Result of the claim.
+    #[serde(flatten)]
+    pub result: Verdict,
     /// True if the negative control failed as required; absent if the control was not run.
     pub control_red: Option<bool>,
 }
@@ -74,59 +53,49 @@ pub struct Count {
 }
 
 impl ExternalResults {
-    /// Collects the results of a report that contains only this solver.
+    /// Returns the results of all cases, which contain only this solver. `names` are program, version and adapter.
     #[must_use]
-    pub fn from_report(program: String, version: String, adapter: String, report: &Report) -> Self {
-        let controls = || report.sections.iter().flat_map(|section| &section.controls);
+    pub fn new(names: [String; 3], provenance: &Provenance, sections: &[Section]) -> Self {
+        let controls = || sections.iter().flat_map(|section| &section.controls);
         let row = |row: &Verdict| {
             let is_of = |control: &&Control| {
                 (&control.case, &control.variant, &control.quantity) == (&row.case, &row.variant, &row.quantity)
             };
-            Row {
-                case: row.case.clone(),
-                variant: row.variant.clone(),
-                resolution: row.resolution.clone(),
-                quantity: row.quantity.clone(),
-                unit: row.unit.clone(),
-                value: row.value,
-                expected: row.expected,
-                error: row.error,
-                allowed: row.allowed,
-                verdict: row.outcome,
-                detail: row.detail.clone(),
+            ExternalResult {
+                result: row.clone(),
                 control_red: controls().find(is_of).map(|control| control.turned_red),
             }
         };
-        let rows = report.sections.iter().flat_map(|section| &section.verdicts).map(row).collect();
-        Self { program, version, adapter, provenance: report.provenance.clone(), rows }
+        let rows = sections.iter().flat_map(|section| &section.verdicts).map(row).collect();
+        let [program, version, adapter] = names;
+        Self { program, version, adapter, provenance: provenance.clone(), rows }
     }
 
-    /// Returns the differences between the stored results and a report of the same solver, one line each. A line states
+    /// Returns the differences between the stored results and present ones of the same solver, one line each. A line states
     /// an outcome or control that differs, a result that is not stored, or an error that changed by more than the
     /// tolerance.
     #[must_use]
-    pub fn otherwise(&self, report: &Report) -> Vec<String> {
-        let now = Self::from_report(self.program.clone(), String::new(), String::new(), report);
-        let words = |row: &Row| {
+    pub fn otherwise(&self, sections: &[Section]) -> Vec<String> {
+        let now = Self::new([const { String::new() }; 3], &self.provenance, sections);
+        let words = |row: &ExternalResult| {
             let control = match row.control_red {
                 Some(true) => ", its control red",
                 Some(false) => ", its control not red",
                 None => "",
             };
-            format!("{}{control}", row.verdict.word())
+            format!("{}{control}", row.result.outcome.word())
         };
-        let line = |row: &Row| {
-            let kept = self.rows.iter().find(|kept| {
-                (&kept.case, &kept.variant, &kept.resolution, &kept.quantity)
-                    == (&row.case, &row.variant, &row.resolution, &row.quantity)
-            });
+        let key = |row: &Verdict| [&row.case, &row.variant, &row.resolution, &row.quantity].map(String::clone);
+        let line = |found: &ExternalResult| {
+            let row = &found.result;
+            let kept = self.rows.iter().find(|kept| key(&kept.result) == key(row));
             let words_kept = kept.map_or_else(|| "no such row".to_owned(), words);
-            let found = words(row);
+            let found = words(found);
             let place = || format!("{}/{} · {}", row.case, row.variant, row.quantity);
             if words_kept != found {
                 return Some(format!("{}: {found}; kept: {words_kept}", place()));
             }
-            let errors = kept.and_then(|kept| kept.error).zip(row.error);
+            let errors = kept.and_then(|kept| kept.result.error).zip(row.error);
             let (was, is) = errors.filter(|(was, is)| (was - is).abs() > row.allowed.max(was.abs() * ROUNDING))?;
             Some(format!("{}: {found}, error {is:e}; kept: error {was:e}, allowed {:e}", place(), row.allowed))
         };
@@ -153,15 +122,18 @@ impl ExternalResults {
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
         let mut count = Count::default();
-        for row in self.rows.iter().filter(|row| case.is_none_or(|case| case == row.case)) {
-            match row.verdict.severity() {
+        for ExternalResult { result: row, control_red } in &self.rows {
+            if case.is_some_and(|case| case != row.case) {
+                continue;
+            }
+            match row.outcome.severity() {
                 Severity::Green => count.pass += 1,
                 Severity::Red => count.red += 1,
                 Severity::Amber => count.amber += 1,
             }
-            count.controls += usize::from(row.control_red.is_some());
-            count.controls_red += usize::from(row.control_red == Some(true));
-            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.verdict, row.error) {
+            count.controls += usize::from(control_red.is_some());
+            count.controls_red += usize::from(*control_red == Some(true));
+            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.outcome, row.error) {
                 // An error of zero uses no tolerance, even if none is allowed.
                 let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
                 count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
@@ -182,8 +154,8 @@ impl ExternalResults {
 pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
     let mut cases = Vec::new();
     for row in judged.iter().flat_map(|results| &results.rows) {
-        if !cases.contains(&row.case.as_str()) {
-            cases.push(&row.case);
+        if !cases.contains(&row.result.case.as_str()) {
+            cases.push(&row.result.case);
         }
     }
     cases
@@ -197,8 +169,11 @@ mod tests {
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
         let report = sample::report();
-        let judged =
-            ExternalResults::from_report("other".to_owned(), "other 1.0".to_owned(), "hash".to_owned(), &report);
+        let judged = ExternalResults::new(
+            ["other", "other 1.0", "hash"].map(str::to_owned),
+            &report.provenance,
+            &report.sections,
+        );
         assert_eq!(ExternalResults::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
@@ -207,6 +182,18 @@ mod tests {
         assert!(count.controls > 0 && count.controls_red <= count.controls);
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
         assert!(ExternalResults::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
+        // Files of earlier versions lack some keys of a result.
+        let mut stored = serde_json::to_value(&judged).unwrap();
+        for row in stored["rows"].as_array_mut().unwrap() {
+            let row = row.as_object_mut().unwrap();
+            for key in ["solver", "scale", "tolerance", "because", "evidence", "source", "severity"] {
+                assert!(row.remove(key).is_some(), "{key}");
+            }
+        }
+        let earlier = ExternalResults::read(&stored.to_string()).unwrap();
+        assert_eq!(earlier.count(None), count);
+        stored["rows"][0].as_object_mut().unwrap().remove("quantity");
+        assert!(ExternalResults::read(&stored.to_string()).is_err());
     }
 
     #[test]
@@ -215,12 +202,12 @@ mod tests {
         // The sample report has results of several solvers; an external solver has one result per quantity.
         report.sections.truncate(1);
         report.sections[0].verdicts.truncate(1);
-        let kept = ExternalResults::from_report("other".to_owned(), String::new(), String::new(), &report);
-        assert_eq!(kept.otherwise(&report), Vec::<String>::new());
+        let kept = ExternalResults::new(["other", "", ""].map(str::to_owned), &report.provenance, &report.sections);
+        assert_eq!(kept.otherwise(&report.sections), Vec::<String>::new());
         report.sections[0].verdicts[0].outcome = Outcome::Stale;
-        let [line] = &kept.otherwise(&report)[..] else { panic!("one row ends otherwise") };
+        let [line] = &kept.otherwise(&report.sections)[..] else { panic!("one row ends otherwise") };
         assert!(line.contains(": stale") && line.contains("; kept: pass"), "{line}");
         report.sections[0].verdicts[0].quantity = "another".to_owned();
-        assert!(kept.otherwise(&report)[0].ends_with("kept: no such row"));
+        assert!(kept.otherwise(&report.sections)[0].ends_with("kept: no such row"));
     }
 }

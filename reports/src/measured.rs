@@ -1,6 +1,6 @@
 //! Summaries of stored studies of cost, stability and effects, for the first screen of a page.
 
-use crate::report::Provenance;
+use crate::provenance::Provenance;
 use crate::study::effects::Entry;
 use crate::study::point::{Diagram, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};

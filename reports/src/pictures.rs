@@ -5,7 +5,7 @@ use crate::store::{SaveError, add_figure};
 use grainbench_harness::figure::Figure;
 use grainbench_solver::record::{Provenance, Record};
 use grainbench_store::StagedDir;
-use maud::{PreEscaped, html};
+use maud::html;
 use std::collections::BTreeSet;
 use std::path::Path;
 
@@ -38,7 +38,7 @@ pub(crate) fn write_page(
     for figure in figures {
         let name = unique(&slug(&figure.name), &mut names);
         add_figure(out, figure, &name)?;
-        drawn.push(figures::part(figure, &name, &name)?.whole);
+        drawn.push(figures::part(figure, &name, &name)?);
     }
     let body = html! {
         main.alone {
@@ -47,7 +47,7 @@ pub(crate) fn write_page(
                 h1 { (title) }
                 @for lead in leads { p.lead { (lead) } }
             }
-            div.figures { @for figure in &drawn { (PreEscaped(figure)) } }
+            div.figures { @for figure in &drawn { (figure) } }
         }
     };
     out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;

@@ -4,6 +4,7 @@
 
 use crate::number;
 use crate::series_figures;
+pub use crate::series_figures::NamedRecord;
 use crate::solid_figures::{self, Shot as Lit};
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
@@ -25,22 +26,6 @@ const FEWEST: usize = 8;
 /// Number of fringes between zero and the 98th percentile of the stress, if the stress f of a fringe is not given.
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
-
-/// Record of a run, with a name that distinguishes it in figures.
-pub struct NamedRecord<'a> {
-    /// Name, which is the title of its panels.
-    pub name: String,
-    /// Record of the run.
-    pub record: &'a Record,
-}
-
-impl NamedRecord<'_> {
-    /// Returns the snapshot nearest to a time (s).
-    fn at(&self, time: f64) -> Option<&Snapshot> {
-        let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
-        self.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
-    }
-}
 
 /// Returns true if a record has grains or points and all of them lie in the plane z = 0.
 #[must_use]

@@ -1,14 +1,13 @@
 //! Data of a report. With them, all output files can be written again without a solver.
 
-use grainbench_harness::case::Physics;
-use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::Outcome;
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
 use crate::judged::ExternalResults;
 use crate::measured::Measurements;
-use crate::stored_figure;
+pub use crate::provenance::Provenance;
+pub use crate::section::{RunCost, Section};
 
 /// Report of one run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -56,76 +55,4 @@ impl Report {
         view.sections.retain(|section| !section.verdicts.is_empty());
         Cow::Owned(view)
     }
-}
-
-/// Provenance of a run: version, machine, date and options.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Provenance {
-    /// Version of the harness.
-    pub version: String,
-    /// Commit of the harness. A mark shows that the working tree was modified.
-    pub commit: String,
-    /// Date and time of the run.
-    pub date: String,
-    /// Processor and operating system.
-    pub machine: String,
-    /// Version of the Rust compiler.
-    pub rustc: String,
-    /// Options of the run in words.
-    pub options: Vec<String>,
-    /// Wall-clock time of the run (s).
-    #[serde(deserialize_with = "stored_figure::number")]
-    pub wall_seconds: f64,
-}
-
-/// Results of one case.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-pub struct Section {
-    /// Name of the case, such as `nine-discs`.
-    pub name: String,
-    /// Title in words.
-    pub title: String,
-    /// Field of physics; `own` in reports without fields.
-    #[serde(default)]
-    pub physics: Physics,
-    /// Claim of the case in words.
-    pub claim: String,
-    /// Derivation of the expected values, in Markdown without raw HTML. Formulas are text.
-    pub derivation: String,
-    /// Limitations of this test, in Markdown.
-    pub weak: String,
-    /// Figures in the order in which they are shown.
-    #[serde(deserialize_with = "stored_figure::figures")]
-    pub figures: Vec<Figure>,
-    /// Results in the order of the claims.
-    pub verdicts: Vec<Verdict>,
-    /// Negative controls.
-    pub controls: Vec<Control>,
-    /// Computing cost of every run.
-    pub runs: Vec<RunCost>,
-}
-
-/// Computing cost of a run of a claim.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct RunCost {
-    /// Variant of the scene.
-    pub variant: String,
-    /// Solver and contact convention, such as `dem:lammps`.
-    pub solver: String,
-    /// Resolution in words, such as `dt=.1`.
-    pub resolution: String,
-    /// Number of steps.
-    pub steps: u64,
-    /// Number of steps times number of grains.
-    pub particle_steps: u64,
-    /// Number of evaluations of contact laws; absent if the program does not report it.
-    pub contact_evaluations: Option<u64>,
-    /// Wall-clock time of the stepping loop (s).
-    #[serde(deserialize_with = "stored_figure::number")]
-    pub wall_seconds: f64,
-    /// Time step (s).
-    #[serde(deserialize_with = "stored_figure::number")]
-    pub time_step: f64,
-    /// Time step as a fraction of the critical time step; absent if the method has none.
-    pub fraction_of_critical: Option<f64>,
 }

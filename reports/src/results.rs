@@ -1,33 +1,22 @@
 //! Result files for other programs.
 
-use grainbench_harness::verdict::{Control, Severity, Verdict};
+use grainbench_harness::verdict::{Control, Verdict};
 use serde::Serialize;
+use std::io;
 
 use crate::report::{Provenance, Report};
+use crate::row;
+use crate::table::{Column, Format, Table};
 
 /// Content of `results.json`, whose keys are a public interface.
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
-    verdicts: Vec<Row<'a>>,
+    verdicts: Vec<&'a Verdict>,
     controls: Vec<&'a Control>,
     points: Vec<Point<'a>>,
     /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],
-}
-
-/// A result with its outcome and colour.
-#[derive(Serialize)]
-struct Row<'a> {
-    #[serde(flatten)]
-    verdict: &'a Verdict,
-    severity: Severity,
-}
-
-impl<'a> Row<'a> {
-    const fn new(verdict: &'a Verdict) -> Self {
-        Self { verdict, severity: verdict.outcome.severity() }
-    }
 }
 
 /// Cost of a run: one line of `points.csv`, and one entry of `points` in `results.json`.
@@ -69,7 +58,7 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
-        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).map(Row::new).collect(),
+        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
         controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
         points: points(report).collect(),
         red_because: &report.red_because,
@@ -81,25 +70,17 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
 ///
 /// # Errors
 /// When a line cannot be encoded. This does not occur in reports of this project.
-pub fn points_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::WriterBuilder::new().has_headers(false).from_writer(Vec::new());
-    // The header is written separately, so that it exists without any run.
-    table.write_record([
-        "case",
-        "variant",
-        "solver",
-        "resolution",
-        "time_step",
-        "fraction",
-        "steps",
-        "particle_steps",
-        "contact_evaluations",
-        "wall_seconds",
-    ])?;
-    for point in points(report) {
-        table.serialize(point)?;
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+pub fn points_csv(report: &Report) -> io::Result<Vec<u8>> {
+    let columns = ["case", "variant", "solver", "resolution"].map(Column::text).into_iter();
+    let columns = columns.chain(["time_step", "fraction"].map(Column::number));
+    let counts = ["steps", "particle_steps", "contact_evaluations"].map(|name| Column::new(name, Format::Count));
+    let columns = columns.chain(counts).chain([Column::number("wall_seconds")]);
+    let row = |point: Point<'_>| {
+        let Point { case, variant, solver, resolution, time_step, fraction, steps, particle_steps, .. } = point;
+        let (contacts, wall) = (point.contact_evaluations, point.wall_seconds);
+        row![case, variant, solver, resolution, time_step, fraction, steps, particle_steps, contacts, wall]
+    };
+    Table::new("points", columns, points(report).map(row)).csv_bytes()
 }
 
 #[cfg(test)]
@@ -127,6 +108,7 @@ mod tests {
             "evidence",
             "source",
             "verdict",
+            "severity",
         ] {
             assert!(!row[key].is_null(), "{key}");
         }
@@ -140,7 +122,7 @@ mod tests {
     fn points_have_a_header_even_without_runs() {
         let mut report = sample::report();
         let text = String::from_utf8(points_csv(&report).unwrap()).unwrap();
-        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,0.00002,0.1,25000,25000,25000,0.001");
+        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,2e-5,0.1,25000,25000,25000,0.001");
         report.sections.clear();
         assert_eq!(
             String::from_utf8(points_csv(&report).unwrap()).unwrap(),

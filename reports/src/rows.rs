@@ -2,46 +2,40 @@
 
 use std::io;
 
-use crate::export::series_csv::harmless;
-use crate::parts::{Values, whole};
 use crate::report::Report;
+use crate::row;
+use crate::table::{Column, Table};
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::Verdict;
 
 /// File name of the table as Parquet.
 pub const ROWS_PARQUET: &str = "rows.parquet";
 
-/// Returns the columns of the table with their names. Absent values are null. For a bound, a band or an order,
-/// `expected` is null, and `bound` contains the expectation in words.
-fn columns(report: &Report) -> Vec<(String, Values)> {
-    let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
-    let words = |value: &dyn Fn(&Verdict) -> String| Values::Word(rows.iter().map(|row| value(row)).collect());
-    let optional = |value: &dyn Fn(&Verdict) -> Option<f64>| Values::Told(rows.iter().map(|row| value(row)).collect());
-    let bound = |row: &Verdict| match row.expected {
-        Some(bound @ ExpectedValue::Bound(_)) => bound.to_string(),
-        Some(ExpectedValue::Value(_)) | None => String::new(),
+/// Returns an expectation as number and as bound. For a bound, a band or an order, the number is absent, and the text
+/// contains the expectation in words.
+pub(crate) fn expectation(expected: Option<ExpectedValue>) -> (Option<f64>, String) {
+    let bound = expected.filter(|expected| matches!(expected, ExpectedValue::Bound(_)));
+    (expected.and_then(ExpectedValue::value), bound.map_or_else(String::new, |bound| bound.to_string()))
+}
+
+/// Returns the table of all results.
+fn table(report: &Report) -> Table<'_> {
+    let [text, number] = [Column::text, Column::number] as [fn(&'static str) -> Column; 2];
+    let names = ["case", "variant", "solver", "resolution", "quantity", "unit"].map(text).into_iter();
+    let columns = names.chain(["value", "expected"].map(number)).chain([text("bound")]);
+    let columns = columns.chain(["scale", "error", "allowed"].map(number));
+    let columns = columns.chain(["tolerance", "because", "evidence", "source", "verdict", "detail"].map(text));
+    let row = |row: &Verdict| {
+        let Verdict { case, variant, solver, resolution, quantity, unit, value, expected, .. } = row;
+        let Verdict { scale, error, allowed, tolerance, because, evidence, source, outcome, detail, .. } = row;
+        let ((expected, bound), detail) = (expectation(*expected), detail.as_deref().unwrap_or_default());
+        let [tolerance, evidence, outcome] = [tolerance.word(), evidence.word(), outcome.word()];
+        row![
+            case, variant, solver, resolution, quantity, unit, *value, expected, bound, *scale, *error, *allowed,
+            tolerance, because, evidence, source, outcome, detail
+        ]
     };
-    let columns: [(&str, Values); 18] = [
-        ("case", words(&|row| row.case.clone())),
-        ("variant", words(&|row| row.variant.clone())),
-        ("solver", words(&|row| row.solver.clone())),
-        ("resolution", words(&|row| row.resolution.clone())),
-        ("quantity", words(&|row| row.quantity.clone())),
-        ("unit", words(&|row| row.unit.clone())),
-        ("value", optional(&|row| row.value)),
-        ("expected", optional(&|row| row.expected.and_then(ExpectedValue::value))),
-        ("bound", words(&bound)),
-        ("scale", optional(&|row| row.scale)),
-        ("error", optional(&|row| row.error)),
-        ("allowed", optional(&|row| Some(row.allowed))),
-        ("tolerance", words(&|row| row.tolerance.word().to_owned())),
-        ("because", words(&|row| row.because.clone())),
-        ("evidence", words(&|row| row.evidence.word().to_owned())),
-        ("source", words(&|row| row.source.clone())),
-        ("verdict", words(&|row| row.outcome.word().to_owned())),
-        ("detail", words(&|row| row.detail.clone().unwrap_or_default())),
-    ];
-    columns.into_iter().map(|(name, values)| (name.to_owned(), values)).collect()
+    Table::new("rows", columns, report.sections.iter().flat_map(|section| &section.verdicts).map(row))
 }
 
 /// Returns `rows.csv` with a header and one line per result. Each number is the shortest text that reads back to the
@@ -49,28 +43,8 @@ fn columns(report: &Report) -> Vec<(String, Values)> {
 ///
 /// # Errors
 /// When a line cannot be encoded. This does not occur in reports of this project.
-pub fn rows_csv(report: &Report) -> Result<Vec<u8>, csv::Error> {
-    csv(&columns(report))
-}
-
-/// Returns columns of texts and optional numbers as CSV. Cells of columns of other types are empty.
-pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(columns.iter().map(|(name, _)| harmless(name.clone())))?;
-    let cell = |values: &Values, row: usize| match values {
-        Values::Word(words) => words.get(row).cloned().map(harmless),
-        Values::Told(numbers) => numbers.get(row).copied().flatten().map(|value| format!("{value:?}")),
-        Values::Whole(_) | Values::Number(_) | Values::Flag(_) => None,
-    };
-    let rows = columns.iter().map(|(_, values)| match values {
-        Values::Word(words) => words.len(),
-        Values::Told(numbers) => numbers.len(),
-        Values::Whole(_) | Values::Number(_) | Values::Flag(_) => 0,
-    });
-    for row in 0..rows.max().unwrap_or_default() {
-        table.write_record(columns.iter().map(|(_, values)| cell(values, row).unwrap_or_default()))?;
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+pub fn rows_csv(report: &Report) -> io::Result<Vec<u8>> {
+    table(report).csv_bytes()
 }
 
 /// Returns the table as Parquet.
@@ -79,7 +53,7 @@ pub(crate) fn csv(columns: &[(String, Values)]) -> Result<Vec<u8>, csv::Error> {
 /// When the table cannot be encoded.
 pub fn rows_parquet(report: &Report) -> io::Result<Vec<u8>> {
     let mut bytes = Vec::new();
-    whole("rows", &columns(report), &mut bytes)?;
+    table(report).parquet(&mut bytes)?;
     Ok(bytes)
 }
 

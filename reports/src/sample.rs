@@ -299,7 +299,11 @@ pub(crate) fn report() -> Report {
         },
         red_because: Vec::new(),
     };
-    report.judged = vec![ExternalResults::from_report("other".into(), "other 1.0".into(), "0123".into(), &report)];
+    report.judged = vec![ExternalResults::new(
+        ["other", "other 1.0", "0123"].map(str::to_owned),
+        &report.provenance,
+        &report.sections,
+    )];
     report
 }
 

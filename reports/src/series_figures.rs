@@ -1,8 +1,23 @@
 //! Time series of probes: one graph per quantity, such as velocity, position or force.
 
-use crate::record_figures::NamedRecord;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use grainbench_solver::record::Series;
+use grainbench_solver::record::{Record, Series, Snapshot};
+
+/// Record of a run, with a name that distinguishes it in figures.
+pub struct NamedRecord<'a> {
+    /// Name, which is the title of its panels.
+    pub name: String,
+    /// Record of the run.
+    pub record: &'a Record,
+}
+
+impl NamedRecord<'_> {
+    /// Returns the snapshot nearest to a time (s).
+    pub(crate) fn at(&self, time: f64) -> Option<&Snapshot> {
+        let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
+        self.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+}
 
 /// Largest number of curves of a graph. More curves would be hard to distinguish.
 const CURVES: usize = 8;

@@ -10,14 +10,15 @@ use rayon::prelude::*;
 use thiserror::Error;
 
 use crate::badge::badge;
-use crate::export::series_csv::harmless;
 use crate::junit::junit_xml;
 use crate::page;
 use crate::plot;
 use crate::plot::style::FigureStyle;
 use crate::report::Report;
 use crate::results::{points_csv, results_json};
+use crate::row;
 use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
+use crate::table::{Cell, Column, Table};
 use grainbench_store::StagedDir;
 use grainbench_store::WriteError;
 
@@ -179,21 +180,17 @@ fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, S
 }
 
 /// Returns the data of a graph as CSV, one line per point. Values that are not finite are empty cells.
-fn graph_csv(graph: &Graph) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    table.write_record(["curve", &graph.x.label, &graph.y.label])?;
-    let number = |value: f64| if value.is_finite() { format!("{value:?}") } else { String::new() };
-    let mut name = String::new();
-    for curve in &graph.curves {
+fn graph_csv(graph: &Graph) -> io::Result<Vec<u8>> {
+    let columns = [Column::text("curve"), Column::number(&graph.x.label), Column::number(&graph.y.label)];
+    let mut name = "";
+    let rows = graph.curves.iter().flat_map(|curve| {
         // Points without a label belong to the previous labelled curve.
         if !curve.label.is_empty() {
-            name = harmless(curve.label.clone());
+            name = &curve.label;
         }
-        for (x, y) in &curve.points {
-            table.write_record([&name, &number(*x), &number(*y)])?;
-        }
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+        curve.points.iter().map(move |(x, y)| row![name, Cell::finite(Some(*x)), Cell::finite(Some(*y))])
+    });
+    Table::new("points", columns, rows).csv_bytes()
 }
 
 impl Report {

@@ -1,9 +1,11 @@
 //! Trend over several reports: outcomes and counts side by side, written as `trend.html`.
 
 use crate::number;
-use crate::page::{scrolling, shell, sign};
+use crate::page::{shell, sign};
 use crate::plot::{self, DrawError};
+use crate::row;
 use crate::store::SaveError;
+use crate::table::{Cell, Column as Head, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::{Outcome, Severity};
 use grainbench_store::StagedDir;
@@ -37,7 +39,7 @@ pub struct Column {
 struct Results {
     provenance: ReportProvenance,
     #[serde(default)]
-    verdicts: Vec<Row>,
+    verdicts: Vec<Map<String, Value>>,
     #[serde(default)]
     points: Vec<Map<String, Value>>,
 }
@@ -48,13 +50,6 @@ struct ReportProvenance {
     commit: String,
     #[serde(default)]
     date: String,
-}
-
-#[derive(Deserialize)]
-struct Row {
-    #[serde(flatten)]
-    about: Map<String, Value>,
-    verdict: Option<Outcome>,
 }
 
 /// Returns the key of a result or a run: its descriptive fields, joined as words.
@@ -79,7 +74,9 @@ impl Column {
     /// When the text is not a valid `results.json`.
     pub fn read(name: &str, text: &str) -> Result<Self, serde_json::Error> {
         let Results { provenance, verdicts, points } = serde_json::from_str(text)?;
-        let rows = verdicts.iter().filter_map(|row| Some((key(&row.about), row.verdict?))).collect();
+        let outcome = |row: &Map<String, Value>| row.get("verdict").map_or(Ok(None), Option::<Outcome>::deserialize);
+        let rows = verdicts.iter().map(|row| Ok(outcome(row)?.map(|outcome| (key(row), outcome))));
+        let rows = rows.filter_map(Result::transpose).collect::<Result<_, serde_json::Error>>()?;
         let counts = |point: &Map<String, Value>| {
             // In a study, the counts of a point are in an object of their own.
             let inner = point.get("counts").and_then(Value::as_object).unwrap_or(point);
@@ -201,22 +198,31 @@ fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
 }
 
 fn table(columns: &[Column], shared: &[&String]) -> Markup {
-    let table = html! {
-        table {
-            thead { tr {
-                @for word in ["Report", "Name", "Commit", "Date", "Pass", "Fail, broken or stale", "Amber"] {
-                    th scope="col" { (word) }
-                }
-                @for name in COUNTED { th scope="col" { (name.replace('_', " ")) } }
-            } }
-            tbody { @for (at, column) in columns.iter().enumerate() { tr {
-                td { (at + 1) } td { (column.name) } td { (column.commit) } td { (column.date) }
-                @for (_, severity) in KINDS { td { (number::count(column.count(severity))) } }
-                @for name in COUNTED { td { (number::count(column.sum(name, shared))) } }
-            } } }
-        }
+    let heads = ["Report", "Name", "Commit", "Date", "Pass", "Fail, broken or stale", "Amber"].map(Head::text);
+    let heads = heads.into_iter().chain(COUNTED.map(|name| Head::new(name.replace('_', " "), Format::Count)));
+    let row = |(at, column): (usize, &Column)| {
+        let mut row = vec![Cell::from(at + 1)];
+        row.extend([&column.name, &column.commit, &column.date].map(Cell::from));
+        row.extend(KINDS.map(|(_, severity)| Cell::from(column.count(severity))));
+        row.extend(COUNTED.map(|name| Cell::from(column.sum(name, shared))));
+        Row::from(row)
     };
-    html! { section id="reports" { h2 { "Reports" } (scrolling("Reports", &table)) } }
+    let table = Table::new("Reports", heads, columns.iter().enumerate().map(row));
+    html! { section id="reports" { h2 { "Reports" } (table.page("")) } }
+}
+
+/// Renders a section with the rows that differ between reports, at most [`MOST`].
+fn changed<'a>(id: &str, none: &str, count: usize, table: Table<'a>) -> Markup {
+    html! {
+        section id=(id) {
+            h2 { (table.name) }
+            @if count == 0 { p { (none) } }
+            @else {
+                @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
+                (table.page(""))
+            }
+        }
+    }
 }
 
 /// Renders a table of the results whose outcome differs between reports.
@@ -232,31 +238,20 @@ fn changed_rows(columns: &[Column]) -> Markup {
     let cell = |outcome: Option<Outcome>| {
         let (symbol, class) = outcome.map_or(("", ""), sign);
         let word = outcome.map_or("—", Outcome::word);
-        html! { td class=(class) style="color: var(--tone)" { (symbol) " " (word) } }
+        Cell::from(html! { span class={ "mark " (class) } { (symbol) " " (word) } })
     };
-    let table = html! {
-        table {
-            thead { tr { th scope="col" { "Row" } @for at in 1..=columns.len() { th scope="col" { (at) } } } }
-            tbody { @for name in names.iter().take(MOST) { tr {
-                th scope="row" { (name) } @for outcome in outcomes(name) { (cell(outcome)) }
-            } } }
-        }
+    let row = |name: &&String| {
+        let cells = outcomes(name).into_iter().map(cell);
+        Row::from([Cell::from(*name)].into_iter().chain(cells).collect::<Vec<_>>())
     };
-    html! {
-        section id="rows" {
-            h2 { "Rows that changed" }
-            @if count == 0 { p { "None: every result has the same outcome in all reports." } }
-            @else {
-                @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
-                (scrolling("Rows that changed", &table))
-            }
-        }
-    }
+    let heads = [Head::heading("Row")].into_iter().chain((1..=columns.len()).map(|at| Head::text(at.to_string())));
+    let table = Table::new("Rows that changed", heads, names.iter().take(MOST).map(row));
+    changed("rows", "None: every result has the same outcome in all reports.", count, table)
 }
 
 /// Renders a table of the runs whose counts differ between consecutive reports.
 fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
-    let mut lines: Vec<[String; 4]> = Vec::new();
+    let mut lines: Vec<Row> = Vec::new();
     for run in shared {
         for (at, pair) in columns.windows(2).enumerate() {
             let [before, after] = [&pair[0].runs[*run], &pair[1].runs[*run]];
@@ -264,25 +259,12 @@ fn changed_counts(columns: &[Column], shared: &[&String]) -> Markup {
                 let count =
                     |counts: &BTreeMap<&str, u64>| counts.get(name).map_or("—".to_owned(), |n| number::count(*n));
                 let change = format!("{} → {}", count(before), count(after));
-                lines.push([(*run).clone(), format!("{} to {}", at + 1, at + 2), name.replace('_', " "), change]);
+                lines.push(row![*run, format!("{} to {}", at + 1, at + 2), name.replace('_', " "), change]);
             }
         }
     }
+    let heads = ["Run", "Reports", "Count", "Change"].map(Head::text);
     let count = lines.len();
-    let table = html! {
-        table {
-            thead { tr { @for word in ["Run", "Reports", "Count", "Change"] { th scope="col" { (word) } } } }
-            tbody { @for line in lines.iter().take(MOST) { tr { @for cell in line { td { (cell) } } } } }
-        }
-    };
-    html! {
-        section id="counts" {
-            h2 { "Counts that changed" }
-            @if count == 0 { p { "None: each run has the same counts in all reports." } }
-            @else {
-                @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
-                (scrolling("Counts that changed", &table))
-            }
-        }
-    }
+    let table = Table::new("Counts that changed", heads, lines.into_iter().take(MOST));
+    changed("counts", "None: each run has the same counts in all reports.", count, table)
 }

@@ -9,9 +9,6 @@ use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
 
-/// Key of a result: case, variant, solver, resolution and quantity.
-type Name = [String; 5];
-
 /// Results and controls of an earlier report, read from `results.json`.
 #[derive(Deserialize)]
 pub(crate) struct EarlierReport {
@@ -26,10 +23,6 @@ pub(crate) struct EarlierReport {
 struct Options {
     #[serde(default)]
     options: Vec<String>,
-}
-
-fn name(row: &Verdict) -> Name {
-    [&row.case, &row.variant, &row.solver, &row.resolution, &row.quantity].map(String::clone)
 }
 
 impl EarlierReport {
@@ -75,10 +68,9 @@ impl EarlierReport {
     fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&Control>) {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
-        let is_it =
-            |row: &&Verdict| [&row.case, &row.variant, &row.solver, &row.quantity].map(String::as_str) == sought;
         let resolution = claim.resolution();
-        let rows = self.verdicts.iter().filter(is_it).filter(|row| row.resolution == resolution);
+        let rows =
+            self.verdicts.iter().filter(|row| row.key() == [case, variant, solver, &resolution, &claim.quantity]);
         let is_its = |control: &&Control| {
             [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
         };
@@ -91,11 +83,11 @@ impl EarlierReport {
     /// If `is_whole` is false, earlier results of cases that are not in the report are ignored.
     pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
         let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
-        let before: BTreeMap<Name, &Verdict> = self.verdicts.iter().map(|row| (name(row), row)).collect();
-        let now: BTreeMap<Name, &Verdict> = rows().map(|row| (name(row), row)).collect();
+        let before: BTreeMap<[&str; 5], &Verdict> = self.verdicts.iter().map(|row| (row.key(), row)).collect();
+        let now: BTreeMap<[&str; 5], &Verdict> = rows().map(|row| (row.key(), row)).collect();
         let (mut red, mut other, mut moved) = (Vec::new(), Vec::new(), 0_usize);
         for row in rows() {
-            let Some(was) = before.get(&name(row)) else {
+            let Some(was) = before.get(&row.key()) else {
                 other.push(format!("new, is {}: {}", row.outcome.word(), line::verdict(row)));
                 continue;
             };
@@ -107,7 +99,7 @@ impl EarlierReport {
             if is_red(row) { red.push(words) } else { other.push(words) }
         }
         let is_asked = |row: &&Verdict| is_whole || report.sections.iter().any(|section| section.name == row.case);
-        for row in self.verdicts.iter().filter(is_asked).filter(|row| !now.contains_key(&name(row))) {
+        for row in self.verdicts.iter().filter(is_asked).filter(|row| !now.contains_key(&row.key())) {
             other.push(format!("not judged now, was {}: {}", row.outcome.word(), line::verdict(row)));
         }
         for section in &report.sections {

@@ -59,6 +59,7 @@ pub(crate) fn keep(program: &ExternalProgram, report: &Report) -> Result<(), Fau
     let adapter = program.fingerprint().map_err(Fault::writing)?;
     let name = program.manifest().name.clone();
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
-    let text = ExternalResults::from_report(name, version, adapter, report).text().map_err(Fault::input)?;
+    let results = ExternalResults::new([name, version, adapter], &report.provenance, &report.sections);
+    let text = results.text().map_err(Fault::input)?;
     write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
 }

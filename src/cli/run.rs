@@ -172,7 +172,7 @@ fn interrupted(left: usize) -> String {
 /// Returns the differences between a report and the stored results of an external solver, in words.
 fn otherwise_than_kept(program: &ExternalProgram, kept: &ExternalResults, report: &Report) -> Vec<String> {
     let mut otherwise = keep::other_program(program, kept);
-    otherwise.extend(kept.otherwise(report));
+    otherwise.extend(kept.otherwise(&report.sections));
     otherwise
 }
 

@@ -3,14 +3,8 @@
 use super::exit::Fault;
 use super::solver;
 use grainbench::cases::solvers::{self, Registry};
-use grainbench::harness::case::Case;
-use grainbench::harness::claim::Claim;
-use grainbench::harness::run::Run;
-use grainbench::harness::solvers::{ExternalSolver, Solvers, StoredResult};
+use grainbench::harness::solvers::{ExternalSolver, References, Solvers};
 use grainbench::reference::outside::ExternalProgram;
-use grainbench::scene::scene::Scene;
-use grainbench::solver::failure::RunError;
-use grainbench::solver::record::Record;
 use grainbench::solver::{Defect, Solver};
 use grainbench::store::key;
 use std::collections::BTreeMap;
@@ -116,25 +110,7 @@ impl Solvers for NamedSolvers {
         content.unwrap_or_else(|| self.read.clone())
     }
 
-    fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
-        Registry.stored(case, run, scene)
-    }
-
-    fn kept(
-        &self,
-        case: &Case,
-        run: &Run,
-        scene: &Scene,
-        control: Option<&str>,
-    ) -> Option<Result<StoredResult, RunError>> {
-        Registry.kept(case, run, scene, control)
-    }
-
-    fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {
-        Registry.uncertainty(case, claim)
-    }
-
-    fn is_stored(&self, case: &Case, run: &Run) -> bool {
-        Registry.is_stored(case, run)
+    fn references(&self) -> &dyn References {
+        &Registry
     }
 }

@@ -6,10 +6,7 @@
 //! another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints are
 //! requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
-use grainbench_harness::case::Case;
-use grainbench_harness::claim::Claim;
-use grainbench_harness::run::Run;
-use grainbench_harness::solvers::{ExternalSolver, Solvers, StoredResult};
+use grainbench_harness::solvers::{ExternalSolver, References, Solvers};
 use grainbench_lanes::Processor;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::checkpoint::{Checkpoint, fingerprint};
@@ -197,26 +194,8 @@ impl<S: Solvers> Solvers for CachingSolvers<S> {
         self.solvers.edition(name)
     }
 
-    fn stored(&self, case: &Case, run: &Run, scene: &Scene) -> Option<Result<Record, RunError>> {
-        self.solvers.stored(case, run, scene)
-    }
-
-    fn kept(
-        &self,
-        case: &Case,
-        run: &Run,
-        scene: &Scene,
-        control: Option<&str>,
-    ) -> Option<Result<StoredResult, RunError>> {
-        self.solvers.kept(case, run, scene, control)
-    }
-
-    fn uncertainty(&self, case: &Case, claim: &Claim) -> Option<f64> {
-        self.solvers.uncertainty(case, claim)
-    }
-
-    fn is_stored(&self, case: &Case, run: &Run) -> bool {
-        self.solvers.is_stored(case, run)
+    fn references(&self) -> &dyn References {
+        self.solvers.references()
     }
 }
 

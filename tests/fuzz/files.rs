@@ -244,7 +244,7 @@ fn report() -> &'static Vec<u8> {
     static REPORT: OnceLock<Vec<u8>> = OnceLock::new();
     REPORT.get_or_init(|| {
         let case = registry::by_name("incline-disc").unwrap();
-        let runner = registry::runner(case);
+        let runner = grainbench::cases::runner(case);
         let claims: Vec<_> = runner.claims().into_iter().take(2).collect();
         let axes = || [Axis::linear("time t (s)"), Axis { label: "error (1)".to_owned(), logarithmic: true }];
         let points = || vec![(0.0, 1e-3), (0.1, 2e-3), (0.2, 1e-5)];

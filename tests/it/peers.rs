@@ -45,13 +45,14 @@ fn every_adapter_was_judged_as_it_stands() {
 fn kept_rows_are_earned_and_are_those_of_today() {
     for judged in kept().unwrap() {
         let name = &judged.program;
-        for row in judged.rows.iter().filter(|row| row.verdict.word() == "pass") {
-            assert_eq!(row.control_red, Some(true), "{name}: {}/{} · {}", row.case, row.variant, row.quantity);
+        for found in judged.rows.iter().filter(|found| found.result.outcome.word() == "pass") {
+            let row = &found.result;
+            assert_eq!(found.control_red, Some(true), "{name}: {}/{} · {}", row.case, row.variant, row.quantity);
         }
         for case in cases(std::slice::from_ref(&judged)) {
             let Some(of_registry) = registry::by_name(case) else { continue };
             let claims = (of_registry.claims)();
-            for row in judged.rows.iter().filter(|row| row.case == case) {
+            for row in judged.rows.iter().map(|row| &row.result).filter(|row| row.case == case) {
                 let is_it = claims.iter().any(|claim| {
                     let is_one = claim.quantity == row.quantity && claim.resolution() == row.resolution;
                     is_one && claim.scope.is_open() && claim.tolerance.allowed(&[]) == row.allowed

@@ -185,7 +185,8 @@ fn text_of(file: &Path) -> Result<String, CaseFolderError> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::registry::{CASES, runner};
+    use crate::registry::CASES;
+    use crate::solvers::runner;
     use grainbench_harness::verdict::Outcome;
 
     /// If the claims file of a case cannot be read, the case has one result, which fails.

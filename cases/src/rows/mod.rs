@@ -5,6 +5,7 @@ pub mod draws;
 pub mod elastic;
 pub(crate) mod elastic_backspin;
 pub mod incline;
+pub mod on_plane;
 pub mod one_grain_cost;
 pub mod program_forces;
 pub mod programs;

@@ -1,7 +1,7 @@
 //! Claims that our solver in the contact convention of LAMMPS or LIGGGHTS gives the results of a stored or live run of
 //! that program.
 
-use crate::rows::incline::{DAMPING, at_overlap};
+use crate::rows::on_plane::{DAMPING, at_overlap};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::dimension::GrainShape;

@@ -16,7 +16,7 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::incline::{other_inertia, stronger_friction};
+use crate::rows::on_plane::{other_inertia, stronger_friction};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;

@@ -14,7 +14,7 @@
 //! Euler's laws.
 
 use crate::exact::one_grain::{OneGrain, course, normal_axis, rest_at_overlap};
-use crate::rows::incline::STEP;
+use crate::rows::on_plane::STEP;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::{Duration, Sampling};
 

@@ -1,8 +1,8 @@
 //! Figures 4 and 5 of the paper on silos: principal axes of stress T and strain rate D in the blocks of the last frame,
 //! and contact forces in a part of the silo.
 
-use super::ensemble::{self, Flow};
-use super::figures::rows;
+use super::ensemble;
+use super::flow::{Flow, rows};
 use super::instant::part;
 use grainbench_harness::prelude::*;
 

@@ -1,50 +1,11 @@
 //! Statistics of silo elements: means in steady flow, correlations, packing fraction φ against inertial number and
 //! against strain, and the largest sine of the friction angle before an element dilates.
 
-use super::reader::STEADY;
+pub(crate) use super::flow::Flow;
+use super::flow::{FLOWING, INERTIA, STEADY};
 use grainbench_harness::reading::Table;
 use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::statistics::median;
-
-/// Cause of the flow.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Flow {
-    /// Grains leave through a slit in the middle of the floor.
-    Drained,
-    /// Half of the floor is pushed up.
-    Pushed,
-}
-
-/// Smallest shear rate |D₀| of a flowing element (1/τ).
-pub(crate) const FLOWING: f64 = 0.02;
-
-impl Flow {
-    /// Returns true if an element of edge 2.5 d is far from the cause of the flow: at least 7.5 d from the slit of a
-    /// draining silo, or above 12.5 d in a pushed silo.
-    fn is_far(self, x: f64, z: f64) -> bool {
-        match self {
-            Self::Drained => x.hypot(z) >= 7.5,
-            Self::Pushed => z > 12.5,
-        }
-    }
-
-    /// Returns true if a block of edge 5 d is far from the cause of the flow: at least 5 d from the slit of a draining
-    /// silo, or above 10 d in a pushed silo.
-    fn is_far_block(self, x: f64, z: f64) -> bool {
-        match self {
-            Self::Drained => x.hypot(z) >= 5.0,
-            Self::Pushed => z > 10.0,
-        }
-    }
-
-    /// Describes the region far from the cause of the flow.
-    pub(crate) const fn words(self) -> &'static str {
-        match self {
-            Self::Drained => "from 7.5 d off the slit on",
-            Self::Pushed => "above 12.5 d",
-        }
-    }
-}
 
 /// Selected columns of a table, read row by row.
 struct Rows<'a, const N: usize> {
@@ -139,20 +100,6 @@ fn correlation(pairs: &[[f64; 2]]) -> f64 {
         |product: &dyn Fn(f64, f64) -> f64| pairs.iter().map(|pair| product(pair[0] - x, pair[1] - y)).sum::<f64>();
     sum(&|x, y| x * y) / (sum(&|x, _| x * x) * sum(&|_, y| y * y)).sqrt()
 }
-
-/// Bounds of the bins of the inertial number |I₀|.
-pub(crate) const INERTIA: [[f64; 2]; 10] = [
-    [0.002, 0.005],
-    [0.005, 0.01],
-    [0.01, 0.02],
-    [0.02, 0.04],
-    [0.04, 0.07],
-    [0.07, 0.1],
-    [0.1, 0.15],
-    [0.15, 0.2],
-    [0.2, 0.3],
-    [0.4, 0.6],
-];
 
 /// Number of bins, counted from the first, with at least a hundred elements in the tall silo at a tenth of the paper's
 /// size. With fewer elements, the means of two packings differ by more than 0.008 (99 %), because the standard

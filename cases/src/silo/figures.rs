@@ -1,8 +1,8 @@
 //! Figures of a silo, like those of the paper, from the tables of its run.
 
 use super::axes;
-use super::ensemble::{Flow, INERTIA, STRAIN, over_inertia, over_strain, strained};
-use super::reader::{ELEMENT, STEADY};
+use super::ensemble::{STRAIN, over_inertia, over_strain, strained};
+use super::flow::{ELEMENT, Flow, INERTIA, STEADY, rows};
 use grainbench_fields::element_picture::{Sheet, Units};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
@@ -24,16 +24,6 @@ pub(crate) fn all(done: &FinishedRun, flow: Flow, bins: &[CitedNumber]) -> Vec<F
     let axes = axes::all(done, flow).into_iter();
     let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
     film(done).into_iter().chain(axes).chain(graphs).collect()
-}
-
-/// Returns columns of a table as rows, without rows that contain NaN.
-pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
-    let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
-    if columns.len() < N {
-        return Vec::new();
-    }
-    let row = |at: usize| std::array::from_fn(|column| columns[column][at]);
-    (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
 }
 
 /// Returns at most `most` of the points, at equal intervals.

@@ -1,8 +1,9 @@
 //! Figures 6, 7 and 8 of the paper, each with three flows. The paper also shows all flows in one figure.
 
 use super::collapse::ComparedFlow;
-use super::ensemble::{self, INERTIA, STRAIN};
-use super::figures::{flowing, rows, thinned};
+use super::ensemble::{self, STRAIN};
+use super::figures::{flowing, thinned};
+use super::flow::{INERTIA, rows};
 use grainbench_harness::prelude::*;
 
 /// Largest inertial number in figure 6. Elements above the slit have larger inertial numbers and are not plotted.

@@ -1,7 +1,7 @@
 //! Data of the last frame of a silo: principal axes of stress T and strain rate D of its blocks, and contact forces in
 //! a part of the silo (figures 4 and 5 of the paper).
 
-use super::ensemble::{FLOWING, Flow};
+use super::flow::{FLOWING, Flow};
 use grainbench_fields::element::Element;
 use grainbench_fields::grid::Grid;
 use grainbench_fields::mask::MaskReasons;

@@ -8,6 +8,7 @@ pub(crate) mod claims;
 pub(crate) mod collapse;
 pub(crate) mod ensemble;
 pub(crate) mod figures;
+mod flow;
 pub(crate) mod flows;
 mod instant;
 pub(crate) mod paper;

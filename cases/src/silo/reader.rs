@@ -1,6 +1,6 @@
 //! Evaluation of the snapshots of a silo in granular elements of edge 2.5 d, in blocks of edge 5 d, and along tracers.
 
-use super::ensemble::{Flow, INERTIA};
+use super::flow::{ELEMENT, Flow, INERTIA, STEADY};
 use super::instant;
 use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::Course;
@@ -19,10 +19,6 @@ use nalgebra::{Matrix3, Vector3};
 /// Evaluation of the snapshots of every silo.
 pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin };
 
-/// Edge of an element in x and z (d). In y, an element is as long as the period.
-pub(super) const ELEMENT: f64 = 2.5;
-/// Time from which the flow counts as steady (τ). The first window of frames begins at this time.
-pub(super) const STEADY: f64 = 6.0;
 /// Number of frames whose stresses and motions are averaged in a window.
 const WINDOW: usize = 20;
 /// Largest number of stored rows of elements, and of blocks in single frames. For larger runs, only some frames are

@@ -5,7 +5,7 @@ use std::vec;
 
 use super::Options;
 use super::column::PrintedDigits;
-use crate::observer::Names;
+use crate::names::Names;
 use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};

@@ -8,7 +8,7 @@ mod frames;
 
 use std::path::Path;
 
-use crate::observer::Names;
+use crate::names::Names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::run_files::kind;
 use column::{Column, PrintedDigits};

@@ -7,8 +7,8 @@ use grainbench_solver::record::GrainState;
 use grainbench_solver::record::bounds;
 use nalgebra::Vector3;
 
-use super::heading;
 use super::outline::is_flat;
+use super::script::heading;
 
 /// Returns the lower and upper corner of the simulation box (m). Periodic axes have the bounds of the scene. Along
 /// other axes, a margin of four radii of the largest grain surrounds the grains.

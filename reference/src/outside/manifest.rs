@@ -1,6 +1,6 @@
 //! Manifest `SOLVER.toml`, which describes the commands, the features and the output of a program.
 
-use crate::observer::Names;
+use crate::names::Names;
 use crate::read::read_error::{one_line, quoted};
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::effect::Effect;

@@ -2,7 +2,6 @@
 
 use std::io::{ErrorKind, Read};
 
-use crate::read::line_reader::Line;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends is refused
@@ -30,6 +29,26 @@ impl<'b> RawLine<'b> {
             (Ok(text), None) => Ok(Line { file: self.file, number: self.number, text }),
             (_, place) => Err(not_text(self.file, self.number, self.bytes, place.unwrap_or_default())),
         }
+    }
+}
+
+/// Line without its line end, and its position.
+#[derive(Clone, Copy)]
+pub(crate) struct Line<'l> {
+    pub(crate) file: &'l str,
+    pub(crate) number: u64,
+    pub(crate) text: &'l str,
+}
+
+impl<'l> Line<'l> {
+    /// Returns the line as bytes.
+    pub(crate) fn raw(self) -> RawLine<'l> {
+        RawLine { file: self.file, number: self.number, bytes: self.text.as_bytes(), ended: true }
+    }
+
+    /// Returns an error that refers to the whole line.
+    pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        ReadError::at(self.file, self.number, expected, found)
     }
 }
 

@@ -2,6 +2,7 @@
 
 use std::io::BufRead;
 
+pub(crate) use crate::read::blocks::Line;
 use crate::read::blocks::{Blocks, RawLine};
 use crate::read::decoding::{InputContent, decoded};
 use crate::read::read_error::ReadError;
@@ -9,26 +10,6 @@ use crate::read::read_error::ReadError;
 /// Reader of the lines of an input, which may be plain, gzip or zstd. Input that is not text is an error.
 pub(crate) struct LineReader<'r> {
     blocks: Blocks<'r>,
-}
-
-/// Line without its line end, and its position.
-#[derive(Clone, Copy)]
-pub(crate) struct Line<'l> {
-    pub(crate) file: &'l str,
-    pub(crate) number: u64,
-    pub(crate) text: &'l str,
-}
-
-impl<'l> Line<'l> {
-    /// Returns the line as bytes.
-    pub(crate) fn raw(self) -> RawLine<'l> {
-        RawLine { file: self.file, number: self.number, bytes: self.text.as_bytes(), ended: true }
-    }
-
-    /// Returns an error that refers to the whole line.
-    pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
-        ReadError::at(self.file, self.number, expected, found)
-    }
 }
 
 /// Opens an input as lines of bytes.

@@ -19,6 +19,7 @@ pub(crate) mod ids;
 pub(crate) mod line_reader;
 pub(crate) mod log;
 pub(crate) mod npz;
+mod number_table;
 pub(crate) mod numbers;
 pub(crate) mod parquet;
 pub(crate) mod read_error;

@@ -1,9 +1,9 @@
 //! Tables of numbers in Parquet files, uncompressed or compressed by Snappy.
 
 use super::digits::Digits;
+use super::number_table::{MOST_NUMBERS, Table};
 use super::numbers::NumberColumn;
 use super::read_error::{ReadError, quoted};
-use super::table::{MOST_NUMBERS, Table};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::record::Field;

@@ -1,7 +1,6 @@
 //! Granular elements as files: tables, image data for ParaView, a summary and figures.
 
 mod image_data;
-mod sheet;
 mod summary;
 mod tables;
 

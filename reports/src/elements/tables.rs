@@ -1,76 +1,81 @@
 //! Tables of granular elements.
 
-use super::sheet::{Cell, Sheet};
+use crate::table::{Cell, Column as Head, Format, Row, Table};
 use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
 use grainbench_fields::course::{Course, of_means};
 use grainbench_fields::trails::Trails;
 
-/// Returns the heading of a column: name and unit.
-fn head(column: &Column) -> String {
-    format!("{} ({})", column.name, column.unit)
+/// Returns the column of a quantity, with an ending of its name.
+fn head(column: &Column, ending: &str) -> Head {
+    Head::number(format!("{}{ending}", column.name)).unit(column.unit)
 }
 
-fn heads<'a>(names: impl IntoIterator<Item = &'a str>) -> Vec<String> {
-    names.into_iter().map(str::to_owned).collect()
+/// Returns the columns of the place of a cell: indices along the axes, and coordinates of the centre.
+fn place_heads() -> impl Iterator<Item = Head> {
+    let indices = ["i", "j", "k"].map(|name| Head::new(name, Format::Count));
+    indices.into_iter().chain(["x", "y", "z"].map(|name| Head::number(name).unit("m")))
+}
+
+/// Returns the step and the time of a frame as columns.
+fn clock_heads() -> [Head; 2] {
+    [Head::new("step", Format::Count), Head::number("time").unit("s")]
 }
 
 /// Returns the indices of a cell along the axes, followed by the coordinates of its centre (m).
-fn place(course: &Course, cell: usize) -> Vec<Cell> {
-    let at = course.grid.at(cell).map(|along| Cell::Whole(along as u64));
-    let middle = <[f64; 3]>::from(course.grid.middle(cell)).map(|along| Cell::Number(Some(along)));
-    at.into_iter().chain(middle).collect()
+fn place(course: &Course, cell: usize) -> impl Iterator<Item = Cell> {
+    let middle = <[f64; 3]>::from(course.grid.middle(cell));
+    course.grid.at(cell).map(Cell::from).into_iter().chain(middle.map(Cell::from))
 }
-
-const PLACE: [&str; 6] = ["i", "j", "k", "x (m)", "y (m)", "z (m)"];
 
 /// Returns a table with one row per element and frame. The column `mask` states the reason if the element is left out of
 /// averages.
-pub(super) fn elements(course: &Course) -> Sheet<'_> {
-    let first = heads(["step", "time (s)"].into_iter().chain(PLACE).chain(["mask"]));
+pub(super) fn elements(course: &Course) -> Table<'_> {
+    let columns = clock_heads().into_iter().chain(place_heads()).chain([Head::text("mask")]);
     let rows = course.frames.iter().flat_map(move |frame| {
         (0..frame.elements.len()).map(move |cell| {
-            let mut row = vec![Cell::Whole(frame.step), Cell::Number(Some(frame.time))];
+            let mut row = vec![Cell::from(frame.step), Cell::from(frame.time)];
             row.extend(place(course, cell));
-            row.push(Cell::Word(frame.masked[cell].words()));
-            row.extend(COLUMNS.iter().map(|column| Cell::Number(course.value(column, frame, cell))));
-            row
+            row.push(frame.masked[cell].words().into());
+            row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value(column, frame, cell))));
+            Row::from(row)
         })
     });
-    Sheet { name: "elements", heads: first.into_iter().chain(COLUMNS.iter().map(head)).collect(), rows: Box::new(rows) }
+    Table::new("elements", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
 }
 
 /// Returns a table with one row per tracer and frame: position, strain, and the values of the elements at its position.
-pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Sheet<'a> {
-    let first = heads(["tracer", "step", "time (s)", "x (m)", "y (m)", "z (m)", "hencky_strain (1)"]);
+pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Table<'a> {
+    let positions = ["x", "y", "z"].map(|name| Head::number(name).unit("m"));
+    let columns = [Head::new("tracer", Format::Count)].into_iter().chain(clock_heads()).chain(positions);
+    let columns = columns.chain([Head::number("hencky_strain").unit("1")]);
     let rows = trails.stops.iter().map(move |stop| {
         let frame = &course.frames[stop.frame];
-        let mut row = vec![Cell::Whole(stop.tracer as u64), Cell::Whole(frame.step)];
-        let numbers = [Some(frame.time)].into_iter().chain(stop.position.iter().map(|&along| Some(along)));
-        row.extend(numbers.chain([stop.strain]).map(Cell::Number));
-        row.extend(COLUMNS.iter().map(|column| Cell::Number(course.value_at(column, frame, stop.position))));
-        row
+        let mut row = vec![Cell::from(stop.tracer), Cell::from(frame.step), Cell::from(frame.time)];
+        row.extend(stop.position.iter().map(|along| Cell::from(*along)));
+        row.push(Cell::finite(stop.strain));
+        row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value_at(column, frame, stop.position))));
+        Row::from(row)
     });
-    Sheet { name: "tracers", heads: first.into_iter().chain(COLUMNS.iter().map(head)).collect(), rows: Box::new(rows) }
+    Table::new("tracers", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
 }
 
 /// Returns a table with one row per cell: time averages, and half-widths of their confidence intervals. Nonlinear
 /// quantities are also computed from the averages of the tensors.
-pub(super) fn means(course: &Course, blocks: usize) -> Sheet<'_> {
-    let both = |column: &Column| [head(column), format!("{}_half_width ({})", column.name, column.unit)];
-    let after = |column: &Column| format!("{}_of_means ({})", column.name, column.unit);
+pub(super) fn means(course: &Course, blocks: usize) -> Table<'_> {
+    let both = |column: &Column| ["", "_half_width"].map(|ending| head(column, ending));
     let rows = (0..course.grid.cells()).map(move |cell| {
-        let mut row = place(course, cell);
+        let mut row: Vec<Cell> = place(course, cell).collect();
         row.extend(COLUMNS.iter().flat_map(|column| {
             let found: Option<Mean> = course.mean_in(column, cell, blocks);
-            [found.map(|mean| mean.value), found.and_then(|mean| mean.half_width)].map(Cell::Number)
+            [found.map(|mean| mean.value), found.and_then(|mean| mean.half_width)].map(Cell::finite)
         }));
         let whole = course.element_of_means(cell);
         row.extend(
-            of_means().map(|column| Cell::Number(whole.and_then(|element| (column.of)(&element, &course.grains)))),
+            of_means().map(|column| Cell::finite(whole.and_then(|element| (column.of)(&element, &course.grains)))),
         );
-        row
+        Row::from(row)
     });
-    let heads = heads(PLACE).into_iter().chain(COLUMNS.iter().flat_map(both)).chain(of_means().map(after)).collect();
-    Sheet { name: "means", heads, rows: Box::new(rows) }
+    let columns = place_heads().chain(COLUMNS.iter().flat_map(both));
+    Table::new("means", columns.chain(of_means().map(|column| head(column, "_of_means"))), rows)
 }

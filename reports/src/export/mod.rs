@@ -2,8 +2,7 @@
 
 pub mod dump;
 pub mod record_json;
-pub mod series_csv;
-pub mod series_parquet;
+pub mod series;
 pub mod vtk;
 
 #[cfg(test)]
@@ -96,9 +95,9 @@ pub fn write_remains(
 }
 
 fn write_series(series: &Series, formats: &BTreeSet<Format>, out: &mut StagedDir) -> Result<(), WriteError> {
-    out.write_with("series.csv", |file| series_csv::write(series, file))?;
+    out.write_with("series.csv", |file| series::table(series).csv(file))?;
     if formats.contains(&Format::Parquet) {
-        out.write_with("series.parquet", |file| series_parquet::write(series, file))?;
+        out.write_with("series.parquet", |file| series::table(series).parquet(file))?;
     }
     Ok(())
 }

@@ -48,16 +48,15 @@ pub(crate) fn solvers(report: &Report) -> Vec<&str> {
     names
 }
 
-/// Renders the cards. `is_there` returns true if the page contains an anchor.
-pub(crate) fn render(report: &Report, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
+/// Renders the cards. `has_rows` returns true if the page contains the results of a case.
+pub(crate) fn render(report: &Report, anchors: &[String], has_rows: &dyn Fn(&str) -> bool) -> Markup {
     // Solvers with settings for single cases have no card; the matrix shows them.
     let solvers: Vec<&str> = solvers(report).into_iter().filter(|name| !name.contains('+')).collect();
     let (cost, stability) = (report.measured.cost.as_ref(), report.measured.stability.as_ref());
     let lead = |row: &Verdict| {
-        let own = address(row);
         let at = report.sections.iter().position(|section| section.name == row.case);
         let table = at.and_then(|at| anchors.get(at)).map_or_else(|| "matrix".to_owned(), |anchor| rows_of(anchor));
-        if is_there(&own) { own } else { table }
+        if has_rows(&row.case) { address(row) } else { table }
     };
     html! {
         @if !solvers.is_empty() {

@@ -6,7 +6,7 @@ use grainbench_harness::figure::{Drawing, Figure};
 use maud::{Markup, PreEscaped, html};
 use rayon::prelude::*;
 
-use super::budget::{Part, Piece, Rank};
+use super::budget::{Part, Rank};
 use super::{prose, slug, unique};
 use crate::plot::{self, DrawError};
 use crate::report::Section;
@@ -26,41 +26,35 @@ const fn class(drawing: &Drawing) -> &'static str {
     }
 }
 
-/// Returns the figures of a section as pieces of the page. `names` contains the file names of the figures.
-pub(crate) fn pieces(
+/// Returns the figures of a section. `names` contains the file names of the figures.
+pub(crate) fn parts(
     section: &Section,
     anchor: &str,
     names: &[String],
     taken: &mut BTreeSet<String>,
-) -> Result<Vec<Piece>, DrawError> {
+) -> Result<Vec<Part>, DrawError> {
     let ids: Vec<String> =
         section.figures.iter().map(|figure| unique(&format!("{anchor}-{}", slug(&figure.name)), taken)).collect();
     let named = section.figures.par_iter().zip(names).zip(&ids);
-    let parts: Vec<Part> = named.map(|((figure, name), id)| part(figure, name, id)).collect::<Result<_, _>>()?;
-    let mut pieces = Vec::new();
-    let count = section.figures.len();
-    let fixed = |text: &str| Piece::Fixed(text.to_owned());
-    for (at, mut part) in parts.into_iter().enumerate() {
-        if at >= SEEN && part.rank == Rank::Figures {
-            part.rank = Rank::ClosedFigures;
-        }
-        if at == 0 {
-            pieces.push(fixed("<div class=\"figures aside\">"));
-        }
-        if at == SEEN {
-            let more = count - SEEN;
-            let head = format!(
-                "</div><details class=\"aside\"><summary>{more} more figure{}</summary><div class=\"figures\">",
-                if more == 1 { "" } else { "s" }
-            );
-            pieces.push(Piece::Fixed(head));
-        }
-        pieces.push(Piece::Part(part));
-        if at + 1 == count {
-            pieces.push(fixed(if count > SEEN { "</div></details>" } else { "</div>" }));
+    let mut parts: Vec<Part> = named.map(|((figure, name), id)| part(figure, name, id)).collect::<Result<_, _>>()?;
+    for part in parts.iter_mut().skip(SEEN).filter(|part| part.rank == Rank::Figures) {
+        part.rank = Rank::ClosedFigures;
+    }
+    Ok(parts)
+}
+
+/// Renders the figures of a section, the first ones visible and the others in a closed section.
+pub(crate) fn render(parts: &[Part]) -> Markup {
+    let (seen, closed) = parts.split_at(parts.len().min(SEEN));
+    html! {
+        @if !seen.is_empty() { div class="figures aside" { @for part in seen { (part) } } }
+        @if !closed.is_empty() {
+            details.aside {
+                summary { (closed.len()) " more figure" @if closed.len() > 1 { "s" } }
+                div.figures { @for part in closed { (part) } }
+            }
         }
     }
-    Ok(pieces)
 }
 
 /// Returns a figure as a part of the page, with the link that replaces it if the page becomes too large.
@@ -77,7 +71,7 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
             div class=(class(&figure.drawing)) { (still) }
         }
     };
-    let whole = framed(figure, name, id, &shown).into_string();
+    let whole = framed(figure, name, id, &shown);
     // A moved film is replaced by its last frame. Any other moved figure is replaced by an image loaded from its file.
     let link = if reel.is_some() {
         framed(figure, name, id, &html! { div class=(class(&figure.drawing)) { (still) } })
@@ -91,10 +85,10 @@ pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawEr
     };
     let rank = match reel {
         Some(_) => Rank::Films,
-        None if whole.len() > HEAVY => Rank::HeavyFigures,
+        None if whole.0.len() > HEAVY => Rank::HeavyFigures,
         None => Rank::Figures,
     };
-    Ok(Part { rank, whole, link: link.into_string(), file: None })
+    Ok(Part::figure(rank, whole, link))
 }
 
 /// Returns a figure with its caption and links to its files.

@@ -6,9 +6,10 @@ use maud::{Markup, html};
 
 use super::cards::{self, meaning};
 use crate::headline::used_tolerance;
-use crate::judged::{ExternalResults, Row};
+use crate::judged::ExternalResults;
 use crate::number;
 use crate::report::{Report, Section};
+use crate::table::{self, scrolling};
 
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
@@ -109,7 +110,8 @@ fn fields_of(report: &Report) -> Vec<Physics> {
 
 /// Results of a solver in a field of physics.
 struct FieldResults {
-    /// Largest |error| / scale of the results that pass or have a documented error; none if no result has an error.
+    /// Median |error| / scale of the judged results; none if no result has an error. The largest error would be that of the
+    /// claim with the widest tolerance.
     error: Option<f64>,
     /// Number of results of each outcome, with the most important outcome first.
     counts: Vec<(Outcome, usize)>,
@@ -120,8 +122,10 @@ impl FieldResults {
         let sections = report.sections.iter().filter(|section| section.physics == physics);
         let of_solver = sections.flat_map(|section| &section.verdicts).filter(|row| row.solver == solver);
         let rows: Vec<&Verdict> = of_solver.filter(|row| row.outcome.is_judged()).collect();
-        let error = rows.iter().filter_map(|row| row.error).map(f64::abs).filter(|error| error.is_finite());
-        let error = error.reduce(f64::max);
+        let errors = rows.iter().filter_map(|row| row.error).map(f64::abs).filter(|error| error.is_finite());
+        let mut errors: Vec<f64> = errors.collect();
+        errors.sort_by(f64::total_cmp);
+        let error = errors.get(errors.len() / 2).copied();
         (!rows.is_empty()).then(|| Self { error, counts: counts(rows.iter().map(|row| row.outcome)) })
     }
 
@@ -131,7 +135,7 @@ impl FieldResults {
     }
 }
 
-/// Renders the largest error by field of physics and solver, for solvers without settings for single cases. Solvers with
+/// Renders the median error by field of physics and solver, for solvers without settings for single cases. Solvers with
 /// the smallest error in most fields come first. Empty if all cases are in one field.
 pub(crate) fn by_physics(report: &Report) -> Markup {
     const MAIN: [&str; 5] = ["dem", "rigid", "mpm", "dem:lammps", "dem:liggghts"];
@@ -170,30 +174,21 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
         let error = results.error.map_or("–".to_owned(), percent);
         html! { a class=(class) href="#matrix" title=(title) data-solver=(solver) { (error) } }
     };
-    let table = html! {
-        table.physics {
-            thead {
-                tr {
-                    th scope="col" { "Largest error" }
-                    @for (solver, _) in &columns { th scope="col" { (broken(solver)) } }
-                }
-            }
-            tbody {
-                @for (field, physics) in fields.iter().enumerate() {
-                    tr {
-                        th scope="row" { (physics.title()) }
-                        @for (solver, results) in &columns {
-                            td { @if let Some(results) = &results[field] { (cell(field, solver, results)) } }
-                        }
-                    }
-                }
-            }
-        }
+    // A long name may break after its colon.
+    let heads = columns.iter().map(|(solver, _)| table::Column::text(solver.replace(':', ":\u{200b}")));
+    let heads = [table::Column::heading("Median error")].into_iter().chain(heads);
+    let row = |(field, physics): (usize, &Physics)| {
+        let cells = columns.iter().map(|(solver, results)| {
+            results[field].as_ref().map_or(table::Cell::from(""), |results| cell(field, solver, results).into())
+        });
+        table::Row::from([physics.title().into()].into_iter().chain(cells).collect::<Vec<table::Cell>>())
     };
+    let table =
+        table::Table::new("Median error by field of physics and solver", heads, fields.iter().enumerate().map(row));
     html! {
         h3 { a href="#matrix" { "Which solver for which physics" } }
-        (super::scrolling("Largest error by field of physics and solver", &table))
-        p.note { "Largest |error| / scale of the judged results. Dark: the smallest of its row." }
+        (table.page("physics"))
+        p.note { "Median |error| / scale of the judged results. Dark: the smallest of its row." }
     }
 }
 
@@ -206,11 +201,6 @@ fn percent(error: f64) -> String {
     } else {
         number::power_of_ten(error.log10().floor() as i32)
     }
-}
-
-/// Renders a solver's name that may break after its colon.
-fn broken(solver: &str) -> Markup {
-    html! { @for part in solver.split_inclusive(':') { (part) wbr; } }
 }
 
 /// Renders the matrix. The cases are grouped by field of physics.
@@ -251,7 +241,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     html! {
         div.matrix {
             h2 id="matrix" { "Largest error / tolerance, by case and solver" }
-            (super::scrolling("Cases by solvers", &table))
+            (scrolling("Cases by solvers", &table))
             p.key {
                 span { i.c0 {} "≤ .1" } span { i.c1 {} "≤ .5" } span { i.c2 {} "≤ 1 × tolerance" }
                 span { i.k0 {} i.k1 {} i.k2 {} "known error: ≤ 10, ≤ 1000, > 1000 × tolerance" }
@@ -295,12 +285,12 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
 }
 
 fn theirs(results: &ExternalResults, case: &str) -> Markup {
-    let rows: Vec<&Row> = results.rows.iter().filter(|row| row.case == case).collect();
-    let Some(worst) = rows.iter().max_by_key(|row| order(row.verdict)) else { return html! {} };
+    let outcomes = results.rows.iter().filter(|row| row.result.case == case).map(|row| row.result.outcome);
+    let Some(worst) = outcomes.clone().max_by_key(|outcome| order(*outcome)) else { return html! {} };
     let used = results.count(Some(case)).worst;
-    let counts = counts(rows.iter().map(|row| row.verdict));
+    let counts = counts(outcomes);
     let words = description(case, &results.program, &counts);
-    html! { span class={ (class(worst.verdict, used)) (stripe(&counts)) } title=(words) { (text(worst.verdict, used)) } }
+    html! { span class={ (class(worst, used)) (stripe(&counts)) } title=(words) { (text(worst, used)) } }
 }
 
 #[cfg(test)]

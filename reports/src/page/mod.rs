@@ -5,6 +5,7 @@ pub(crate) mod budget;
 mod cards;
 mod contents;
 pub(crate) mod figures;
+mod layout;
 mod matrix;
 mod overview;
 mod peers;
@@ -17,21 +18,20 @@ pub(crate) mod summary;
 mod tables;
 
 pub use cards::meaning;
+pub use layout::slug;
+use layout::{CSS, SCRIPT};
+pub(crate) use layout::{captioned, rows_of, shell, sign, unique};
 pub use provenance::{AUTHOR, TITLE};
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{Outcome, Severity};
-use maud::{DOCTYPE, Markup, PreEscaped, html};
+use maud::{Render, html};
 
+use self::section::CaseSection;
 use crate::headline::Headline;
-use crate::plot::{DrawError, markup};
+use crate::plot::DrawError;
 use crate::report::Report;
 
-/// Style sheet of the page.
-const CSS: &str = include_str!("style.css");
-/// Optional script of the page for search, filters and films.
-const SCRIPT: &str = include_str!("page.js");
 /// Allowance for the HTML tags around the content of the page (bytes).
 const FRAME: usize = 2_000;
 
@@ -57,34 +57,32 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
     let names = figure_names(report);
-    let mut pieces = vec![budget::Piece::Fixed(String::new())];
+    let mut sections = Vec::new();
     for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
-        pieces.extend(section::pieces(section, anchor, names, &mut taken)?);
+        sections.push(CaseSection::new(section, anchor, names, &mut taken)?);
     }
-    let head = overview::render(report, counts, &anchors, &|_| true).into_string();
+    let contents = contents::render(report, &anchors);
     let studies = questions::sections(&report.measured)?;
-    let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) }.into_string();
-    pieces.push(budget::Piece::Fixed(foot));
-    pieces[0] = budget::Piece::Fixed(head.clone());
-    let fixed = FRAME + CSS.len() + SCRIPT.len() + contents::render(report, &anchors).into_string().len();
-    let (main, beside) = budget::fit(pieces, budget::PAGE.saturating_sub(fixed));
-    let below = main.strip_prefix(&head).unwrap_or_default();
-    // Results that were moved out of the page have no anchor in it.
-    let head =
-        overview::render(report, counts, &anchors, &|row| below.contains(&format!(" id=\"{row}\""))).into_string();
+    let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) };
+    // The first screen is largest if the page contains all results.
+    let head = |has_rows: &dyn Fn(&str) -> bool| overview::render(report, counts, &anchors, has_rows);
+    let texts = [&contents, &foot, &head(&|_| true)].map(|part| part.0.len());
+    let fixed = FRAME + CSS.len() + SCRIPT.len() + texts.iter().sum::<usize>();
+    let whole: usize = sections.iter().map(|section| section.render().0.len()).sum();
+    let mut parts: Vec<&mut budget::Part> = sections.iter_mut().flat_map(CaseSection::parts).collect();
+    let own = whole - parts.iter().map(|part| part.whole.0.len()).sum::<usize>();
+    let beside = budget::fit(&mut parts, fixed + own, budget::PAGE);
+    let has_rows = |case: &str| {
+        report.sections.iter().zip(&sections).any(|(section, shown)| section.name == case && shown.has_rows())
+    };
     let body = html! {
         a.skip href="#summary" { "To the summary" }
         div.frame {
-            (contents::render(report, &anchors))
-            main { (PreEscaped(head)) (PreEscaped(below)) }
+            (contents)
+            main { (head(&has_rows)) @for section in &sections { (section) } (foot) }
         }
     };
     Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })
-}
-
-/// Returns the anchor of the table with all results of a case.
-pub(crate) fn rows_of(anchor: &str) -> String {
-    format!("{anchor}-rows")
 }
 
 /// Returns the file names of all figures, grouped by section.
@@ -95,67 +93,6 @@ pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
         section.figures.iter().map(|figure| unique(&stem(figure), &mut taken)).collect()
     };
     report.sections.iter().map(section_names).collect()
-}
-
-/// Returns a complete HTML page with the given body.
-pub(crate) fn shell(title: &str, body: &Markup) -> String {
-    let page = html! {
-        (DOCTYPE)
-        html lang="en" {
-            head {
-                meta charset="utf-8";
-                meta name="viewport" content="width=device-width, initial-scale=1";
-                meta name="color-scheme" content="light dark";
-                // Without an icon link, a browser would request an icon from the server.
-                link rel="icon" href="data:,";
-                title { (title) }
-                style { (PreEscaped(CSS)) }
-            }
-            body { (body) script { (PreEscaped(SCRIPT)) } }
-        }
-    };
-    markup(&page.into_string())
-}
-
-/// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
-#[must_use]
-pub fn slug(name: &str) -> String {
-    let mut slug = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_alphanumeric() {
-            slug.push(letter.to_ascii_lowercase());
-        } else if !slug.is_empty() && !slug.ends_with('-') {
-            slug.push('-');
-        }
-    }
-    let slug = slug.trim_end_matches('-');
-    if slug.is_empty() { "unnamed" } else { slug }.to_owned()
-}
-
-/// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.
-pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
-    let mut name = stem.to_owned();
-    let mut next = 2;
-    while !taken.insert(name.clone()) {
-        name = format!("{stem}-{next}");
-        next += 1;
-    }
-    name
-}
-
-/// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
-/// colour.
-pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
-    match outcome.severity() {
-        Severity::Green => ("✓", "pass"),
-        Severity::Red => ("✗", "fail"),
-        Severity::Amber => ("▲", "amber"),
-    }
-}
-
-/// Returns a table in a box that scrolls, also by keyboard, if the screen is narrower than the table.
-pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
-    html! { div.scroll role="region" aria-label=(label) tabindex="0" { (table) } }
 }
 
 #[cfg(test)]

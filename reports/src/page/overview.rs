@@ -8,14 +8,15 @@ use crate::headline::{Headline, OUTCOMES};
 use crate::report::Report;
 use grainbench_harness::verdict::{Outcome, Severity};
 
-/// Renders the first screen. `is_there` returns true if the page contains an anchor.
+/// Renders the first screen. `has_rows` returns true if the page contains the results of a case.
 ///
 /// `counts` counts all results, and `report` contains only the results that are shown.
-pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_there: &dyn Fn(&str) -> bool) -> Markup {
+pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], has_rows: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
     let cases = report.sections.len();
-    let external = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.verdict.is_judged());
-    let external = external.fold((0, 0), |(red, all), row| (red + usize::from(row.verdict.is_red()), all + 1));
+    let external = report.judged.iter().flat_map(|results| &results.rows).map(|row| row.result.outcome);
+    let external = external.filter(|outcome| outcome.is_judged());
+    let external = external.fold((0, 0), |(red, all), outcome| (red + usize::from(outcome.is_red()), all + 1));
     html! {
         header id="summary" {
             p.kicker {
@@ -53,7 +54,7 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], is_t
             (summary::failing(report, anchors))
         }
         (questions::render(report, &matrix::by_physics(report)))
-        (cards::render(report, anchors, is_there))
+        (cards::render(report, anchors, has_rows))
         (tools())
         div.overview {
             (matrix::render(report, anchors))

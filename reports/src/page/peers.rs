@@ -3,11 +3,12 @@
 use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
 
-use super::scrolling;
 use crate::headline;
-use crate::judged::{self, Count, ExternalResults, Row};
+use crate::judged::{self, Count, ExternalResults};
 use crate::number;
 use crate::report::Report;
+use crate::row;
+use crate::table::{Cell, Column, Row, Table};
 
 /// Renders the section; it is empty if there are no external solvers.
 pub(crate) fn render(report: &Report) -> Markup {
@@ -21,7 +22,7 @@ pub(crate) fn render(report: &Report) -> Markup {
                     "negative control. The first table states where and when the programs ran. They did not run for \
                      this report."
                 }
-                (scrolling("Programs", &programs(judged)))
+                (programs(judged).page("cases"))
                 p.note {
                     "For each case the table shows the largest error / tolerance, and passed / applicable results. \
                      Other results are unsupported. "
@@ -29,38 +30,26 @@ pub(crate) fn render(report: &Report) -> Markup {
                      this run "
                     "evaluated them."
                 }
-                (scrolling("Programs by case", &by_case(report)))
+                (by_case(report).page("cases"))
             }
         }
     }
 }
 
-fn programs(judged: &[ExternalResults]) -> Markup {
-    html! {
-        table.cases {
-            thead {
-                tr {
-                    th scope="col" { "Program" }
-                    th scope="col" { "Rows passed" }
-                    th scope="col" { "Controls red" }
-                    th scope="col" { "Judged" }
-                    th scope="col" { "On" }
-                }
-            }
-            tbody {
-                @for results in judged {
-                    @let count = results.count(None);
-                    tr {
-                        th scope="row" { (results.program) span.title { (results.version) } }
-                        td { (tally(&count)) }
-                        td { (count.controls_red) " of " (count.controls) }
-                        td { (results.day()) ", commit " (results.provenance.commit) }
-                        td { (results.provenance.machine) }
-                    }
-                }
-            }
-        }
-    }
+fn programs(judged: &[ExternalResults]) -> Table<'_> {
+    let columns = ["Rows passed", "Controls red", "Judged", "On"].map(Column::text);
+    let row = |results: &ExternalResults| {
+        let count = results.count(None);
+        row![
+            html! { (results.program) span.title { (results.version) } },
+            tally(&count),
+            format!("{} of {}", count.controls_red, count.controls),
+            format!("{}, commit {}", results.day(), results.provenance.commit),
+            &results.provenance.machine
+        ]
+    };
+    let columns = [Column::heading("Program")].into_iter().chain(columns);
+    Table::new("Programs", columns, judged.iter().map(row))
 }
 
 fn tally(count: &Count) -> Markup {
@@ -71,46 +60,33 @@ fn tally(count: &Count) -> Markup {
     }
 }
 
-fn by_case(report: &Report) -> Markup {
-    html! {
-        table.cases {
-            thead {
-                tr {
-                    th scope="col" { "Case" }
-                    th scope="col" { "ours" }
-                    @for results in &report.judged { th scope="col" { (results.program) } }
-                }
-            }
-            tbody {
-                @for case in judged::cases(&report.judged) {
-                    tr {
-                        th scope="row" { (case) }
-                        td { @if let Some(worst) = ours(report, case) { (number::significant(worst, 2)) } @else { "—" } }
-                        @for results in &report.judged { (cell(&results.count(Some(case)))) }
-                    }
-                }
-            }
-        }
-    }
+fn by_case(report: &Report) -> Table<'_> {
+    let programs = report.judged.iter().map(|results| Column::text(&results.program));
+    let row = |case| {
+        let worst = ours(report, case).map(|worst| number::significant(worst, 2));
+        let counts = report.judged.iter().map(|results| Cell::from(cell(&results.count(Some(case)))));
+        Row::from([Cell::from(case), worst.into()].into_iter().chain(counts).collect::<Vec<_>>())
+    };
+    let columns = [Column::heading("Case"), Column::text("ours")].into_iter().chain(programs);
+    Table::new("Programs by case", columns, judged::cases(&report.judged).into_iter().map(row))
 }
 
 fn cell(count: &Count) -> Markup {
     html! {
-        td {
-            @if let Some(worst) = count.worst { (number::significant(worst, 2)) " · " } @else if count.red == 0 { "— " }
-            @if count.pass + count.red > 0 { (count.pass) "/" (count.pass + count.red + count.amber) }
-            @if count.red > 0 { " " span.mark.fail { "✗ " (count.red) } }
-        }
+        @if let Some(worst) = count.worst { (number::significant(worst, 2)) " · " } @else if count.red == 0 { "— " }
+        @if count.pass + count.red > 0 { (count.pass) "/" (count.pass + count.red + count.amber) }
+        @if count.red > 0 { " " span.mark.fail { "✗ " (count.red) } }
     }
 }
 
 /// Returns the largest |error|/allowed of our results in a case, over the quantities and resolutions that external
 /// solvers also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
-    let asked = report.judged.iter().flat_map(|results| &results.rows).filter(|row| row.case == case);
+    let asked = report.judged.iter().flat_map(|results| &results.rows).map(|row| &row.result);
+    let asked = asked.filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {
         let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
-        let is_it = |theirs: &Row| {
+        let is_it = |theirs: &Verdict| {
             (&theirs.variant, &theirs.quantity, &theirs.resolution) == (&row.variant, &row.quantity, &row.resolution)
         };
         is_judged && asked.clone().any(is_it)

@@ -3,7 +3,6 @@
 use grainbench_harness::figure::{Drawing, Figure};
 use maud::{Markup, PreEscaped, html};
 
-use super::scrolling;
 use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp, TARGETS};
 use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
@@ -11,8 +10,10 @@ use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
 use crate::report::Report;
 use crate::study::effects::{EffectResult, Entry, change, median};
-use crate::study::stability::{Hardness, distinct, sign};
+use crate::study::stability::{Hardness, distinct};
+use crate::study::stability_page::{self, sign};
 use crate::study::{cost, effects, stability};
+use crate::table::{Cell, Column, Row, Table};
 
 /// Size of a graph on the first screen (drawing units).
 const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
@@ -56,7 +57,7 @@ pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
 /// # Errors
 /// When a figure cannot be drawn.
 pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
-    let stable = measured.stability.as_ref().map(stability::tables).transpose()?;
+    let stable = measured.stability.as_ref().map(stability_page::tables).transpose()?;
     let effects = measured.effects.as_ref().map(|effects| effects::heat(&effects.ledger));
     Ok(html! {
         @if stable.is_some() || effects.is_some() {
@@ -141,38 +142,31 @@ fn steps(stability: &Stability) -> Markup {
     };
     let (held, hard): (Vec<&str>, Vec<&str>) =
         distinct(stability.hard.iter().map(|row| row.case.as_str())).into_iter().partition(|case| is_held(case));
-    let table = html! {
-        table.marks {
-            thead { tr { th scope="col" { "Hard case" } @for line in &lines { th scope="col" { (line.solver) } } } }
-            tbody {
-                @for case in hard {
-                    tr {
-                        th scope="row" { (case.replace('-', " ")) }
-                        @for line in &lines {
-                            @let standing = found(case, &line.solver).unwrap_or(Hardness::Unsupported);
-                            @let (symbol, class) = sign(standing);
-                            td { span class={ "mark " (class) } title=(standing.word()) { (symbol) } }
-                        }
-                    }
-                }
-                tr {
-                    th scope="row" { (held.len()) " other cases" }
-                    @for line in &lines {
-                        @let holds = held.iter().filter(|case| found(case, &line.solver) == Some(Hardness::Holds)).count();
-                        @let tried = |standing| !matches!(standing, Hardness::Unsupported | Hardness::NotAvailable);
-                        @let asked = held.iter().filter(|case| found(case, &line.solver).is_some_and(tried)).count();
-                        td title=(format!("{holds} of {asked} supported")) {
-                            span.mark.pass { "✓" (holds) @if holds < asked { "/" (asked) } }
-                        }
-                    }
-                }
-            }
-        }
+    let columns = [Column::heading("Hard case")].into_iter().chain(lines.iter().map(|line| Column::text(&line.solver)));
+    let mark = |case: &str, line: &Hold| {
+        let standing = found(case, &line.solver).unwrap_or(Hardness::Unsupported);
+        let (symbol, class) = sign(standing);
+        Cell::from(html! { span class={ "mark " (class) } title=(standing.word()) { (symbol) } })
     };
+    let row = |case: &&str| {
+        let marks = lines.iter().map(|line| mark(case, line));
+        Row::from([Cell::from(case.replace('-', " "))].into_iter().chain(marks).collect::<Vec<_>>())
+    };
+    let total = |line: &&Hold| {
+        let of =
+            |is: fn(Hardness) -> bool| held.iter().filter(|case| found(case, &line.solver).is_some_and(is)).count();
+        let holds = of(|standing| standing == Hardness::Holds);
+        let asked = of(|standing| !matches!(standing, Hardness::Unsupported | Hardness::NotAvailable));
+        let title = format!("{holds} of {asked} supported");
+        Cell::from(html! { span.mark.pass title=(title) { "✓" (holds) @if holds < asked { "/" (asked) } } })
+    };
+    let totals = [Cell::from(format!("{} other cases", held.len()))].into_iter().chain(lines.iter().map(total));
+    let rows = hard.iter().map(row).chain([Row::from(totals.collect::<Vec<_>>())]);
+    let table = Table::new("Hard cases by solver", columns, rows);
     html! {
         @if let Some(figure) = &figure { (drawn(figure)) }
         p { (limits(&lines)) }
-        (scrolling("Hard cases by solver", &table))
+        (table.page("marks"))
         p.note { "✓ holds · ↓ holds at a smaller time step · ! ends with an error message · ✗ wrong without an error · – \
                   unsupported" }
     }

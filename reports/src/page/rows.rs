@@ -9,12 +9,13 @@ use super::{sign, unique};
 use crate::headline::used_tolerance;
 use crate::line;
 use crate::number;
+use crate::table::{Column, head};
 
 /// Returns the anchor of a result, from a hash of case, variant, solver, resolution and quantity. It is therefore the same
 /// in every report.
 pub(crate) fn address(verdict: &Verdict) -> String {
     let mut hasher = blake3::Hasher::new();
-    for part in [&verdict.case, &verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity] {
+    for part in verdict.key() {
         hasher.update(&(part.len() as u64).to_le_bytes());
         hasher.update(part.as_bytes());
     }
@@ -37,19 +38,13 @@ pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
 
 /// Returns the table of results. `taken` contains the anchors that the page already uses.
 pub(crate) fn table(rows: &[&Verdict], taken: &mut BTreeSet<String>) -> Markup {
+    let columns = ["Verdict", "Quantity", "Solver"].map(Column::text).into_iter();
+    let columns = columns.chain(["Value, expected", "Error, allowed"].map(Column::number));
+    let columns: Vec<Column> = columns.chain([Column::text("Evidence and source")]).collect();
     html! {
         table.rows.sorts.verdicts {
-            colgroup { @for _ in 0..6 { col; } }
-            thead {
-                tr {
-                    th scope="col" { "Verdict" }
-                    th scope="col" { "Quantity" }
-                    th scope="col" { "Solver" }
-                    th.n scope="col" { "Value, expected" }
-                    th.n scope="col" { "Error, allowed" }
-                    th scope="col" { "Evidence and source" }
-                }
-            }
+            colgroup { @for _ in &columns { col; } }
+            (head(&columns))
             tbody { @for verdict in rows { (row(verdict, &unique(&address(verdict), taken))) } }
         }
     }

@@ -3,76 +3,113 @@
 
 use std::collections::BTreeSet;
 
-use maud::{Markup, PreEscaped, html};
+use grainbench_harness::verdict::{Control, Verdict};
+use maud::{Markup, Render, html};
 
-use super::budget::{Part, Piece, Rank};
+use super::budget::{Part, Rank};
 use super::{figures, prose, rows, tables};
 use crate::headline::Headline;
 use crate::line;
 use crate::plot::DrawError;
 use crate::report::Section;
 
-/// Returns the pieces of a case. `names` contains the file names of its figures, and `taken` the anchors that the page
-/// already uses.
-pub(crate) fn pieces(
-    section: &Section,
-    anchor: &str,
-    names: &[String],
-    taken: &mut BTreeSet<String>,
-) -> Result<Vec<Piece>, DrawError> {
-    let mut pieces = vec![Piece::Fixed(open(section, anchor))];
-    pieces.extend(figures::pieces(section, anchor, names, taken)?);
-    let sorted = rows::sorted(&section.verdicts);
-    if !sorted.is_empty() {
-        let counts = Headline::of_section(section);
-        let id = super::rows_of(anchor);
-        let summary = html! { "Rows " span.of { "(" (counts.sentence()) ")" } };
-        let path = format!("tables/{anchor}-rows.html");
-        let title = format!("{}: every row", section.name);
-        let table = rows::table(&sorted, taken).into_string();
-        folded(&mut pieces, Some(&id), "rows-of", &summary, Part::text(Rank::Rows, &title, path, table));
-    }
-    if !section.controls.is_empty() {
-        let red = section.controls.iter().filter(|control| control.turned_red).count();
-        let summary =
-            html! { "Negative controls " span.of { "(" (red) " of " (section.controls.len()) " turned red)" } };
-        let table = tables::controls(&section.controls).into_string();
-        let title = format!("{}: negative controls", section.name);
-        folded(
-            &mut pieces,
-            None,
-            "aside",
-            &summary,
-            Part::text(Rank::Controls, &title, format!("tables/{anchor}-controls.html"), table),
-        );
-    }
-    if !section.runs.is_empty() {
-        let summary = html! { "Costs " span.of { "(" (section.runs.len()) " runs)" } };
-        let title = format!("{}: costs", section.name);
-        let table = tables::costs(&section.runs).into_string();
-        folded(
-            &mut pieces,
-            None,
-            "aside",
-            &summary,
-            Part::text(Rank::Costs, &title, format!("tables/{anchor}-costs.html"), table),
-        );
-    }
-    for (heading, text) in headed(&section.derivation) {
-        let text = html! { div.prose { (prose::render(text)) } }.into_string();
-        let title = format!("{}: {}", section.name, heading.to_lowercase());
-        let part =
-            Part::text(Rank::Derivations, &title, format!("tables/{anchor}-{}.html", super::slug(heading)), text);
-        folded(&mut pieces, None, "aside", &html! { (heading) }, part);
-    }
-    if !section.weak.is_empty() {
-        let text = html! {
-            details.aside { summary { "Limitations" } div.prose { (prose::render(&section.weak)) } }
+/// Section of a case. Its figures, tables and derivations are parts that can be moved out of the page.
+pub(crate) struct CaseSection<'a> {
+    section: &'a Section,
+    anchor: &'a str,
+    figures: Vec<Part>,
+    details: Vec<Details>,
+}
+
+/// A part within closed details.
+struct Details {
+    id: Option<String>,
+    class: &'static str,
+    summary: Markup,
+    part: Part,
+}
+
+impl<'a> CaseSection<'a> {
+    /// Returns the section of a case. `names` contains the file names of its figures, and `taken` the anchors that the
+    /// page already uses.
+    pub(crate) fn new(
+        section: &'a Section,
+        anchor: &'a str,
+        names: &[String],
+        taken: &mut BTreeSet<String>,
+    ) -> Result<Self, DrawError> {
+        let figures = figures::parts(section, anchor, names, taken)?;
+        let mut details = Vec::new();
+        let mut add = |id, class, summary, (rank, name, title): (Rank, &str, &str), whole| {
+            let title = format!("{}: {title}", section.name);
+            let part = Part::text(rank, &title, format!("tables/{anchor}-{name}.html"), whole);
+            details.push(Details { id, class, summary, part });
         };
-        pieces.push(Piece::Fixed(text.into_string()));
+        let sorted = rows::sorted(&section.verdicts);
+        if !sorted.is_empty() {
+            let counts = Headline::of_section(section);
+            let summary = html! { "Rows " span.of { "(" (counts.sentence()) ")" } };
+            let table = rows::table(&sorted, taken);
+            add(Some(super::rows_of(anchor)), "rows-of", summary, (Rank::Rows, "rows", "every row"), table);
+        }
+        if !section.controls.is_empty() {
+            let red = section.controls.iter().filter(|control| control.turned_red).count();
+            let summary =
+                html! { "Negative controls " span.of { "(" (red) " of " (section.controls.len()) " turned red)" } };
+            let table = tables::controls(&section.controls);
+            add(None, "aside", summary, (Rank::Controls, "controls", "negative controls"), table);
+        }
+        if !section.runs.is_empty() {
+            let summary = html! { "Costs " span.of { "(" (section.runs.len()) " runs)" } };
+            add(None, "aside", summary, (Rank::Costs, "costs", "costs"), tables::costs(&section.runs));
+        }
+        for (heading, text) in headed(&section.derivation) {
+            let text = html! { div.prose { (prose::render(text)) } };
+            let names = (Rank::Derivations, &*super::slug(heading), &*heading.to_lowercase());
+            add(None, "aside", html! { (heading) }, names, text);
+        }
+        Ok(Self { section, anchor, figures, details })
     }
-    pieces.push(Piece::Fixed("</section>".to_owned()));
-    Ok(pieces)
+
+    /// Returns all parts that can be moved out of the page.
+    pub(crate) fn parts(&mut self) -> impl Iterator<Item = &mut Part> {
+        self.figures.iter_mut().chain(self.details.iter_mut().map(|details| &mut details.part))
+    }
+
+    /// Returns true if the table of all results is in the page.
+    pub(crate) fn has_rows(&self) -> bool {
+        self.details.iter().any(|details| details.part.rank == Rank::Rows && !details.part.is_moved())
+    }
+}
+
+impl Render for CaseSection<'_> {
+    fn render(&self) -> Markup {
+        let Self { section, anchor, figures, details } = self;
+        let failing: Vec<&Verdict> = section.verdicts.iter().filter(|row| row.outcome.is_red()).collect();
+        let green_controls: Vec<&Control> = section.controls.iter().filter(|control| !control.turned_red).collect();
+        // The search also looks through this text.
+        let words = format!("{} {} {}", section.name, section.title, section.claim);
+        html! {
+            section.case id=(anchor) data-case=(section.name) data-words=(words) {
+                p.kicker { (section.name) }
+                h2 { (section.title) }
+                p.claim { (section.claim) }
+                @if failing.len() + green_controls.len() > 0 {
+                    ul.failing aria-label="What fails in this case" {
+                        @for verdict in failing { li { (line::verdict_in_section(verdict)) } }
+                        @for control in green_controls { li { (line::control_in_section(control)) } }
+                    }
+                }
+                (figures::render(figures))
+                @for Details { id, class, summary, part } in details {
+                    details id=[id.as_ref()] class=(class) { summary { (summary) } (part) }
+                }
+                @if !section.weak.is_empty() {
+                    details.aside { summary { "Limitations" } div.prose { (prose::render(&section.weak)) } }
+                }
+            }
+        }
+    }
 }
 
 /// Returns the parts of a derivation with their headings. The part before the first heading (`## …`) is "Derivation".
@@ -82,35 +119,4 @@ fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     let parts = rest.split(HEADING).filter(|part| !part.is_empty());
     let parts = parts.map(|part| part.split_once('\n').unwrap_or((part, "")));
     Some(("Derivation", first)).filter(|(_, text)| !text.trim().is_empty()).into_iter().chain(parts)
-}
-
-/// Adds a part within closed details.
-fn folded(pieces: &mut Vec<Piece>, id: Option<&str>, class: &str, summary: &Markup, part: Part) {
-    let open = html! { details id=[id] class=(class) { summary { (summary) } (PreEscaped("\u{0}")) } }.into_string();
-    let (before, after) = open.split_once('\u{0}').unwrap_or((&open, ""));
-    pieces.push(Piece::Fixed(before.to_owned()));
-    pieces.push(Piece::Part(part));
-    pieces.push(Piece::Fixed(after.to_owned()));
-}
-
-/// Returns the opening tag and the beginning of the section.
-fn open(section: &Section, anchor: &str) -> String {
-    let failing = section.verdicts.iter().filter(|row| row.outcome.is_red());
-    let green_controls = section.controls.iter().filter(|control| !control.turned_red);
-    let fails = failing.clone().count() + green_controls.clone().count();
-    // The search also looks through this text.
-    let words = format!("{} {} {}", section.name, section.title, section.claim);
-    let tag = html! { section.case id=(anchor) data-case=(section.name) data-words=(words) {} }.into_string();
-    let head = html! {
-        p.kicker { (section.name) }
-        h2 { (section.title) }
-        p.claim { (section.claim) }
-        @if fails > 0 {
-            ul.failing aria-label="What fails in this case" {
-                @for verdict in failing { li { (line::verdict_in_section(verdict)) } }
-                @for control in green_controls { li { (line::control_in_section(control)) } }
-            }
-        }
-    };
-    tag.trim_end_matches("</section>").to_owned() + &head.into_string()
 }

@@ -9,6 +9,7 @@ use crate::number;
 use crate::plot;
 use crate::plot::graph::{self, Form};
 use crate::report::Report;
+use crate::table::{Cell, Column, Row, Table};
 
 /// Largest number of failures on the first screen.
 const LINES: usize = 6;
@@ -72,23 +73,15 @@ pub(crate) fn picture(costs: &Costs) -> String {
 pub(crate) fn factors(costs: &Costs) -> Markup {
     let stamp = &costs.stamp;
     let graph = over_cases(costs);
+    let columns = [Column::heading("Time over the cheapest at the same error")].into_iter();
+    let columns = columns.chain(TARGETS.map(|target| Column::number(number::fraction(target))));
+    let row = |(line, (_, key)): (&Line, _)| {
+        let factors = line.factors.iter().map(|factor| Cell::from(cell(factor.as_ref(), line.asked)));
+        let cells = [Cell::from(html! { (key) " " (line.solver) })].into_iter().chain(factors).collect::<Vec<_>>();
+        Row::from(cells).class(if stamp.is_old(&line.solver) { "old" } else { "" })
+    };
     html! {
-        table {
-            thead {
-                tr {
-                    th scope="col" { "Time over the cheapest at the same error" }
-                    @for target in TARGETS { th.n scope="col" { (number::fraction(target)) } }
-                }
-            }
-            tbody {
-                @for (line, (_, key)) in costs.lines.iter().zip(graph::keys(&graph)) {
-                    tr class=[stamp.is_old(&line.solver).then_some("old")] {
-                        th scope="row" { (key) " " (line.solver) }
-                        @for factor in &line.factors { td.n { (cell(factor.as_ref(), line.asked)) } }
-                    }
-                }
-            }
-        }
+        (Table::new("", columns, costs.lines.iter().zip(graph::keys(&graph)).map(row)).page(""))
         (over_dem(costs))
         p.note {
             "The table shows the geometric mean over the target quantities for which the solver and at least one more \

@@ -3,85 +3,65 @@
 use grainbench_harness::verdict::Control;
 use maud::{Markup, html};
 
-use super::scrolling;
-use crate::number::{self, TimeUnit};
+use crate::number;
 use crate::report::RunCost;
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
 
 /// Renders the table of negative controls with their results.
 pub(crate) fn controls(controls: &[Control]) -> Markup {
+    let columns = [
+        Column::text("Result"),
+        Column::heading("Quantity"),
+        Column::text("Solver"),
+        Column::text("Wrong physics"),
+        Column::new("Error found, allowed", Format::Error),
+    ];
+    let row = |control: &Control| {
+        let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
+        let variant = html! { @if !control.variant.is_empty() { span.fine { (control.variant) } } };
+        let allowed = html! { span.fine { "allowed " (number::fraction(control.allowed)) } };
+        let error = Cell::Page(
+            html! { (number::error(control.error)) (allowed) },
+            control.error.map(|error| error.abs().to_string()),
+        );
+        let result = html! { span class={ "mark " (class) } { (result) } " by " (control.how.word()) };
+        let quantity = html! { (control.quantity) (variant) };
+        row![result, quantity, &control.solver, &control.wrong_physics, error].class(class)
+    };
     html! {
         p.note { "Each claim is evaluated with wrong physics and must fail." }
-        table.rows.sorts {
-            thead {
-                tr {
-                    th scope="col" { "Result" }
-                    th scope="col" { "Quantity" }
-                    th scope="col" { "Solver" }
-                    th scope="col" { "Wrong physics" }
-                    th.n scope="col" { "Error found, allowed" }
-                }
-            }
-            tbody {
-                @for control in controls {
-                    @let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
-                    tr class=(class) {
-                        td { span class={ "mark " (class) } { (result) } " by " (control.how.word()) }
-                        th scope="row" {
-                            (control.quantity)
-                            @if !control.variant.is_empty() { span.fine { (control.variant) } }
-                        }
-                        td { (control.solver) }
-                        td { (control.wrong_physics) }
-                        td.n data-v=[control.error.map(f64::abs)] {
-                            (number::error(control.error)) span.fine { "allowed " (number::fraction(control.allowed)) }
-                        }
-                    }
-                }
-            }
-        }
+        (Table::new("", columns, controls.iter().map(row)).page("rows sorts"))
     }
 }
 
 /// Renders the table with the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
-    let variants = runs.iter().any(|run| !run.variant.is_empty());
-    let (step, wall) =
-        (TimeUnit::of(runs.iter().map(|run| run.time_step)), TimeUnit::of(runs.iter().map(|run| run.wall_seconds)));
-    let table = html! {
-        table.sorts {
-            thead {
-                tr {
-                    th scope="col" { "Solver" }
-                    @if variants { th scope="col" { "Variant" } }
-                    th scope="col" { "Resolution" }
-                    th.n scope="col" { "Δt (" (step.symbol) ")" }
-                    th.n scope="col" { "Δt / critical" }
-                    th.n scope="col" { "Steps" }
-                    th.n scope="col" { "Particle-steps" }
-                    th.n scope="col" { "Contact evaluations" }
-                    th.n scope="col" { "Wall time (" (wall.symbol) ")" }
-                }
-            }
-            tbody {
-                @for run in runs {
-                    tr {
-                        th scope="row" { (run.solver) }
-                        @if variants { td { (run.variant) } }
-                        td { (run.resolution) }
-                        td.n data-v=(run.time_step) { (step.number(run.time_step)) }
-                        td.n { (run.fraction_of_critical.map_or("—".to_owned(), |part| number::significant(part, 3))) }
-                        td.n data-v=(run.steps) { (number::count(run.steps)) }
-                        td.n data-v=(run.particle_steps) { (number::count(run.particle_steps)) }
-                        td.n { (run.contact_evaluations.map_or("—".to_owned(), number::count)) }
-                        @if run.wall_seconds.is_finite() {
-                            td.n data-v=(run.wall_seconds) { (wall.number(run.wall_seconds)) }
-                        } @else {
-                            td.n { "—" }
-                        }
-                    }
-                }
-            }
-        }
+    let has_variants = runs.iter().any(|run| !run.variant.is_empty());
+    let mut columns = vec![
+        Column::heading("Solver"),
+        Column::text("Variant"),
+        Column::text("Resolution"),
+        Column::new("Δt", Format::Seconds),
+        Column::number("Δt / critical"),
+        Column::new("Steps", Format::Count),
+        Column::new("Particle-steps", Format::Count),
+        Column::new("Contact evaluations", Format::Count),
+        Column::new("Wall time", Format::Seconds),
+    ];
+    if !has_variants {
+        columns.remove(1);
+    }
+    let row = |run: &RunCost| {
+        let mut cells = vec![Cell::from(&run.solver)];
+        cells.extend(has_variants.then(|| Cell::from(&run.variant)));
+        cells.extend([Cell::from(&run.resolution), run.time_step.into(), run.fraction_of_critical.into()]);
+        cells.extend([run.steps.into(), run.particle_steps.into(), run.contact_evaluations.into()]);
+        cells.push(Cell::finite(Some(run.wall_seconds)));
+        Row::from(cells)
     };
-    html! { p.note { "Counts do not depend on the machine, but the wall time does." } (scrolling("Costs", &table)) }
+    html! {
+        p.note { "Counts do not depend on the machine, but the wall time does." }
+        (Table::new("Costs", columns, runs.iter().map(row)).page("sorts"))
+    }
 }

@@ -15,4 +15,4 @@ mod table;
 pub(crate) use columns::Values;
 pub use folder::each_snapshot;
 pub use store::{READABLE, SnapshotStore, StoreError};
-pub(crate) use table::{GroupedTable, whole};
+pub(crate) use table::GroupedTable;

@@ -193,13 +193,6 @@ impl<W: Write + Send> GroupedTable<W> {
     }
 }
 
-/// Writes a whole table to a file. All columns have equal length.
-pub(crate) fn whole(table: &str, columns: &[(String, Values)], file: impl Write + Send) -> io::Result<()> {
-    let mut grouped = GroupedTable::new(table, columns, file)?;
-    grouped.add(columns)?;
-    grouped.close()
-}
-
 fn schema<'a>(table: &str, columns: impl Iterator<Item = (&'a str, &'a Values)>) -> Result<Arc<Type>, ParquetError> {
     let fields = columns.map(|(name, values)| field(name, values)).collect::<Result<_, _>>()?;
     Type::group_type_builder(table).with_fields(fields).build().map(Arc::new)

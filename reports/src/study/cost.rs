@@ -1,10 +1,11 @@
 //! Cost of accuracy: Pareto fronts, cheapest settings, and figures of measured against expected values.
 
-use super::Study;
 use super::point::{Counts, Diagram, Point, PointStatus};
 use crate::number;
 use crate::plot::palette::SOLVERS;
+use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use std::io;
 
 /// Errors for which the cost is stated, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -193,20 +194,20 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
 /// Returns figures of measured against expected values over all cases, one for each unit. For each quantity, a solver
 /// has the point with its smallest error.
 #[must_use]
-pub fn scatters(study: &Study) -> Vec<Figure> {
-    let mut units: Vec<&str> = study.diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
+pub fn scatters(diagrams: &[Diagram]) -> Vec<Figure> {
+    let mut units: Vec<&str> = diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
     units.sort_unstable();
     units.dedup();
-    units.iter().filter_map(|unit| scatter(study, unit)).collect()
+    units.iter().filter_map(|unit| scatter(diagrams, unit)).collect()
 }
 
 /// Returns the point with the smallest error of a solver, for each diagram whose quantity has this unit.
-fn best<'a>(study: &'a Study, unit: &'a str, line: &'a str) -> Vec<&'a Point> {
+fn best<'a>(diagrams: &'a [Diagram], unit: &'a str, line: &'a str) -> Vec<&'a Point> {
     let cheapest = |diagram: &'a Diagram| {
         let points = of_line(diagram, line).filter(|point| point.unit == unit && point.place().is_some());
         points.min_by(|a, b| a.error.unwrap_or(f64::NAN).total_cmp(&b.error.unwrap_or(f64::NAN)))
     };
-    study.diagrams.iter().filter_map(cheapest).collect()
+    diagrams.iter().filter_map(cheapest).collect()
 }
 
 /// Returns the bias and the spread of measured/expected. The bias is the geometric mean, and the spread is the standard
@@ -225,11 +226,11 @@ pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     (!logs.is_empty()).then(|| (mean.exp(), variance.sqrt()))
 }
 
-fn scatter(study: &Study, unit: &str) -> Option<Figure> {
+fn scatter(diagrams: &[Diagram], unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
     let mut span = (f64::INFINITY, 0.0_f64);
-    for line in lines(&study.diagrams) {
-        let points = best(study, unit, line);
+    for line in lines(diagrams) {
+        let points = best(diagrams, unit, line);
         let Some((factor, spread)) = bias(&points) else { continue };
         let [factor, spread] = [factor - 1.0, spread].map(number::fraction);
         let label = format!("{line}: bias {factor}, spread {spread}");
@@ -262,35 +263,18 @@ fn scatter(study: &Study, unit: &str) -> Option<Figure> {
 ///
 /// # Errors
 /// When a line cannot be encoded. This does not occur in studies of this project.
-pub fn points_csv(study: &Study) -> Result<Vec<u8>, csv::Error> {
-    let mut table = csv::Writer::from_writer(Vec::new());
-    let mut head = vec![
-        "case",
-        "variant",
-        "quantity",
-        "solver",
-        "resolution",
-        "knobs",
-        "standing",
-        "error",
-        "wall_seconds",
-        "wall_spread",
-        "cpu_seconds",
-        "start_up_seconds",
-    ];
-    head.extend(Counts::default().named().map(|(name, _)| name));
-    table.write_record(head)?;
-    let number = |value: Option<f64>| value.map_or(String::new(), |value| format!("{value:e}"));
-    for point in study.diagrams.iter().flat_map(|diagram| &diagram.points) {
-        let mut row: Vec<String> =
-            [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs]
-                .map(Clone::clone)
-                .into();
-        row.push(word(point.standing).to_owned());
+pub fn points_csv(diagrams: &[Diagram]) -> io::Result<Vec<u8>> {
+    let columns = ["case", "variant", "quantity", "solver", "resolution", "knobs", "standing"].map(Column::text);
+    let times = ["error", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"].map(Column::number);
+    let counts = Counts::default().named().map(|(name, _)| Column::new(name, Format::Count));
+    let rows = diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| {
+        let names = [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs];
+        let mut row: Vec<Cell> = names.map(Cell::from).into();
+        row.push(word(point.standing).into());
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
-        row.extend(times.map(number));
-        row.extend(point.counts.named().map(|(_, count)| count.map_or(String::new(), |count| count.to_string())));
-        table.write_record(row)?;
-    }
-    table.into_inner().map_err(|error| error.into_error().into())
+        row.extend(times.map(Cell::from));
+        row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
+        Row::from(row)
+    });
+    Table::new("points", columns.into_iter().chain(times).chain(counts), rows).csv_bytes()
 }

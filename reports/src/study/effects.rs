@@ -1,8 +1,8 @@
 //! Study of effects: the effects that each scene contains, and the error and cost if an effect is left out.
 
-use super::Study;
 use crate::number;
-use crate::page::scrolling;
+use crate::row;
+use crate::table::{Cell, Column, Row, Table};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
@@ -80,8 +80,8 @@ pub struct Entry {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(study: &Study) -> Markup {
-    let count = |worth: EffectResult| study.ledger.iter().filter(|entry| entry.worth == worth).count();
+pub(crate) fn render(ledger: &[Entry]) -> Markup {
+    let count = |worth: EffectResult| ledger.iter().filter(|entry| entry.worth == worth).count();
     html! {
         header id="summary" {
             p.kicker { "grainbench" }
@@ -97,9 +97,9 @@ pub(crate) fn render(study: &Study) -> Markup {
                 (count(EffectResult::Inert)) " inert, " (count(EffectResult::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }
-            (heat(&study.ledger))
+            (heat(ledger))
             h3 { "All effects" }
-            (table(&study.ledger))
+            (table(ledger))
         }
     }
 }
@@ -166,19 +166,13 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let find = |(case, variant): (&str, &str), effect: &str| {
         ledger.iter().find(|entry| entry.case == case && entry.variant == variant && entry.effect == effect)
     };
-    let table = html! {
-        table.heat {
-            thead { tr { th scope="col" { "Scene" } @for effect in &effects { th scope="col" { (effect) } } } }
-            tbody {
-                @for scene in &scenes {
-                    tr {
-                        th scope="row" { (scene.0) @if !scene.1.is_empty() { "/" (scene.1) } }
-                        @for effect in &effects { td { @if let Some(entry) = find(*scene, effect) { (warmth(entry)) } } }
-                    }
-                }
-            }
-        }
+    let columns = [Column::heading("Scene")].into_iter().chain(effects.iter().copied().map(Column::text));
+    let row = |scene: &(&str, &str)| {
+        let marks =
+            effects.iter().map(|effect| find(*scene, effect).map_or_else(|| "".into(), |entry| warmth(entry).into()));
+        Row::from([scene_name(scene.0, scene.1).into()].into_iter().chain(marks).collect::<Vec<Cell>>())
     };
+    let table = Table::new("Scenes by effects", columns, scenes.iter().map(row));
     html! {
         p.note {
             "For an enabled effect: the change of the result without it (median over the claims), and its cost \
@@ -187,7 +181,7 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
              disabled effect: = "
             "if it changes no bit, ≠ if it does."
         }
-        (scrolling("Scenes by effects", &table))
+        (table.page("heat"))
     }
 }
 
@@ -212,45 +206,33 @@ fn warmth(entry: &Entry) -> Markup {
 }
 
 fn table(ledger: &[Entry]) -> Markup {
-    let ratio = |value: Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 3));
-    let table = html! {
-        table.rows {
-            thead {
-                tr {
-                    th scope="col" { "Scene" }
-                    th scope="col" { "Effect" }
-                    th scope="col" { "Enabled by" }
-                    th scope="col" { "Result" }
-                    th scope="col" { "Largest change without it" }
-                    th.n scope="col" { "Red claims" }
-                    th.n scope="col" { "Counts, with / without" }
-                    th.n scope="col" { "CPU time, with / without" }
-                }
-            }
-            tbody {
-                @for entry in ledger {
-                    tr class=(class(entry.worth)) {
-                        th scope="row" { (entry.case) @if !entry.variant.is_empty() { "/" (entry.variant) } }
-                        td { (entry.effect) }
-                        td { @if entry.on { (entry.key) } @else { "disabled; tried with " (entry.tried.join(", ")) } }
-                        td.verdict { span class={ "mark " (class(entry.worth)) } { (entry.worth.word()) } }
-                        td.wide {
-                            @if let Some(shift) = farthest(entry) {
-                                (shift.quantity) ", " (shift.solver) ": " (number::error(shift.with)) " → "
-                                (number::error(shift.without))
-                                " (allowed " (number::fraction(shift.allowed)) ")"
-                            }
-                        }
-                        td.n {
-                            @if entry.on { (entry.shifts.iter().filter(|shift| shift.red).count()) " of " (entry.shifts.len()) }
-                            @else { "—" }
-                        }
-                        td.n { (ratio(entry.counts)) }
-                        td.n { (ratio(entry.time)) }
-                    }
-                }
-            }
-        }
+    let columns = [
+        Column::heading("Scene"),
+        Column::text("Effect"),
+        Column::text("Enabled by"),
+        Column::text("Result").class("verdict"),
+        Column::text("Largest change without it").class("wide"),
+        Column::number("Red claims"),
+        Column::number("Counts, with / without"),
+        Column::number("CPU time, with / without"),
+    ];
+    let row = |entry: &Entry| {
+        let key = if entry.on { entry.key.clone() } else { format!("disabled; tried with {}", entry.tried.join(", ")) };
+        let result = html! { span class={ "mark " (class(entry.worth)) } { (entry.worth.word()) } };
+        let change = farthest(entry).map(|shift| {
+            let [with, without] = [shift.with, shift.without].map(number::error);
+            let allowed = number::fraction(shift.allowed);
+            format!("{}, {}: {with} → {without} (allowed {allowed})", shift.quantity, shift.solver)
+        });
+        let red = entry.shifts.iter().filter(|shift| shift.red).count();
+        let red = entry.on.then(|| format!("{red} of {}", entry.shifts.len()));
+        let (scene, change) = (scene_name(&entry.case, &entry.variant), change.unwrap_or_default());
+        row![scene, &entry.effect, key, result, change, red, entry.counts, entry.time].class(class(entry.worth))
     };
-    scrolling("All effects", &table)
+    Table::new("All effects", columns, ledger.iter().map(row)).page("rows")
+}
+
+/// Returns the name of a scene: case and variant.
+fn scene_name(case: &str, variant: &str) -> String {
+    if variant.is_empty() { case.to_owned() } else { format!("{case}/{variant}") }
 }

@@ -1,9 +1,9 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
-use super::page::figure;
 use crate::number;
-use crate::page::{scrolling, slug};
+use crate::page::{captioned as figure, slug};
 use crate::plot::DrawError;
+use crate::table::scrolling;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};

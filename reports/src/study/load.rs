@@ -1,9 +1,10 @@
 //! Cost of a step with 1, 100 and 10,000 grains, without start-up: data, table and figure.
 
-use super::page::figure as framed;
 use crate::number;
-use crate::page::scrolling;
+use crate::page::captioned;
 use crate::plot::DrawError;
+use crate::row;
+use crate::table::{Column, Format, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::statistics::median;
 use maud::{Markup, html};
@@ -70,36 +71,20 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
 /// # Errors
 /// When the figure cannot be drawn.
 pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
-    let picture = figure(loads).map(|figure| framed(&figure)).transpose()?;
-    let table = html! {
-        table.cases {
-            thead {
-                tr {
-                    th scope="col" { "Discs, solver" }
-                    th.n scope="col" { "Start-up" }
-                    th.n scope="col" { "A step" }
-                    th.n scope="col" { "A grain in a step" }
-                    th.n scope="col" { "A simulated second" }
-                }
-            }
-            tbody {
-                @for load in loads {
-                    tr {
-                        th scope="row" { (number::count(load.grains as u64)) ", " (load.solver) span.title { (load.resolution) } }
-                        @if let Some(reason) = &load.absent {
-                            td colspan="4" { (reason) }
-                        } @else {
-                            @let step = middle(load, |lap| lap.step);
-                            td.n { (number::seconds(middle(load, |lap| lap.start_up))) }
-                            td.n { (number::seconds(step)) }
-                            td.n { (number::seconds(step / load.grains as f64)) }
-                            td.n { (number::seconds(middle(load, |lap| lap.second))) }
-                        }
-                    }
-                }
-            }
-        }
+    let picture = figure(loads).map(|figure| captioned(&figure)).transpose()?;
+    const TIMES: [&str; 4] = ["Start-up", "A step", "A grain in a step", "A simulated second"];
+    let columns = [Column::heading("Discs, solver")].into_iter();
+    let columns =
+        columns.chain(TIMES.map(|name| Column::new(name, Format::Seconds))).chain([Column::text("Not measured")]);
+    let row = |load: &Load| {
+        let name = html! { (number::count(load.grains as u64)) ", " (load.solver) span.title { (load.resolution) } };
+        let is_timed = load.absent.is_none();
+        let step = middle(load, |lap| lap.step);
+        let times = [middle(load, |lap| lap.start_up), step, step / load.grains as f64, middle(load, |lap| lap.second)];
+        let [start_up, step, grain, second] = times.map(|time| is_timed.then_some(time));
+        row![name, start_up, step, grain, second, load.absent.as_deref().unwrap_or_default()]
     };
+    let table = Table::new("Cost of a step for few and for many grains", columns, loads.iter().map(row));
     Ok(html! {
         h3 { "From one grain to ten thousand" }
         p {
@@ -108,7 +93,7 @@ pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
             "start-up cancels."
         }
         @if let Some(picture) = &picture { (picture) }
-        (scrolling("Cost of a step for few and for many grains", &table))
+        (table.page("cases"))
     })
 }
 

@@ -7,6 +7,7 @@ pub mod load;
 mod page;
 pub mod point;
 pub mod stability;
+pub(crate) mod stability_page;
 pub mod step;
 mod store;
 
@@ -16,7 +17,7 @@ use self::load::Load;
 use self::point::{Change, Diagram};
 use self::stability::{HardCaseResult, Limit};
 use self::step::Model;
-use crate::report::Provenance;
+use crate::provenance::Provenance;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 

@@ -1,12 +1,13 @@
 //! Page of a study.
 
 use super::point::{Diagram, Point, PointStatus};
-use super::{Study, cost, effects, estimate, load, stability, step};
+use super::{Study, cost, effects, estimate, load, stability_page, step};
 use crate::measured::Costs;
 use crate::number::{self, TimeUnit};
-use crate::page::{provenance, scrolling, shell, slug, summary, unique};
-use crate::plot::{self, DrawError};
-use grainbench_harness::figure::Figure;
+use crate::page::{captioned as figure, provenance, shell, slug, summary, unique};
+use crate::plot::DrawError;
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
@@ -32,14 +33,18 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
     if !(study.limits.is_empty() && study.hard.is_empty()) {
         title = if is_cost { title } else { "what stays stable" };
         sections.push(if study.scenes.is_empty() {
-            stability::render(study)?
+            stability_page::render(study)?
         } else {
-            stability::largest_steps(&study.limits)
+            stability_page::largest_steps(&study.limits)
         });
     }
     if !study.ledger.is_empty() {
         title = if is_cost { title } else { "influence of each effect" };
-        sections.push(if study.scenes.is_empty() { effects::render(study) } else { effects::important(&study.ledger) });
+        sections.push(if study.scenes.is_empty() {
+            effects::render(&study.ledger)
+        } else {
+            effects::important(&study.ledger)
+        });
     }
     let body = html! {
         main.alone {
@@ -48,16 +53,6 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
         }
     };
     Ok(shell(&format!("grainbench · {title}"), &body))
-}
-
-/// Renders a figure with its caption.
-pub(crate) fn figure(figure: &Figure) -> Result<Markup, DrawError> {
-    Ok(html! {
-        figure {
-            div class="plot graph" { (PreEscaped(plot::draw(figure)?)) }
-            figcaption { (figure.caption) }
-        }
-    })
 }
 
 /// Returns one sentence for each error, about the cost over all cases.
@@ -89,7 +84,7 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
 
 fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
     let costs = Costs::from_study(study, &|solver| study.sources.get(solver).cloned());
-    let scatters: Vec<Markup> = cost::scatters(study).iter().map(figure).collect::<Result<_, _>>()?;
+    let scatters: Vec<Markup> = cost::scatters(&study.diagrams).iter().map(figure).collect::<Result<_, _>>()?;
     Ok(html! {
         header id="summary" {
             p.kicker { "grainbench" }
@@ -133,41 +128,24 @@ fn changes(study: &Study, old: &str) -> Markup {
 /// Renders a table with one row per diagram and the cheapest setting of each solver at an error of 1 %.
 fn which(study: &Study) -> Markup {
     let lines = cost::lines(&study.diagrams);
-    let table = html! {
-        table.cases {
-            thead {
-                tr {
-                    th scope="col" { "Scene and quantity" }
-                    @for line in &lines { th scope="col" { (line) } }
-                }
-            }
-            tbody {
-                @for diagram in &study.diagrams {
-                    @let best = lines.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds)
-                        .fold(f64::INFINITY, f64::min);
-                    @let walls = lines.iter().filter_map(|line| cost::cheapest(diagram, line, 0.01)?.wall_seconds);
-                    @let unit = TimeUnit::of(walls);
-                    tr {
-                        th scope="row" { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } }
-                        @for line in &lines {
-                            @match cost::cheapest(diagram, line, 0.01) {
-                                Some(point) => {
-                                    @let wall = point.wall_seconds.unwrap_or(f64::NAN);
-                                    td {
-                                        @if wall <= best { b { (unit.with_symbol(wall)) } }
-                                        @else { (unit.with_symbol(wall)) " (× " (number::significant(wall / best, 2)) ")" }
-                                        span.fine { (point.setting()) }
-                                    }
-                                }
-                                None => { td { (not_reached(diagram, line)) } }
-                            }
-                        }
-                    }
-                }
-            }
-        }
+    let columns = [Column::heading("Scene and quantity")].into_iter().chain(lines.iter().copied().map(Column::text));
+    let row = |diagram: &Diagram| {
+        let time = |line: &&str| cost::cheapest(diagram, line, 0.01)?.wall_seconds;
+        let best = lines.iter().filter_map(time).fold(f64::INFINITY, f64::min);
+        let unit = TimeUnit::of(lines.iter().filter_map(time));
+        let cell = |line: &&str| {
+            let Some(point) = cost::cheapest(diagram, line, 0.01) else { return not_reached(diagram, line).into() };
+            let wall = point.wall_seconds.unwrap_or(f64::NAN);
+            let times = number::significant(wall / best, 2);
+            Cell::from(html! {
+                @if wall <= best { b { (unit.with_symbol(wall)) } } @else { (unit.with_symbol(wall)) " (× " (times) ")" }
+                span.fine { (point.setting()) }
+            })
+        };
+        let name = html! { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } };
+        Row::from([Cell::from(name)].into_iter().chain(lines.iter().map(cell)).collect::<Vec<_>>())
     };
-    scrolling("Which solver for which scene at 1 %", &table)
+    Table::new("Which solver for which scene at 1 %", columns, study.diagrams.iter().map(row)).page("cases")
 }
 
 /// Returns the reason why a solver has no setting with an error of at most 1 %.
@@ -217,55 +195,47 @@ fn reasons(diagram: &Diagram) -> Markup {
 }
 
 fn points(diagram: &Diagram) -> Markup {
-    let times = |point: &Point| [point.wall_seconds, point.cpu_seconds, point.start_up_seconds];
-    let unit = TimeUnit::of(diagram.points.iter().flat_map(times).flatten());
-    let table = html! {
-        table.rows.costs {
-            thead {
-                tr {
-                    th scope="col" { "Solver" }
-                    th scope="col" { "Setting" }
-                    th.n scope="col" { "Error" }
-                    th.n scope="col" { "Wall time" }
-                    th.n scope="col" { "Spread" }
-                    th.n scope="col" { "CPU time" }
-                    th.n scope="col" { "Start-up" }
-                    th.n scope="col" { "Steps" }
-                    th.n scope="col" { "Particle-steps" }
-                    th.n scope="col" { "Contact evaluations" }
-                    th.n scope="col" { "Node updates" }
-                    th.n scope="col" { "Bytes" }
-                    th scope="col" { "Parts of the error" }
-                }
-            }
-            tbody { @for point in &diagram.points { (row(point, unit)) } }
-        }
-    };
-    scrolling("Every point", &table)
+    let [time, fraction, count] =
+        [Format::Seconds, Format::Fraction, Format::Count].map(|format| move |name| Column::new(name, format));
+    let columns = [
+        Column::heading("Solver"),
+        Column::text("Setting"),
+        fraction("Error"),
+        time("Wall time"),
+        fraction("Spread"),
+        time("CPU time"),
+        time("Start-up"),
+        count("Steps"),
+        count("Particle-steps"),
+        count("Contact evaluations"),
+        count("Node updates"),
+        count("Bytes"),
+        Column::text("Parts of the error").class("wide"),
+    ];
+    Table::new("Every point", columns, diagram.points.iter().map(row)).page("rows costs")
 }
 
-fn row(point: &Point, unit: TimeUnit) -> Markup {
-    let seconds = |value: Option<f64>| value.map_or("—".to_owned(), |seconds| unit.with_symbol(seconds));
+fn row(point: &Point) -> Row {
     let class = match point.standing {
         PointStatus::Measured => "",
         PointStatus::Failed => "fail",
         PointStatus::Unsupported | PointStatus::NotAvailable => "amber",
     };
-    html! {
-        tr class=(class) {
-            th scope="row" { (point.solver) }
-            td { (point.setting()) }
-            td.n { (point.error.map_or("—".to_owned(), number::fraction)) }
-            td.n { (seconds(point.wall_seconds)) }
-            td.n { (point.wall_spread.map_or("—".to_owned(), number::fraction)) }
-            td.n { (seconds(point.cpu_seconds)) }
-            td.n { (seconds(point.start_up_seconds)) }
-            td.n { (number::count(point.counts.steps)) }
-            td.n { (number::count(point.counts.particle_steps)) }
-            @for count in [point.counts.contact_evaluations, point.counts.node_updates, point.counts.bytes] {
-                td.n { (count.map_or("—".to_owned(), number::count)) }
-            }
-            td.wide { (point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")) }
-        }
-    }
+    let Point { error, wall_seconds, wall_spread, cpu_seconds, start_up_seconds, counts, .. } = point;
+    row![
+        &point.solver,
+        point.setting(),
+        *error,
+        *wall_seconds,
+        *wall_spread,
+        *cpu_seconds,
+        *start_up_seconds,
+        counts.steps,
+        counts.particle_steps,
+        counts.contact_evaluations,
+        counts.node_updates,
+        counts.bytes,
+        point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")
+    ]
+    .class(class)
 }

@@ -1,7 +1,8 @@
 //! Cost model of a step: cost of its parts, and comparison with the peak performance of the machine.
 
 use crate::number;
-use crate::page::scrolling;
+use crate::row;
+use crate::table::{Column, Table};
 use grainbench_harness::statistics::{median, range};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
@@ -40,31 +41,16 @@ pub struct Model {
 /// Renders the costs of the parts of a step as a table with an explanation.
 pub(crate) fn render(model: &Model) -> Markup {
     let [streamed, computed] = [&model.probe.streamed, &model.probe.computed].map(|laps| median(laps));
-    let table = html! {
-        table.cases {
-            thead {
-                tr {
-                    th scope="col" { "Part of a step" }
-                    th scope="col" { "Time in a step (ns)" }
-                    th scope="col" { "least to largest" }
-                    th scope="col" { "Bytes transferred in that time" }
-                    th scope="col" { "Additions in that time" }
-                }
-            }
-            tbody {
-                @for price in &model.prices {
-                    @let time = median(&price.nanoseconds);
-                    tr {
-                        th scope="row" { (price.solver) ", " (price.piece) span.title { (price.found) } }
-                        td { (number::significant(time, 3)) }
-                        td { (spread(price)) }
-                        td { (number::significant(time * streamed, 3)) }
-                        td { (number::significant(time * computed, 3)) }
-                    }
-                }
-            }
-        }
+    let columns =
+        ["Time in a step (ns)", "least to largest", "Bytes transferred in that time", "Additions in that time"];
+    let columns = [Column::heading("Part of a step")].into_iter().chain(columns.map(Column::text));
+    let row = |price: &TaskCost| {
+        let time = median(&price.nanoseconds);
+        let part = html! { (price.solver) ", " (price.piece) span.title { (price.found) } };
+        let [bytes, additions] = [streamed, computed].map(|rate| number::significant(time * rate, 3));
+        row![part, number::significant(time, 3), spread(price), bytes, additions]
     };
+    let table = Table::new("Cost of a step", columns, model.prices.iter().map(row));
     html! {
         h3 { "Cost of a step by part" }
         p {
@@ -77,7 +63,7 @@ pub(crate) fn render(model: &Model) -> Markup {
             "written to memory outside the caches, and " (number::significant(computed, 3)) " multiplications and "
             "additions per nanosecond in registers."
         }
-        (scrolling("Cost of a step", &table))
+        (table.page("cases"))
     }
 }
 

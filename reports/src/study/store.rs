@@ -77,7 +77,7 @@ pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError
     out.write(STUDY_FILE, stored + "\n")?;
     let results = study_json(study).map_err(|error| encode("results.json")(error.to_string()))?;
     out.write("results.json", results)?;
-    let points = cost::points_csv(study).map_err(|error| encode("points.csv")(error.to_string()))?;
+    let points = cost::points_csv(&study.diagrams).map_err(|error| encode("points.csv")(error.to_string()))?;
     out.write("points.csv", points)?;
     out.write("index.html", page::render(study)?)?;
     let mut names = BTreeSet::new();
@@ -95,9 +95,11 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
     });
-    let others =
-        cost::scatters(study).into_iter().chain(load::figure(&study.loads)).chain(stability::figures(&study.limits));
-    let others = others.chain(study.scenes.iter().flat_map(estimate::figures));
+    let others = cost::scatters(&study.diagrams)
+        .into_iter()
+        .chain(load::figure(&study.loads))
+        .chain(stability::figures(&study.limits))
+        .chain(study.scenes.iter().flat_map(estimate::figures));
     diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
 }
 

@@ -189,14 +189,9 @@ impl Point {
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
 pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError> {
-    let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let mut out = StagedDir::new(dir.as_ref())?;
-    let columns = table::columns(sweep);
-    out.write("rows.csv", crate::rows::csv(&columns).map_err(|error| encode("rows.csv")(error.to_string()))?)?;
-    let mut bytes = Vec::new();
-    crate::parts::whole("rows", &columns, &mut bytes).map_err(|error| encode("rows.parquet")(error.to_string()))?;
-    out.write("rows.parquet", bytes)?;
-    drop(columns);
+    out.write_with("rows.csv", |file| table::table(sweep).csv(file))?;
+    out.write_with("rows.parquet", |file| table::table(sweep).parquet(file))?;
     out.write_with("results.json", |file| table::write_results(sweep, file))?;
     let mut drawings: Vec<(String, String, String)> = Vec::new();
     for (name, caption, svg) in map::draw(sweep) {

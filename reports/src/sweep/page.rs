@@ -3,7 +3,9 @@
 use super::figures::levels;
 use super::{Sweep, SweepStatus};
 use crate::number;
-use crate::page::{provenance, scrolling, shell};
+use crate::page::{provenance, shell};
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
 use maud::{Markup, PreEscaped, html};
 
 /// Largest number of points that the page lists one by one.
@@ -61,39 +63,25 @@ fn table(sweep: &Sweep) -> Markup {
         let mut steps: Vec<u64> =
             level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
         steps.sort_unstable();
-        let error = |value: Option<f64>| value.map_or_else(|| "—".to_owned(), number::fraction);
-        [
-            solver.clone(),
-            level.clone(),
-            number::count(count(SweepStatus::Within)),
-            number::count(count(SweepStatus::Outside)),
-            number::count(count(SweepStatus::Amber)),
-            number::count(count(SweepStatus::Unjudged)),
-            error(at(0.5)),
-            error(at(0.9)),
-            error(errors.last().copied()),
-            steps.get(steps.len() / 2).map_or_else(|| "—".to_owned(), |count| number::count(*count)),
+        row![
+            &solver,
+            &level,
+            count(SweepStatus::Within),
+            count(SweepStatus::Outside),
+            count(SweepStatus::Amber),
+            count(SweepStatus::Unjudged),
+            at(0.5),
+            at(0.9),
+            errors.last().copied(),
+            steps.get(steps.len() / 2).copied(),
         ]
     });
-    let head = [
-        "Solver",
-        "Level",
-        "Within",
-        "Outside or broken",
-        "Amber",
-        "Not judged",
-        "Median |error|",
-        "90 % below",
-        "Worst",
-        "Particle-steps, median",
-    ];
-    let table = html! {
-        table {
-            thead { tr { @for word in head { th scope="col" { (word) } } } }
-            tbody { @for row in rows { tr { @for cell in row { td { (cell) } } } } }
-        }
-    };
-    html! { section id="levels" { h2 { "Solvers and levels" } (scrolling("Solvers and levels", &table)) } }
+    let counts = ["Within", "Outside or broken", "Amber", "Not judged"].map(|name| Column::new(name, Format::Count));
+    let errors = ["Median |error|", "90 % below", "Worst"].map(|name| Column::new(name, Format::Fraction));
+    let columns = [Column::text("Solver"), Column::text("Level")].into_iter().chain(counts).chain(errors);
+    let columns = columns.chain([Column::new("Particle-steps, median", Format::Count)]);
+    let table = Table::new("Solvers and levels", columns, rows);
+    html! { section id="levels" { h2 { "Solvers and levels" } (table.page("")) } }
 }
 
 /// Renders the points outside the tolerance, crashed runs first and then by decreasing error.
@@ -107,25 +95,22 @@ fn worst(sweep: &Sweep) -> Markup {
         let detail = point.left.detail.clone();
         detail.or_else(|| point.left.looked.iter().find_map(|looked| looked.detail.clone())).unwrap_or_default()
     };
-    let table = html! {
-        table {
-            thead { tr {
-                @for factor in &sweep.factors { th scope="col" { (factor.label) } }
-                @for word in ["Solver", "Level", "|error|", "Why"] { th scope="col" { (word) } }
-            } }
-            tbody { @for point in points.iter().take(MOST) { tr {
-                @for value in &point.factors { td { (value_words(value)) } }
-                td { (point.solver) } td { (point.resolution) }
-                td { (point.error().map_or_else(|| "—".to_owned(), number::fraction)) } td { (words(point)) }
-            } } }
-        }
+    let factors = sweep.factors.iter().map(|factor| Column::text(&factor.label));
+    let error = Column::new("|error|", Format::Fraction);
+    let columns = [Column::text("Solver"), Column::text("Level"), error, Column::text("Why")];
+    let row = |point: &&super::Point| {
+        let mut cells: Vec<Cell> = point.factors.iter().map(|value| value_words(value).into()).collect();
+        cells.extend([&point.solver, &point.resolution].map(Cell::from));
+        cells.extend([point.error().into(), words(point).into()]);
+        Row::from(cells)
     };
+    let table = Table::new("Farthest outside", factors.chain(columns), points.iter().take(MOST).map(row));
     html! {
         @if count > 0 {
             section id="outside" {
                 h2 { "Farthest outside" }
                 @if count > MOST { p.note { "The first " (MOST) " of " (number::count(count as u64)) "." } }
-                (scrolling("Farthest outside", &table))
+                (table.page(""))
             }
         }
     }

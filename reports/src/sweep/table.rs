@@ -1,73 +1,52 @@
 //! Table of a sweep, with one row for each point, solver, level and quantity.
 
-use super::{Point, QuantityResult, Sweep};
-use crate::parts::Values;
-use grainbench_harness::expect::ExpectedValue;
+use super::{Point, RunCounts, Sweep};
+use crate::rows::expectation;
+use crate::table::{Cell, Column, Row, Table};
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
 
-/// Row of the table: a point, the index of a quantity, and the result of this quantity.
-type Row<'a> = (&'a Point, usize, &'a QuantityResult);
-
-fn rows(sweep: &Sweep) -> Vec<Row<'_>> {
-    let point_rows = |point| -> Vec<Row<'_>> {
-        let point: &Point = point;
-        point.left.looked.iter().enumerate().map(|(at, looked)| (point, at, looked)).collect()
-    };
-    sweep.points.iter().flat_map(point_rows).collect()
-}
-
-/// Returns the columns of the table with their names. Absent values are null.
-pub(super) fn columns(sweep: &Sweep) -> Vec<(String, Values)> {
-    let rows = rows(sweep);
-    let words = |value: &dyn Fn(&Row<'_>) -> String| Values::Word(rows.iter().map(value).collect());
-    let optional = |value: &dyn Fn(&Row<'_>) -> Option<f64>| Values::Told(rows.iter().map(value).collect());
-    let count = |value: &dyn Fn(&super::RunCounts) -> Option<u64>| {
-        optional(&|(point, _, _)| point.left.ran.as_ref().and_then(value).map(|count| count as f64))
-    };
-    let mut columns = vec![("case".to_owned(), words(&|_| sweep.scene.clone()))];
-    for (place, factor) in sweep.factors.iter().enumerate() {
-        let are_numbers = sweep.points.iter().all(|point| point.factors[place].is_number());
-        let values = if are_numbers {
-            optional(&|(point, _, _)| point.factors[place].as_f64())
-        } else {
-            words(&|(point, _, _)| match &point.factors[place] {
-                Value::String(word) => word.clone(),
-                other => other.to_string(),
-            })
+/// Returns the table. Absent values are empty cells.
+pub(super) fn table(sweep: &Sweep) -> Table<'_> {
+    let [text, number] = [Column::text, Column::number] as [fn(&'static str) -> Column; 2];
+    let are_numbers = |place: usize| sweep.points.iter().all(|point| point.factors[place].is_number());
+    let is_number: Vec<bool> = (0..sweep.factors.len()).map(are_numbers).collect();
+    let factors = sweep.factors.iter().zip(&is_number);
+    let factors =
+        factors.map(|(factor, &is)| if is { Column::number(&factor.name) } else { Column::text(&factor.name) });
+    let columns = [text("case")].into_iter().chain(factors.collect::<Vec<_>>());
+    let columns = columns.chain(["solver", "resolution", "quantity", "unit"].map(text));
+    let columns = columns.chain(["value", "expected"].map(number)).chain([text("bound")]);
+    let columns = columns.chain(["scale", "error", "allowed"].map(number)).chain(["verdict", "detail"].map(text));
+    const COUNTS: [&str; 6] =
+        ["steps", "particle_steps", "contact_evaluations", "node_updates", "time_step", "wall_seconds"];
+    let rows = sweep.points.iter().flat_map(move |point| {
+        let is_number = is_number.clone();
+        let factor = move |(value, is): (&Value, bool)| match value {
+            _ if is => Cell::from(value.as_f64()),
+            Value::String(word) => word.into(),
+            other => other.to_string().into(),
         };
-        columns.push((factor.name.clone(), values));
-    }
-    let bound = |looked: &QuantityResult| match looked.expected {
-        Some(bound @ ExpectedValue::Bound(_)) => bound.to_string(),
-        Some(ExpectedValue::Value(_)) | None => String::new(),
-    };
-    let detail = |point: &Point, looked: &QuantityResult| {
-        looked.detail.clone().or(point.left.detail.clone()).unwrap_or_default()
-    };
-    let rest: [(&str, Values); 18] = [
-        ("solver", words(&|(point, _, _)| point.solver.clone())),
-        ("resolution", words(&|(point, _, _)| point.resolution.clone())),
-        ("quantity", words(&|(_, at, _)| sweep.quantities[*at].words.clone())),
-        ("unit", words(&|(_, at, _)| sweep.quantities[*at].unit.clone())),
-        ("value", optional(&|(_, _, looked)| looked.value)),
-        ("expected", optional(&|(_, _, looked)| looked.expected.and_then(ExpectedValue::value))),
-        ("bound", words(&|(_, _, looked)| bound(looked))),
-        ("scale", optional(&|(_, _, looked)| looked.scale)),
-        ("error", optional(&|(_, _, looked)| looked.error)),
-        ("allowed", optional(&|(_, _, looked)| looked.allowed)),
-        ("verdict", words(&|(_, _, looked)| looked.verdict.map_or("", Outcome::word).to_owned())),
-        ("detail", words(&|(point, _, looked)| detail(point, looked))),
-        ("steps", count(&|ran| Some(ran.steps))),
-        ("particle_steps", count(&|ran| Some(ran.particle_steps))),
-        ("contact_evaluations", count(&|ran| ran.contact_evaluations)),
-        ("node_updates", count(&|ran| ran.node_updates)),
-        ("time_step", optional(&|(point, _, _)| point.left.ran.map(|ran| ran.time_step))),
-        ("wall_seconds", optional(&|(point, _, _)| wall(point))),
-    ];
-    columns.extend(rest.map(|(name, values)| (name.to_owned(), values)));
-    columns
+        let values = point.factors.iter().zip(is_number).map(factor).collect::<Vec<_>>();
+        point.left.looked.iter().zip(&sweep.quantities).map(move |(looked, quantity)| {
+            let (expected, bound) = expectation(looked.expected);
+            let detail = looked.detail.clone().or_else(|| point.left.detail.clone()).unwrap_or_default();
+            let mut cells = vec![Cell::from(&sweep.scene)];
+            cells.extend(values.iter().cloned());
+            cells.extend([&point.solver, &point.resolution, &quantity.words, &quantity.unit].map(Cell::from));
+            cells.extend([looked.value.into(), expected.into(), bound.into()]);
+            cells.extend([looked.scale, looked.error, looked.allowed].map(Cell::from));
+            cells.extend([looked.verdict.map_or("", Outcome::word).into(), detail.into()]);
+            let ran = point.left.ran.as_ref();
+            let count = |value: fn(&RunCounts) -> Option<u64>| ran.and_then(value).map(|count| count as f64).into();
+            cells.extend([count(|ran| Some(ran.steps)), count(|ran| Some(ran.particle_steps))]);
+            cells.extend([count(|ran| ran.contact_evaluations), count(|ran| ran.node_updates)]);
+            cells.extend([ran.map(|ran| ran.time_step), wall(point)].map(Cell::from));
+            Row::from(cells)
+        })
+    });
+    Table::new("rows", columns.chain(COUNTS.map(number)), rows)
 }
 
 /// Returns the median wall-clock time of the repetitions (s), or the wall-clock time of the single run.

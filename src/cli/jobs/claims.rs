@@ -16,6 +16,7 @@ use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::folder;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
+use grainbench::cases::stored;
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
@@ -119,7 +120,7 @@ impl ClaimStudy {
 
     /// Returns the hashes of the installed programs that a claim runs. A stored run needs no program.
     fn programs(&self, case: &Case, claim: &Claim) -> String {
-        let runs = claim.runs.iter().filter(|run| self.tasks.live || !Registry.is_stored(case, run));
+        let runs = claim.runs.iter().filter(|run| self.tasks.live || !stored::exists(case, run));
         runs.map(|run| Registry.edition(run.solver)).collect::<Vec<_>>().join(" ").trim().to_owned()
     }
 

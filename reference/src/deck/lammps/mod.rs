@@ -11,12 +11,12 @@ use crate::deck::data::{GROWING, boundary, box_of, data_file, of_sphere, skin};
 use crate::deck::driven::driven;
 use crate::deck::logged::{Sums, logged};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, inertia_factor, is_flat, one_inertia};
-use crate::deck::program::Peer;
-use crate::deck::{
-    COLUMNS, CONTACTS, DeckFiles, END, END_CONTACTS, SAMPLES, Stepping, asks_for_contacts_at, asks_for_pairs,
-    asks_for_wall, heading, thermo,
+use crate::deck::peer::{DeckFiles, Peer};
+use crate::deck::script::{
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, asks_for_contacts_at, asks_for_pairs, asks_for_wall, heading, thermo,
 };
-use crate::observer::Names;
+use crate::deck::stepping::Stepping;
+use crate::names::Names;
 use contact::{at_wall, between_grains};
 use region::region;
 

@@ -21,13 +21,14 @@ use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere
 use crate::deck::driven::driven;
 use crate::deck::logged::{Sums, logged};
 use crate::deck::outline::{AXES, AxisPlane, has_discs, is_flat, one_inertia};
-use crate::deck::program::Peer;
+use crate::deck::peer::{DeckFiles, Peer};
 use crate::deck::schedule::{Rates, changes, rates_from};
-use crate::deck::{
-    COLUMNS, CONTACTS, DeckFiles, END, END_CONTACTS, SAMPLES, Stepping, asks_for_contacts_at, asks_for_force,
-    asks_for_pairs, asks_for_wall, heading, thermo,
+use crate::deck::script::{
+    COLUMNS, CONTACTS, END, END_CONTACTS, SAMPLES, asks_for_contacts_at, asks_for_force, asks_for_pairs, asks_for_wall,
+    heading, thermo,
 };
-use crate::observer::Names;
+use crate::deck::stepping::Stepping;
+use crate::names::Names;
 use contact::{Model, type_of_wall};
 use mesh::{Triangle, stl, triangles};
 

@@ -3,9 +3,9 @@
 use grainbench_scene::scene::Scene;
 
 use crate::deck::Stepping;
-use crate::deck::asks_for_wall;
 use crate::deck::outline::AxisPlane;
 use crate::deck::schedule::gone_at;
+use crate::deck::script::asks_for_wall;
 
 /// Returns an error if the scene inserts or removes grains, or has pistons or initial springs. A wall that is removed
 /// must not be a mesh, and its force must not be requested.

@@ -1,0 +1,56 @@
+//! Runs of a grain on a plane, and their negative controls.
+
+use crate::exact::one_grain::rest_at_overlap;
+use grainbench_harness::prelude::*;
+
+/// Time step of runs that are compared with rigid solutions.
+pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
+/// Static overlap divided by R at which soft contacts of all conventions nearly agree with a rigid contact.
+pub const NEARLY_RIGID: f64 = 1e-5;
+/// Damping ratio of the damped runs.
+pub const DAMPING: f64 = 0.5;
+
+/// Replaces the moment of inertia of a disc by that of a sphere, or that of a sphere by that of a disc.
+pub fn wrong_inertia(scene: &mut Scene) {
+    let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };
+    let grain = &mut scene.grains[0];
+    grain.inertia = factor * grain.mass * grain.radius * grain.radius;
+}
+
+/// Increases friction by 5 %.
+pub fn more_friction(scene: &mut Scene) {
+    scene.change_laws(|law| law.friction *= 1.05);
+}
+
+/// Returns the negative control for sliding grains: friction that is 5 % larger.
+#[must_use]
+pub fn stronger_friction() -> Control {
+    Control::scene("friction ×1.05", more_friction)
+}
+
+/// Returns the negative control for rolling grains: the moment of inertia of the other shape, disc or sphere.
+#[must_use]
+pub fn other_inertia() -> Control {
+    Control::scene("the inertia of the other shape", wrong_inertia)
+}
+
+/// Returns a run at a static overlap of `ratio`·R.
+#[must_use]
+pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, damping: f64, step: Resolution) -> Run {
+    let name = format!("overlap/R = {ratio:e}, damping ratio {damping}");
+    Run::new(variant, solver, step).adjusted(&name, move |scene| rest_at_overlap(scene, ratio, damping))
+}
+
+/// Returns a run at a static overlap of 1e-5 R, with or without a tangential dashpot. A slipping grain runs without it,
+/// because contact conventions differ in whether the dashpot force counts in the Coulomb limit.
+#[must_use]
+pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
+    if tangential_dashpot {
+        return at_overlap(variant, "dem:lammps", NEARLY_RIGID, DAMPING, STEP);
+    }
+    let name = format!("overlap/R = {NEARLY_RIGID:e}, damping ratio {DAMPING} along the normal alone");
+    Run::new(variant, "dem:lammps", STEP).adjusted(&name, |scene| {
+        rest_at_overlap(scene, NEARLY_RIGID, DAMPING);
+        scene.change_laws(|law| law.tangential_damping = 0.0);
+    })
+}

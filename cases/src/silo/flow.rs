@@ -1,0 +1,71 @@
+//! Cause of the flow of a silo, with the sizes and bins of its evaluation.
+
+use grainbench_harness::reading::Table;
+
+/// Cause of the flow.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Flow {
+    /// Grains leave through a slit in the middle of the floor.
+    Drained,
+    /// Half of the floor is pushed up.
+    Pushed,
+}
+
+/// Smallest shear rate |D₀| of a flowing element (1/τ).
+pub(crate) const FLOWING: f64 = 0.02;
+
+impl Flow {
+    /// Returns true if an element of edge 2.5 d is far from the cause of the flow: at least 7.5 d from the slit of a
+    /// draining silo, or above 12.5 d in a pushed silo.
+    pub(super) fn is_far(self, x: f64, z: f64) -> bool {
+        match self {
+            Self::Drained => x.hypot(z) >= 7.5,
+            Self::Pushed => z > 12.5,
+        }
+    }
+
+    /// Returns true if a block of edge 5 d is far from the cause of the flow: at least 5 d from the slit of a draining
+    /// silo, or above 10 d in a pushed silo.
+    pub(super) fn is_far_block(self, x: f64, z: f64) -> bool {
+        match self {
+            Self::Drained => x.hypot(z) >= 5.0,
+            Self::Pushed => z > 10.0,
+        }
+    }
+
+    /// Describes the region far from the cause of the flow.
+    pub(crate) const fn words(self) -> &'static str {
+        match self {
+            Self::Drained => "from 7.5 d off the slit on",
+            Self::Pushed => "above 12.5 d",
+        }
+    }
+}
+
+/// Bounds of the bins of the inertial number |I₀|.
+pub(crate) const INERTIA: [[f64; 2]; 10] = [
+    [0.002, 0.005],
+    [0.005, 0.01],
+    [0.01, 0.02],
+    [0.02, 0.04],
+    [0.04, 0.07],
+    [0.07, 0.1],
+    [0.1, 0.15],
+    [0.15, 0.2],
+    [0.2, 0.3],
+    [0.4, 0.6],
+];
+
+/// Edge of an element in x and z (d). In y, an element is as long as the period.
+pub(super) const ELEMENT: f64 = 2.5;
+/// Time from which the flow counts as steady (τ). The first window of frames begins at this time.
+pub(super) const STEADY: f64 = 6.0;
+/// Returns columns of a table as rows, without rows that contain NaN.
+pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
+    let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
+    if columns.len() < N {
+        return Vec::new();
+    }
+    let row = |at: usize| std::array::from_fn(|column| columns[column][at]);
+    (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
+}

@@ -1,0 +1,83 @@
+//! Frame of every page, and the names and signs that all pages share.
+
+use crate::plot::{self, DrawError, markup};
+use grainbench_harness::figure::Figure;
+use grainbench_harness::verdict::{Outcome, Severity};
+use maud::{DOCTYPE, Markup, PreEscaped, html};
+use std::collections::BTreeSet;
+
+/// Style sheet of the page.
+pub(super) const CSS: &str = include_str!("style.css");
+/// Optional script of the page for search, filters and films.
+pub(super) const SCRIPT: &str = include_str!("page.js");
+
+/// Returns the anchor of the table with all results of a case.
+pub(crate) fn rows_of(anchor: &str) -> String {
+    format!("{anchor}-rows")
+}
+
+/// Returns a complete HTML page with the given body.
+pub(crate) fn shell(title: &str, body: &Markup) -> String {
+    let page = html! {
+        (DOCTYPE)
+        html lang="en" {
+            head {
+                meta charset="utf-8";
+                meta name="viewport" content="width=device-width, initial-scale=1";
+                meta name="color-scheme" content="light dark";
+                // Without an icon link, a browser would request an icon from the server.
+                link rel="icon" href="data:,";
+                title { (title) }
+                style { (PreEscaped(CSS)) }
+            }
+            body { (body) script { (PreEscaped(SCRIPT)) } }
+        }
+    };
+    markup(&page.into_string())
+}
+
+/// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
+#[must_use]
+pub fn slug(name: &str) -> String {
+    let mut slug = String::new();
+    for letter in name.chars() {
+        if letter.is_ascii_alphanumeric() {
+            slug.push(letter.to_ascii_lowercase());
+        } else if !slug.is_empty() && !slug.ends_with('-') {
+            slug.push('-');
+        }
+    }
+    let slug = slug.trim_end_matches('-');
+    if slug.is_empty() { "unnamed" } else { slug }.to_owned()
+}
+
+/// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.
+pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
+    let mut name = stem.to_owned();
+    let mut next = 2;
+    while !taken.insert(name.clone()) {
+        name = format!("{stem}-{next}");
+        next += 1;
+    }
+    name
+}
+
+/// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
+/// colour.
+pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
+    match outcome.severity() {
+        Severity::Green => ("✓", "pass"),
+        Severity::Red => ("✗", "fail"),
+        Severity::Amber => ("▲", "amber"),
+    }
+}
+
+/// Renders a figure with its caption.
+pub(crate) fn captioned(figure: &Figure) -> Result<Markup, DrawError> {
+    Ok(html! {
+        figure {
+            div class="plot graph" { (PreEscaped(plot::draw(figure)?)) }
+            figcaption { (figure.caption) }
+        }
+    })
+}

@@ -1,0 +1,59 @@
+//! Results of one case: claims, controls, figures and costs.
+
+use crate::stored_figure;
+use grainbench_harness::case::Physics;
+use grainbench_harness::figure::Figure;
+use grainbench_harness::verdict::{Control, Verdict};
+use serde::{Deserialize, Serialize};
+
+/// Results of one case.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Section {
+    /// Name of the case, such as `nine-discs`.
+    pub name: String,
+    /// Title in words.
+    pub title: String,
+    /// Field of physics; `own` in reports without fields.
+    #[serde(default)]
+    pub physics: Physics,
+    /// Claim of the case in words.
+    pub claim: String,
+    /// Derivation of the expected values, in Markdown without raw HTML. Formulas are text.
+    pub derivation: String,
+    /// Limitations of this test, in Markdown.
+    pub weak: String,
+    /// Figures in the order in which they are shown.
+    #[serde(deserialize_with = "stored_figure::figures")]
+    pub figures: Vec<Figure>,
+    /// Results in the order of the claims.
+    pub verdicts: Vec<Verdict>,
+    /// Negative controls.
+    pub controls: Vec<Control>,
+    /// Computing cost of every run.
+    pub runs: Vec<RunCost>,
+}
+
+/// Computing cost of a run of a claim.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct RunCost {
+    /// Variant of the scene.
+    pub variant: String,
+    /// Solver and contact convention, such as `dem:lammps`.
+    pub solver: String,
+    /// Resolution in words, such as `dt=.1`.
+    pub resolution: String,
+    /// Number of steps.
+    pub steps: u64,
+    /// Number of steps times number of grains.
+    pub particle_steps: u64,
+    /// Number of evaluations of contact laws; absent if the program does not report it.
+    pub contact_evaluations: Option<u64>,
+    /// Wall-clock time of the stepping loop (s).
+    #[serde(deserialize_with = "stored_figure::number")]
+    pub wall_seconds: f64,
+    /// Time step (s).
+    #[serde(deserialize_with = "stored_figure::number")]
+    pub time_step: f64,
+    /// Time step as a fraction of the critical time step; absent if the method has none.
+    pub fraction_of_critical: Option<f64>,
+}

@@ -1,0 +1,157 @@
+//! Page of stability: largest stable time steps and hard cases.
+
+use super::Study;
+use super::stability::{HardCaseResult, Hardness, Limit, distinct, figures};
+use crate::measured::{Hold, Stability};
+use crate::number;
+use crate::page::captioned;
+use crate::plot::DrawError;
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
+use maud::{Markup, html};
+
+/// Renders a table with one row per solver: its largest stable time steps, and its outcomes in hard cases.
+fn totals(lines: &[Hold]) -> Markup {
+    let numbers = ["Hard cases that hold", "at a smaller step", "end in an error", "wrong without an error"];
+    let columns = [Column::heading("Solver"), Column::text("Largest stable step over the exact limit")].into_iter();
+    let columns = columns.chain(numbers.map(|name| Column::new(name, Format::Count)));
+    let row = |line: &Hold| {
+        let limit = line.limit.map(|([low, high], count)| {
+            let [low, high] = [low, high].map(|end| number::significant(end, 4));
+            format!("{low} … {high} in {count} assemblies")
+        });
+        let holds = format!("{} of {}", line.holds, line.asked());
+        row![&line.solver, limit, holds, line.smaller, line.typed, line.wrong]
+    };
+    Table::new("Totals", columns, lines.iter().map(row)).page("")
+}
+
+/// Renders the section of the page.
+pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
+    if let ([first, ..], []) = (&study.limits[..], &study.hard[..])
+        && first.scene.ends_with(".toml")
+    {
+        return Ok(html! {
+            header id="summary" {
+                p.kicker { "grainbench" }
+                h1 { "What stays stable in " (first.scene) }
+            }
+            (largest_steps(&study.limits))
+        });
+    }
+    let tables = tables(&Stability::from_study(study, &|_| None))?;
+    Ok(html! {
+        header id="summary" {
+            p.kicker { "grainbench" }
+            h1 { "What stays stable" }
+            (tables)
+        }
+    })
+}
+
+/// Renders the table of the largest stable steps in one scene.
+pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
+    html! {
+        section {
+            h3 { "Largest stable steps" }
+            p.note {
+                "Bisection between runs that end and runs that break, or whose kinetic energy grows tenfold, or whose \
+                 elastic energy grows threefold. 2√(m/k) is the critical time step of the scene, and h/c is the time in \
+                 which a wave crosses a cell."
+            }
+            (limits(rows))
+        }
+    }
+}
+
+/// Renders the figures and tables.
+pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
+    let pictures: Vec<Markup> = figures(&stability.limits).iter().map(captioned).collect::<Result<_, _>>()?;
+    Ok(html! {
+        p.lead {
+            "The largest stable step of each solver, found by bisection between stable and failed runs, with the exact \
+             limit if "
+            "there is one. Hard cases follow, each with its requirement."
+        }
+        h3 { "Totals" }
+        (totals(&stability.lines))
+        @if !stability.hard.is_empty() {
+            h3 { "Hard cases" }
+            (matrix(&stability.hard))
+            (details_of(&stability.hard))
+        }
+        @if !stability.limits.is_empty() {
+            h3 { "Largest stable steps" }
+            div.figures { @for picture in &pictures { (picture) } }
+            (limits(&stability.limits))
+        }
+    })
+}
+
+/// Returns the symbol and the CSS class of an outcome.
+pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
+    match standing {
+        Hardness::Holds => ("✓", "pass"),
+        Hardness::HoldsAtASmallerStep => ("↓", "amber"),
+        Hardness::TypedFailure => ("!", "amber"),
+        Hardness::QuietlyWrong => ("✗", "fail"),
+        Hardness::Unsupported | Hardness::NotAvailable => ("–", ""),
+    }
+}
+
+fn matrix(rows: &[HardCaseResult]) -> Markup {
+    let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
+    let columns =
+        [Column::heading("Case and requirement")].into_iter().chain(solvers.iter().copied().map(Column::text));
+    let row = |case: &str| {
+        let result = |solver: &&str| {
+            let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) else { return "".into() };
+            let (symbol, class) = sign(row.standing);
+            Cell::from(html! {
+                span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
+                @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
+            })
+        };
+        let must = rows.iter().find(|row| row.case == case).map_or("", |row| row.must.as_str());
+        let name = html! { (case) span.title { (must) } };
+        Row::from([Cell::from(name)].into_iter().chain(solvers.iter().map(result)).collect::<Vec<_>>())
+    };
+    let cases = distinct(rows.iter().map(|row| row.case.as_str()));
+    Table::new("Hard cases", columns, cases.into_iter().map(row)).page("cases")
+}
+
+fn details_of(rows: &[HardCaseResult]) -> Markup {
+    let telling = |row: &&HardCaseResult| !row.detail.is_empty() && !matches!(row.standing, Hardness::NotAvailable);
+    html! {
+        details {
+            summary { "Observations" }
+            ul {
+                @for row in rows.iter().filter(telling) {
+                    li { (row.case) " · " (row.solver) " · " (row.standing.word()) ": " (row.detail) }
+                }
+            }
+        }
+    }
+}
+
+fn limits(rows: &[Limit]) -> Markup {
+    let number = |name| Column::new(name, Format::Digits(4));
+    let columns = [
+        Column::heading("Assembly"),
+        Column::text("Solver"),
+        number("Found"),
+        number("Exact"),
+        Column::new("Error", Format::Error),
+        Column::text("Unit"),
+        number("Default"),
+        number("Margin"),
+        Column::text("How it fails above").class("wide"),
+    ];
+    let row = |row: &Limit| {
+        let at = row.at.map(|at| format!("{} = {}", row.knob, number::significant(at, 4)));
+        let scene = html! { (row.scene) @if let Some(at) = at { span.fine { (at) } } };
+        let Limit { solver, found, exact, error, unit, default, margin, detail, .. } = row;
+        row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
+    };
+    Table::new("Largest stable steps", columns, rows.iter().map(row)).page("rows")
+}
