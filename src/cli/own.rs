@@ -137,7 +137,7 @@ fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
     let columns: Vec<&str> = series.columns.iter().map(|column| column.name.as_str()).collect();
     for name in quantities {
         if !columns.iter().any(|column| *column == name || column.starts_with(&format!("{name}."))) {
-            return Err(Fault::unknown("a probe, or a column of a probe,", name, columns.iter().copied()));
+            return Err(Fault::unknown("a probe or a column of a probe", name, columns.iter().copied()));
         }
     }
     Ok(scene)

@@ -138,7 +138,7 @@ fn a_folder_of_outputs_is_judged_together() {
         fs::write(place.join(input), "units si\n").unwrap();
     }
     let (code, rows) = judged(&["--all", &runs]);
-    assert_eq!((code, count(&rows, |row| row["case"] == "incline-disc")), (Some(0), 9), "{rows:#?}");
+    assert_eq!((code, count(&rows, |row| row["case"] == "incline-disc")), (Some(0), 11), "{rows:#?}");
     fs::write(place.join("notes.txt"), "a run of yesterday\n").unwrap();
     fs::write(directory.path().join("runs/stray.dump"), "").unwrap();
     let (code, rows) = judged(&["--all", &runs]);

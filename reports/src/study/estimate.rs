@@ -516,8 +516,8 @@ fn agreement(cost: &SceneCost) -> Markup {
         @if !rows.is_empty() {
             h3 { "Agreement between the methods" }
             p.note {
-                "The methods model contacts differently. Agreement is not evidence of truth, and a difference does not tell which \
-                 method is wrong."
+                "The methods model contacts differently. Agreement is not evidence of truth, and a difference does not tell \
+                 which method is wrong."
             }
             ul {
                 @for (quantity, differences) in &rows {

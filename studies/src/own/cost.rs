@@ -4,8 +4,9 @@ use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, 
 use super::ladder::Ladder;
 use super::schedule::{self, Finished};
 use super::storage::RunStore;
+use super::stored_run::{StoredColumn, StoredRun, columns, wall_seconds};
 use super::within::Within;
-use crate::chaos::{perturbed_runs, scale_of};
+use crate::chaos::perturbed_runs;
 use crate::run_cache::key_of_run;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::solvers::Solvers;
@@ -19,10 +20,9 @@ use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::{RunError, StorageError};
 use grainbench_solver::observer::Observer;
-use grainbench_solver::record::{Record, Snapshot};
+use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::{WriteError, key};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -85,32 +85,6 @@ pub trait StudyFollower {
 
 /// Follower that ignores everything.
 impl StudyFollower for () {}
-
-/// Column of a finished run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct StoredColumn {
-    name: String,
-    unit: String,
-    end: f64,
-    mean: f64,
-    /// Largest absolute value of the column.
-    largest: f64,
-    /// Largest absolute value of the probe in this unit.
-    scale: f64,
-}
-
-/// Finished run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-struct StoredRun {
-    status: LevelStatus,
-    /// Time of the first run (s), start-up included.
-    seconds: f64,
-    /// Times of the stepping loop (s).
-    walls: Vec<f64>,
-    steps: u64,
-    detail: Option<String>,
-    columns: Vec<StoredColumn>,
-}
 
 /// Purpose of a run.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -663,32 +637,6 @@ fn soften(scene: &mut Scene, factor: f64) {
         law.tangential_damping /= factor.sqrt();
         law.stiffness_damping *= factor.sqrt();
     });
-}
-
-/// Returns the time of the stepping loop (s), or the time of the whole run if the program does not report it.
-fn wall_seconds(record: &Record, whole: f64) -> f64 {
-    Some(record.cost.wall_seconds).filter(|wall| wall.is_finite() && *wall > 0.0).unwrap_or(whole)
-}
-
-/// Returns the finite columns of a record. The mean is weighted by the time between samples.
-fn columns(record: &Record) -> Vec<StoredColumn> {
-    let series = &record.series;
-    let column = |(at, column): (usize, &grainbench_solver::record::Column)| {
-        let values = series.values.get(at)?;
-        let (first, last) = (series.time.first()?, series.time.last()?);
-        let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
-        let mean = if last > first { areas.sum::<f64>() / (last - first) } else { *values.first()? };
-        let stored = StoredColumn {
-            name: column.name.clone(),
-            unit: column.unit.clone(),
-            end: *values.last()?,
-            mean,
-            largest: values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
-            scale: scale_of(record, at),
-        };
-        (values.iter().all(|value| value.is_finite()) && mean.is_finite()).then_some(stored)
-    };
-    series.columns.iter().enumerate().filter_map(column).collect()
 }
 
 /// Returns the status and the message of a run that did not end.

@@ -9,4 +9,5 @@ pub mod limit;
 pub mod network;
 pub mod schedule;
 pub mod storage;
+mod stored_run;
 pub mod within;

@@ -137,16 +137,20 @@ pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     lost
 }
 
-/// Returns the files that no chapter shows, and the scenes that no chapter simulates.
+/// Returns the files that no chapter shows, and the scenes that no chapter runs.
 pub(crate) fn untold(chapters: &[Chapter]) -> Vec<String> {
     let mut found = Vec::new();
     for folder in ["scenes", "claims"] {
         for entry in fs::read_dir(root("guide").join(folder)).unwrap() {
             let name = entry.unwrap().file_name().into_string().unwrap();
             let include = format!("<!-- file: ../{folder}/{name} -->");
-            let command = if folder == "scenes" { format!("simulate {name} ") } else { format!("../{folder}/{name}") };
+            let commands = match folder {
+                "scenes" => vec![format!("simulate {name} "), format!("cost {name} ")],
+                _ => vec![format!("../{folder}/{name}")],
+            };
+            let runs = |line: &str| line.starts_with("$ ") && commands.iter().any(|command| line.contains(command));
             let is_told = |chapter: &Chapter| {
-                let is_run = chapter.text.lines().any(|line| line.starts_with("$ ") && line.contains(&command));
+                let is_run = chapter.text.lines().any(runs);
                 chapter.text.contains(&include) && is_run
             };
             if !chapters.iter().any(is_told) {

@@ -1,0 +1,58 @@
+//! Values and times of a finished run, as they are stored.
+
+use crate::chaos::scale_of;
+use grainbench_reports::study::estimate::LevelStatus;
+use grainbench_solver::record::{Column, Record};
+use serde::{Deserialize, Serialize};
+
+/// Column of a finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct StoredColumn {
+    pub(super) name: String,
+    pub(super) unit: String,
+    pub(super) end: f64,
+    pub(super) mean: f64,
+    /// Largest absolute value of the column.
+    pub(super) largest: f64,
+    /// Largest absolute value of the probe in this unit.
+    pub(super) scale: f64,
+}
+
+/// Finished run.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub(super) struct StoredRun {
+    pub(super) status: LevelStatus,
+    /// Time of the first run (s), start-up included.
+    pub(super) seconds: f64,
+    /// Times of the stepping loop (s).
+    pub(super) walls: Vec<f64>,
+    pub(super) steps: u64,
+    pub(super) detail: Option<String>,
+    pub(super) columns: Vec<StoredColumn>,
+}
+
+/// Returns the time of the stepping loop (s), or the time of the whole run if the program does not report it.
+pub(super) fn wall_seconds(record: &Record, whole: f64) -> f64 {
+    Some(record.cost.wall_seconds).filter(|wall| wall.is_finite() && *wall > 0.0).unwrap_or(whole)
+}
+
+/// Returns the finite columns of a record. The mean is weighted by the time between samples.
+pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
+    let series = &record.series;
+    let column = |(at, column): (usize, &Column)| {
+        let values = series.values.get(at)?;
+        let (first, last) = (series.time.first()?, series.time.last()?);
+        let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
+        let mean = if last > first { areas.sum::<f64>() / (last - first) } else { *values.first()? };
+        let stored = StoredColumn {
+            name: column.name.clone(),
+            unit: column.unit.clone(),
+            end: *values.last()?,
+            mean,
+            largest: values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
+            scale: scale_of(record, at),
+        };
+        (values.iter().all(|value| value.is_finite()) && mean.is_finite()).then_some(stored)
+    };
+    series.columns.iter().enumerate().filter_map(column).collect()
+}
