@@ -34,7 +34,7 @@ pub(super) fn elements(course: &Course) -> Table<'_> {
     let columns = clock_heads().into_iter().chain(place_heads()).chain([Head::text("mask")]);
     let rows = course.frames.iter().flat_map(move |frame| {
         (0..frame.elements.len()).map(move |cell| {
-            let mut row = vec![Cell::from(frame.step), Cell::from(frame.time)];
+            let mut row = vec![Cell::from(frame.step), Cell::finite(Some(frame.time))];
             row.extend(place(course, cell));
             row.push(frame.masked[cell].words().into());
             row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value(column, frame, cell))));
@@ -51,7 +51,7 @@ pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Table<'a> {
     let columns = columns.chain([Head::number("hencky_strain").unit("1")]);
     let rows = trails.stops.iter().map(move |stop| {
         let frame = &course.frames[stop.frame];
-        let mut row = vec![Cell::from(stop.tracer), Cell::from(frame.step), Cell::from(frame.time)];
+        let mut row = vec![Cell::from(stop.tracer), Cell::from(frame.step), Cell::finite(Some(frame.time))];
         row.extend(stop.position.iter().map(|along| Cell::from(*along)));
         row.push(Cell::finite(stop.strain));
         row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value_at(column, frame, stop.position))));
