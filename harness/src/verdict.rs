@@ -69,6 +69,13 @@ impl Outcome {
         matches!(self, Self::Pass | Self::Known | Self::Fail | Self::Broken | Self::Stale)
     }
 
+    /// Returns true if the outcome counts as judged for the exit code. Unlike [`Self::is_judged`], this includes outdated
+    /// results and scenes that a solver does not support.
+    #[must_use]
+    pub const fn counts_for_exit(self) -> bool {
+        !matches!(self, Self::NoReference | Self::NotAvailable)
+    }
+
     /// Returns the name used in result files and tables.
     #[must_use]
     pub const fn word(self) -> &'static str {

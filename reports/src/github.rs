@@ -27,9 +27,8 @@ pub fn summary(report: &Report) -> String {
     }
     let row = |section: &Section| {
         let counts = Headline::of_section(section);
-        let [passed, controls] = [(counts.pass, counts.rows()), (counts.controls_red, counts.controls)]
-            .map(|(part, all)| format!("{part}/{all}"));
-        row![&section.name, passed, counts.red(), counts.amber(), controls]
+        let controls = format!("{}/{}", counts.controls_red, counts.controls);
+        row![&section.name, counts.passed(), counts.red(), counts.amber(), controls]
     };
     let columns = ["case", "passed", "red", "amber", "controls red"].map(Column::text);
     text.push('\n');
@@ -39,11 +38,12 @@ pub fn summary(report: &Report) -> String {
     text
 }
 
-/// Returns one workflow command for each red result and each control that did not fail as required.
+/// Returns one workflow command for each red result, each control that did not fail as required, and each other reason why
+/// the run is red.
 #[must_use]
 pub fn annotations(report: &Report) -> Vec<String> {
     let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));
-    let mut lines = Vec::new();
+    let mut lines: Vec<String> = report.red_because.iter().map(|reason| error("grainbench", reason)).collect();
     for section in &report.sections {
         let red = |row: &&Verdict| is_red(row);
         lines.extend(section.verdicts.iter().filter(red).map(|row| error(&row.quantity, &line::verdict(row))));

@@ -3,7 +3,7 @@
 use super::exit::{Fault, Outcome, check_writable};
 use super::pattern;
 use super::provenance::provenance;
-use super::publish::{Output, add_reasons, is_judged, publish};
+use super::publish::{Output, add_reasons, publish};
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
@@ -114,7 +114,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     // content is right.
     let is_told = report.sections.iter().all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
-        rows.any(|row| is_judged(row) && !is_of_power(row))
+        rows.any(|row| row.outcome.counts_for_exit() && !is_of_power(row))
     });
     add_reasons(&mut report, !is_told, arguments.strict);
     let Arguments { out, json, strict, .. } = arguments;

@@ -3,7 +3,7 @@
 use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
-use super::publish::{Output, add_reasons, is_judged, publish};
+use super::publish::{Output, add_reasons, publish};
 use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
@@ -74,7 +74,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let words = vec!["compare".to_owned(), a, b];
     let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
-    let is_mute = !columns.any(|row| is_judged(row) && !is_label(row));
+    let is_mute = !columns.any(|row| row.outcome.counts_for_exit() && !is_label(row));
     add_reasons(&mut report, is_mute, arguments.strict);
     let text = Some(format!("{}{}\n", rows(&report), counts(&comparison)));
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })

@@ -63,8 +63,8 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> 
 
 /// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
 pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
-    if is_mute {
-        let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    if is_mute || !rows.clone().any(|row| row.outcome.counts_for_exit()) {
         let reason = rows.find_map(|row| row.detail.clone());
         let reason = reason.unwrap_or_else(|| "no result describes its quantity".to_owned());
         report.red_because.push(format!("nothing judged: {reason}"));
@@ -90,24 +90,13 @@ pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     let mut controls = report.sections.iter().flat_map(|section| &section.controls);
     let is_red = !report.red_because.is_empty()
         || rows().any(red_row)
-        || !rows().any(is_judged)
+        || !rows().any(|row| row.outcome.counts_for_exit())
         || controls.any(|control| !control.turned_red);
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
-}
-
-/// Returns true if the solver was judged. An unsupported scene counts as judged, but a missing solver does not.
-pub(crate) const fn is_judged(verdict: &Verdict) -> bool {
-    outcome_is_judged(verdict.outcome)
-}
-
-/// Returns true if a result with this outcome counts as judged. Outcomes without a usable reference or solver do not count.
-pub(crate) const fn outcome_is_judged(outcome: verdict::Outcome) -> bool {
-    use verdict::Outcome::{Broken, Fail, Known, Outdated, Pass, Unsupported};
-    matches!(outcome, Pass | Fail | Known | Outdated | Unsupported | Broken)
 }
 
 /// Returns true if no result judges its quantity. For an unsupported scene, the quantity is not judged.
 pub(crate) fn says_nothing(report: &Report) -> bool {
     let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !is_judged(row))
+    rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !row.outcome.counts_for_exit())
 }

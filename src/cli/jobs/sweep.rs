@@ -4,7 +4,6 @@ use super::study::{ReportOptions, Study, Tasks};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
-use crate::cli::publish::outcome_is_judged;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::harness::verdict;
@@ -134,7 +133,7 @@ impl Study for SweepStudy {
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
-        let nothing_judged = outcomes().next().is_some() && !outcomes().any(outcome_is_judged);
+        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.counts_for_exit());
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
         Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }
