@@ -23,6 +23,9 @@ use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
+/// Solvers in the order of the sweep file; `None` for a solver that is not available.
+type FoundSolvers = Vec<Option<Arc<dyn Solver>>>;
+
 /// Sweep over parameters, with its solvers.
 pub(crate) struct SweepStudy {
     path: String,
@@ -35,7 +38,7 @@ pub(crate) struct SweepStudy {
     /// Cache of finished runs, opened with the first run. Timed tasks never use it.
     cache: OnceLock<Option<Arc<RunCache>>>,
     /// Solvers in the order of the sweep file, which use the cache.
-    found: OnceLock<Vec<Option<Arc<dyn Solver>>>>,
+    found: OnceLock<FoundSolvers>,
 }
 
 impl SweepStudy {
