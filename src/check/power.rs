@@ -32,7 +32,7 @@ pub enum Power {
 }
 
 /// Source text that identifies results about power.
-const SOURCE: &str = "our solver on the scene with one effect changed";
+pub(super) const SOURCE: &str = "our solver on the scene with one effect changed";
 /// Largest work of a limited search, in units of the comparison with our solvers.
 const MOST_WORK: u64 = 3;
 /// Relative changes of coefficients, from the smallest to the largest.
@@ -45,6 +45,9 @@ const MOST_NAMES: usize = 8;
 pub fn is_of_power(row: &Verdict) -> bool {
     row.source == SOURCE
 }
+
+/// Last words of the detail of a result whose change cannot be detected.
+pub(super) const HIDDEN: &str = " cannot be detected in this output";
 
 /// Effect with changes of increasing size.
 struct Family {
@@ -211,7 +214,7 @@ fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict 
         }
         (_, largest) => {
             let words = largest.map_or("any change", |largest| &largest.words);
-            row.left(Outcome::NoReference, format!("{}: {words} cannot be detected in this output", family.name))
+            row.left(Outcome::NoReference, format!("{}: {words}{HIDDEN}", family.name))
         }
     }
 }

@@ -1,7 +1,7 @@
 //! Summary of a check in one sentence.
 
 use super::judgement::{OUTSIDE, is_outside};
-use super::power::is_of_power;
+use super::power::{HIDDEN, is_of_power};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use grainbench_reports::{Section, number};
@@ -40,11 +40,22 @@ pub fn sentence(section: &Section) -> String {
     parts.extend(rows.iter().find_map(|row| {
         row.detail.clone().filter(|words| words.ends_with("is the stiffness yours?")).map(|words| capital(&words))
     }));
+    parts.extend(hidden(section).filter(|_| !is_open));
     parts
         .iter()
         .map(|part| if part.ends_with('?') { part.clone() } else { format!("{part}.") })
         .collect::<Vec<_>>()
         .join(" ")
+}
+
+/// Returns the changes of the scene that the output cannot reveal, in words; `None` if there are none.
+fn hidden(section: &Section) -> Option<String> {
+    let words = |row: &Verdict| {
+        let (name, change) = row.detail.as_deref()?.strip_suffix(HIDDEN)?.split_once(": ")?;
+        Some(format!("{name} ({change})"))
+    };
+    let found: Vec<String> = section.verdicts.iter().filter(|row| is_of_power(row)).filter_map(words).collect();
+    (!found.is_empty()).then(|| format!("This output cannot reveal a change of {}", found.join(", ")))
 }
 
 /// Returns the contact convention of a solver in words.
@@ -93,4 +104,37 @@ fn agreement(rows: &[&Verdict], reference: &str) -> Option<String> {
 fn capital(words: &str) -> String {
     let mut letters = words.chars();
     letters.next().map_or_else(String::new, |first| first.to_uppercase().chain(letters).collect())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// The agreement is followed by the changes that the output cannot reveal.
+    #[test]
+    fn hidden_changes_follow_the_agreement() {
+        let open = |quantity: &str| Verdict::open("heap", quantity, "1");
+        let judged = |source: &str, outcome, detail: Option<&str>| Verdict {
+            source: source.to_owned(),
+            outcome,
+            detail: detail.map(str::to_owned),
+            error: Some(0.0),
+            ..open("all.kinetic_energy, worst of 2 samples")
+        };
+        let ours = "dem, our nearest convention, at the time step of the file";
+        let power = super::super::power::SOURCE;
+        let section = |detail: &str| Section {
+            verdicts: vec![
+                Verdict { outcome: Outcome::Pass, ..open("time of the last sample") },
+                judged(ours, Outcome::Pass, None),
+                judged(power, Outcome::NoReference, Some(detail)),
+            ],
+            ..Section::default()
+        };
+        let agreement = "The output agrees with our default convention in all digits.";
+        let hidden = section(&format!("friction: a quarter more or less{HIDDEN}"));
+        let words = "This output cannot reveal a change of friction (a quarter more or less).";
+        assert_eq!(sentence(&hidden), format!("{agreement} {words}"));
+        assert_eq!(sentence(&section("friction: the work limit is reached")), agreement);
+    }
 }

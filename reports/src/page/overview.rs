@@ -94,15 +94,17 @@ fn headline(counts: Headline) -> String {
         1 => format!("1 is {word}"),
         _ => format!("{count} are {word}"),
     };
-    format!(
-        "{} of {} results pass, {}, {}; {} of {} negative controls fail as they must",
+    let results = format!(
+        "{} of {} results pass, {}, {}",
         counts.pass,
         counts.rows(),
         colour(counts.red(), "red"),
-        colour(counts.amber(), "amber"),
-        counts.controls_red,
-        counts.controls
-    )
+        colour(counts.amber(), "amber")
+    );
+    match counts.controls {
+        0 => results,
+        controls => format!("{results}; {} of {controls} negative controls fail as they must", counts.controls_red),
+    }
 }
 
 /// Renders the number of known errors of each solver; empty for an outcome other than `known`.

@@ -175,9 +175,9 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let table = Table::new("Scenes by effects", columns, scenes.iter().map(row));
     html! {
         p.note {
-            "For an enabled effect: the change of the result without it (median over the claims), and its cost \
+            "For an enabled effect: the change of the result without it (median over the claims or probes), and its cost \
              (particle steps "
-            "and contact evaluations, with it / without it). Green means that every claim passes without it. For a \
+            "and contact evaluations, with it / without it). Green means that every claim passes, or every probe stays, without it. For a \
              disabled effect: = "
             "if it changes no bit, ≠ if it does."
         }
@@ -212,7 +212,7 @@ fn table(ledger: &[Entry]) -> Markup {
         Column::text("Enabled by"),
         Column::text("Result").class("verdict"),
         Column::text("Largest change without it").class("wide"),
-        Column::number("Red claims"),
+        Column::number("Changed results"),
         Column::number("Counts, with / without"),
         Column::number("CPU time, with / without"),
     ];

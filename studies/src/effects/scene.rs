@@ -121,7 +121,13 @@ impl StudyInput<'_> {
         }
     }
 
+    /// Tests the neutral value of an effect, if the method of the solver leaves the effect out when it is off. A rigid-body
+    /// engine, for example, moves a wall by another kind of body.
     fn idly(&self, effect: Effect, entry: &mut Entry) -> Option<()> {
+        let method = Method::from_name(&self.solver.name());
+        if method.is_some_and(|method| !effect.left_out_by().contains(&method)) {
+            return None;
+        }
         let idle = try_idly(self.solver, self.scene, &self.resolution, effect, PATIENCE).ok()??;
         entry.worth = if idle.same { EffectResult::Inert } else { EffectResult::NotInert };
         (entry.counts, entry.time) = (Some(idle.counts), idle.time);
