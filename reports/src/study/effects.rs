@@ -176,10 +176,8 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     html! {
         p.note {
             "For an enabled effect: the change of the result without it (median over the claims or probes), and its cost \
-             (particle steps "
-            "and contact evaluations, with it / without it). Green means that every claim passes, or every probe stays, without it. For a \
-             disabled effect: = "
-            "if it changes no bit, ≠ if it does."
+             (particle steps and contact evaluations, with it / without it). Green means that every claim passes, or every \
+             probe stays, without it. For a disabled effect: = if it changes no bit, ≠ if it does."
         }
         (table.page("heat"))
     }
