@@ -106,14 +106,16 @@ struct Contact {
     change: f64,
 }
 
-/// Returns the new positions of the grains that touch a wall or a grain, if a radius changes: index of the grain, key
-/// and value. A grain at rest under its weight is placed at its new static overlap; every other overlap keeps its ratio
+/// New position of a grain: its index, and the key and the value of its position.
+type NewPosition = (usize, (String, String));
+
+/// Returns the new positions of the grains that touch a wall or a grain, if a radius changes. A grain at rest under its weight is placed at its new static overlap; every other overlap keeps its ratio
 /// to the radius. Returns no position if the grains cannot keep their contacts.
 fn positions(
     source: &SceneSource,
     changed: &SceneSource,
     set: &[(String, String)],
-) -> Result<Vec<(usize, (String, String))>, SceneError> {
+) -> Result<Vec<NewPosition>, SceneError> {
     let new = overlay(set)?;
     let groups = new.get("grains").and_then(Value::as_table);
     if !groups.is_some_and(|groups| groups.values().any(|group| group.get("radius").is_some())) {
@@ -145,7 +147,7 @@ fn positions(
         }
     }
     let Some(moves) = moves(&contacts, &fixed, &radii, start) else { return Ok(Vec::new()) };
-    let place = |moves: &[Vector3<f64>]| -> Vec<(usize, (String, String))> {
+    let place = |moves: &[Vector3<f64>]| -> Vec<NewPosition> {
         let axes = scene.dimension.count();
         let moved = (0..moves.len()).filter(|&grain| !fixed[grain] && moves[grain] != Vector3::zeros());
         let value = |grain: usize| {
