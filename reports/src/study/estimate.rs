@@ -178,7 +178,8 @@ pub struct Quantity {
     pub scale: f64,
     /// One reference value for each solver with at least two levels.
     pub estimates: Vec<Estimate>,
-    /// Values at all levels, for solvers with a reference value.
+    /// Values at all levels, for solvers with a reference value. The levels of each solver are in the order from coarse to
+    /// fine.
     pub points: Vec<EstimatedPoint>,
 }
 
@@ -186,8 +187,14 @@ impl Quantity {
     /// Returns the fastest setting of a solver whose error is certainly at most `target`. Softer contacts are left out.
     #[must_use]
     pub fn cheapest(&self, solver: &str, target: f64) -> Option<&EstimatedPoint> {
-        let within = self.of_solver(solver).filter(|point| point.at_most() <= target);
-        within.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))
+        self.within(solver, target).min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))
+    }
+
+    /// Returns the points of a solver that reach `target`: their errors and the errors of all finer levels are certainly at
+    /// most `target`. A coarse level whose finer levels have larger errors is right by chance.
+    fn within(&self, solver: &str, target: f64) -> impl Iterator<Item = &EstimatedPoint> {
+        let points: Vec<_> = self.of_solver(solver).collect();
+        points.into_iter().rev().take_while(move |point| point.at_most() <= target)
     }
 
     /// Returns the points of a solver with the contacts of the scene.
@@ -244,9 +251,7 @@ impl SceneCost {
     pub fn cheapest_for_all(&self, solver: &str, target: f64) -> Option<(&str, f64)> {
         let quantities = || self.quantities.iter().filter(|quantity| quantity.of_solver(solver).next().is_some());
         let is_enough = |setting: &str| {
-            quantities().all(|quantity| {
-                quantity.of_solver(solver).any(|point| point.setting == setting && point.at_most() <= target)
-            })
+            quantities().all(|quantity| quantity.within(solver, target).any(|point| point.setting == setting))
         };
         let settings = quantities().next()?.of_solver(solver).filter(|point| is_enough(&point.setting));
         let best = settings.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))?;
@@ -296,9 +301,9 @@ impl SceneCost {
     }
 }
 
-/// Returns the smallest upper end of the error of a solver.
+/// Returns the smallest target that a solver reaches: the upper end of the error of its finest level.
 fn least(quantity: &Quantity, solver: &str) -> Option<f64> {
-    quantity.of_solver(solver).map(EstimatedPoint::at_most).min_by(f64::total_cmp)
+    quantity.of_solver(solver).last().map(EstimatedPoint::at_most)
 }
 
 /// Returns a sentence of the settings and times (s) at which solvers reach an error. `unreached` describes the errors of a
@@ -393,8 +398,8 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
             p {
                 "The scene has no exact solution. The reference value of each solver is estimated from its own levels \
                  (evidence: " (Evidence::Convergence.word()) "). Errors are estimates with an uncertainty, and nothing passes or \
-                 fails. An error is reached if it is certain up to its uncertainty. Agreement of two methods does not show \
-                 that they are right."
+                 fails. A setting reaches an error if its own error and the errors of all finer levels are at most as large, \
+                 uncertainty included. Agreement of two methods does not show that they are right."
             }
             p.note {
                 "Compared value of each probe: " (cost.reduction.word()) ". The study took " (number::seconds(cost.spent))
@@ -595,3 +600,7 @@ fn levels(rows: &[Level]) -> Markup {
     };
     scrolling("Every run", &table)
 }
+
+#[cfg(test)]
+#[path = "estimate_tests.rs"]
+mod tests;

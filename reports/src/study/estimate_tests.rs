@@ -1,0 +1,64 @@
+//! Tests of the statements about estimated errors.
+
+#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+
+use super::*;
+
+/// Returns a quantity of one solver whose levels from coarse to fine have these errors. Each level takes twice the time.
+fn ladder(errors: &[f64]) -> Quantity {
+    let point = |(at, error): (usize, &f64)| EstimatedPoint {
+        solver: "rigid".to_owned(),
+        setting: format!("substeps={}", 1 << at),
+        wall_seconds: f64::from(1 << at),
+        value: 1.0 + error,
+        error: *error,
+        uncertainty: 1e-3,
+        softer: false,
+    };
+    Quantity {
+        name: "ball.x".to_owned(),
+        unit: "m".to_owned(),
+        scale: 1.0,
+        estimates: Vec::new(),
+        points: errors.iter().enumerate().map(point).collect(),
+    }
+}
+
+fn cost(quantities: Vec<Quantity>) -> SceneCost {
+    let points = quantities.iter().flat_map(|quantity| &quantity.points);
+    let level = |point: &EstimatedPoint| Level {
+        solver: point.solver.clone(),
+        setting: point.setting.clone(),
+        status: LevelStatus::Measured,
+        wall_seconds: Some(point.wall_seconds),
+        repetitions: 1,
+        steps: 1,
+        detail: None,
+    };
+    SceneCost {
+        scene: "scene.toml".to_owned(),
+        budget: 60.0,
+        spent: 50.0,
+        reduction: Reduction::End,
+        levels: points.map(level).collect(),
+        quantities,
+        notes: Vec::new(),
+    }
+}
+
+/// The coarsest level is right by chance: the next one has a larger error. Negative control: a ladder without such a level.
+#[test]
+fn a_level_that_is_right_by_chance_reaches_nothing() {
+    for (errors, setting) in [([0.002, 0.027, 0.008, 0.004], "substeps=4"), ([0.009, 0.008, 0.006, 0.003], "substeps=1")]
+    {
+        let quantity = ladder(&errors);
+        assert_eq!(quantity.cheapest("rigid", 0.01).map(|point| point.setting.as_str()), Some(setting));
+        let cost = cost(vec![quantity]);
+        assert_eq!(cost.cheapest_for_all("rigid", 0.01).map(|(setting, _)| setting), Some(setting));
+        assert!(cost.sentence(0.01).ends_with(&format!("with {setting}.")), "{}", cost.sentence(0.01));
+    }
+    // An error of the finest level above the target: the accurate coarse level is not "at best".
+    let unreached = cost(vec![ladder(&[0.002, 0.027, 0.02])]);
+    assert_eq!(unreached.cheapest_for_all("rigid", 0.01), None);
+    assert!(unreached.sentence(0.01).contains("at best 2.1"), "{}", unreached.sentence(0.01));
+}
