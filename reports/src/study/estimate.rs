@@ -13,6 +13,8 @@ use serde::{Deserialize, Serialize};
 pub const TARGETS: [f64; 3] = super::cost::TARGETS;
 /// Error of the sentence that summarises a study.
 pub const TARGET: f64 = 0.01;
+/// Uncertainty of a difference, as a fraction of the scale, from which two methods cannot be compared.
+const COMPARABLE: f64 = 0.05;
 /// Number of quantities whose figures are visible without a click.
 const OPEN: usize = 3;
 /// Smallest plotted error.
@@ -498,15 +500,17 @@ fn references(cost: &SceneCost) -> Markup {
     scrolling("Reference values", &table)
 }
 
-/// Returns the difference of two solvers in words.
+/// Returns the difference of two solvers in words. Methods agree only if the uncertainty of their difference is small.
 #[must_use]
 pub fn difference_words(difference: &Difference<'_>) -> String {
     let [a, b] = difference.solvers;
     let [size, uncertainty] = [difference.size, difference.uncertainty].map(number::fraction);
-    if difference.size <= difference.uncertainty {
+    if difference.size > difference.uncertainty {
+        format!("{a} and {b} differ by {size} (more than their uncertainty of ± {uncertainty})")
+    } else if difference.uncertainty < COMPARABLE {
         format!("{a} and {b} agree within their uncertainties ({size} ± {uncertainty})")
     } else {
-        format!("{a} and {b} differ by {size} ± {uncertainty}")
+        format!("the agreement of {a} and {b} cannot be decided: the uncertainty is ± {uncertainty}")
     }
 }
 
@@ -522,7 +526,8 @@ fn agreement(cost: &SceneCost) -> Markup {
             h3 { "Agreement between the methods" }
             p.note {
                 "The methods model contacts differently. Agreement is not evidence of truth, and a difference does not tell \
-                 which method is wrong."
+                 which method is wrong. It cannot be decided if the uncertainty is at least " (number::fraction(COMPARABLE))
+                " of the scale."
             }
             ul {
                 @for (quantity, differences) in &rows {

@@ -62,3 +62,16 @@ fn a_level_that_is_right_by_chance_reaches_nothing() {
     assert_eq!(unreached.cheapest_for_all("rigid", 0.01), None);
     assert!(unreached.sentence(0.01).contains("at best 2.1"), "{}", unreached.sentence(0.01));
 }
+
+/// A difference of 22 % with an uncertainty of 50 % is no agreement. Negative control: a small uncertainty.
+#[test]
+fn agreement_needs_a_small_uncertainty() {
+    let words = |size, uncertainty| difference_words(&Difference { solvers: ["dem", "mpm"], size, uncertainty });
+    let undecided = words(0.22, 0.5);
+    assert!(undecided.contains("cannot be decided: the uncertainty is ± 50") && !undecided.contains("agree "));
+    assert!(words(0.01, 0.06).contains("cannot be decided"));
+    assert!(words(0.01, 0.02).starts_with("dem and mpm agree within"));
+    let different = words(0.22, 0.02);
+    assert!(different.starts_with("dem and mpm differ by 22") && different.contains("(more than their uncertainty of ± 2"));
+    assert!(words(0.6, 0.5).contains("differ by 60"));
+}
