@@ -59,7 +59,7 @@ impl Basis {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Extrapolated => "extrapolated",
-            Self::Spread => "finest level, spread of three",
+            Self::Spread => "no visible order: finest level, spread of the levels",
             Self::Ensemble => "mean of three levels",
         }
     }
