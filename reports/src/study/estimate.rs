@@ -39,6 +39,15 @@ impl Reduction {
             Self::Mean => "mean over time",
         }
     }
+
+    /// Returns the definition of the scale of a quantity.
+    #[must_use]
+    pub const fn scale(self) -> &'static str {
+        match self {
+            Self::End => "the larger of |reference value| and the largest |value| of this quantity over the run",
+            Self::Mean => "the mean over time of |value| of this quantity",
+        }
+    }
 }
 
 /// Method by which a reference value is estimated.
@@ -176,7 +185,7 @@ pub struct Quantity {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Largest absolute value of the probe in this unit. Errors are fractions of it.
+    /// Scale of this column, as in [`Reduction::scale`]. Errors are fractions of it.
     pub scale: f64,
     /// One reference value for each solver with at least two levels.
     pub estimates: Vec<Estimate>,
@@ -404,7 +413,8 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
                  uncertainty included. Agreement of two methods does not show that they are right."
             }
             p.note {
-                "Compared value of each probe: " (cost.reduction.word()) ". The study took " (number::seconds(cost.spent))
+                "Compared value of each probe: " (cost.reduction.word()) ". The scale of an error is "
+                (cost.reduction.scale()) ", by the first solver. The study took " (number::seconds(cost.spent))
                 " of a budget of " (number::seconds(cost.budget)) "."
             }
             @for note in &cost.notes { p.note { (note) } }
@@ -539,7 +549,7 @@ fn agreement(cost: &SceneCost) -> Markup {
 }
 
 /// Returns, for each setting with softer contacts, its time relative to the same level of the scene, and the largest change
-/// of a quantity with its name.
+/// of a quantity beyond its uncertainty, with its name.
 #[must_use]
 pub fn softer_words(cost: &SceneCost) -> Vec<String> {
     let points =
@@ -548,7 +558,8 @@ pub fn softer_words(cost: &SceneCost) -> Vec<String> {
         super::stability::distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));
     let sentence = |setting: &str| {
         let own = || points().filter(move |(_, point)| point.setting == setting);
-        let (quantity, worst) = own().max_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+        let certain = |point: &EstimatedPoint| point.error - point.uncertainty;
+        let (quantity, worst) = own().max_by(|a, b| certain(a.1).total_cmp(&certain(b.1)))?;
         Some(format!(
             "{} {setting}: {}, largest change {} in {}",
             worst.solver,

@@ -39,9 +39,9 @@ pub const MATTERS: f64 = 0.01;
 const REPETITIONS: usize = 9;
 /// Uncertainty relative to the scale below which no further level is useful.
 const ENOUGH: f64 = 1e-7;
-/// Difference relative to the scale that counts as rounding error.
+/// Difference relative to the scale of the probe that counts as rounding error.
 const ROUNDING: f64 = 1e-12;
-/// Value relative to the scale below which a column is zero apart from rounding.
+/// Value relative to the scale of the probe below which a column is zero apart from rounding.
 const ZERO: f64 = 1e-9;
 /// Factors by which the stiffness of contacts is divided.
 const SOFTER: [f64; 2] = [10.0, 100.0];
@@ -509,36 +509,38 @@ impl<'a> Measurement<'a> {
             if is_known || !self.is_wanted(column) {
                 continue;
             }
-            // The scale is that of the finest run of the first solver.
-            let finest = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
+            // Scales are those of the finest run of the first solver.
+            let levels = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
             let named = |run: &&Run| run.stored.columns.iter().any(|other| other.name == column.name);
-            let first = finest.clone().find(named).map_or(0, |run| run.solver);
-            let scales = finest.filter(|run| run.solver == first);
-            let mut scales = scales.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
-            let scale = scales.next_back().map_or(0.0, |column| column.scale);
+            let first = levels.clone().find(named).map_or(0, |run| run.solver);
+            let own = levels.filter(|run| run.solver == first);
+            let mut own = own.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
+            let Some(finest) = own.next_back() else { continue };
             let all = self.runs.iter().flat_map(|run| &run.stored.columns);
             let largest =
                 all.filter(|other| other.name == column.name).fold(0.0, |most: f64, other| most.max(other.largest));
-            if scale <= self.negligible(&column.unit) || largest <= ZERO * scale {
+            if finest.scale <= self.negligible(&column.unit) || largest <= ZERO * finest.scale {
                 continue;
             }
+            let scale = if reduction == Reduction::End { finest.largest } else { finest.mean_absolute };
             let mut quantity = Quantity {
                 name: column.name.clone(),
                 unit: column.unit.clone(),
-                scale,
+                // A column may be zero in the finest run alone.
+                scale: scale.max(ZERO * finest.scale),
                 estimates: Vec::new(),
                 points: Vec::new(),
             };
             for at in 0..self.ladders.len() {
-                self.estimate(at, reduction, &mut quantity);
+                self.estimate(at, (reduction, ROUNDING * finest.scale), &mut quantity);
             }
             found.push(quantity);
         }
         found
     }
 
-    /// Adds the reference value and the points of a solver to a quantity.
-    fn estimate(&self, at: usize, reduction: Reduction, quantity: &mut Quantity) {
+    /// Adds the reference value and the points of a solver to a quantity. Differences up to `rounding` are rounding errors.
+    fn estimate(&self, at: usize, (reduction, rounding): (Reduction, f64), quantity: &mut Quantity) {
         let value = |run: &Run| {
             let column = run.stored.columns.iter().find(|column| column.name == quantity.name)?;
             Some(if reduction == Reduction::End { column.end } else { column.mean })
@@ -555,10 +557,13 @@ impl<'a> Measurement<'a> {
         let perturbed = self.perturbed.iter().flatten().find(|(name, _)| *name == quantity.name);
         let spread = perturbed.map_or(0.0, |(_, values)| deviation(values));
         let found = match reduction {
-            Reduction::End => reference(&values, ladder.order(), ROUNDING * quantity.scale),
+            Reduction::End => reference(&values, ladder.order(), rounding),
             Reduction::Mean => ensemble(&values, spread),
         };
         let Some(Reference { value: limit, mut uncertainty, order, basis }) = found else { return };
+        if reduction == Reduction::End && quantity.estimates.is_empty() {
+            quantity.scale = quantity.scale.max(limit.abs());
+        }
         for half in self.measured(at, Purpose::HalfStep) {
             let same = levels.iter().find(|run| run.fineness == half.fineness);
             if let (Some(half), Some(whole)) = (value(half), same.and_then(|run| value(run))) {

@@ -12,6 +12,8 @@ pub(super) struct StoredColumn {
     pub(super) unit: String,
     pub(super) end: f64,
     pub(super) mean: f64,
+    /// Mean over time of the absolute value.
+    pub(super) mean_absolute: f64,
     /// Largest absolute value of the column.
     pub(super) largest: f64,
     /// Largest absolute value of the probe in this unit.
@@ -42,13 +44,18 @@ pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
     let column = |(at, column): (usize, &Column)| {
         let values = series.values.get(at)?;
         let (first, last) = (series.time.first()?, series.time.last()?);
-        let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
-        let mean = if last > first { areas.sum::<f64>() / (last - first) } else { *values.first()? };
+        let mean = |part: fn(f64) -> f64| {
+            let areas = series.time.windows(2).zip(values.windows(2));
+            let areas = areas.map(|(t, v)| 0.5 * (t[1] - t[0]) * (part(v[0]) + part(v[1])));
+            if last > first { areas.sum::<f64>() / (last - first) } else { values.first().map_or(f64::NAN, |v| part(*v)) }
+        };
+        let (mean, mean_absolute) = (mean(|value| value), mean(f64::abs));
         let stored = StoredColumn {
             name: column.name.clone(),
             unit: column.unit.clone(),
             end: *values.last()?,
             mean,
+            mean_absolute,
             largest: values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
             scale: scale_of(record, at),
         };
