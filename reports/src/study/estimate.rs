@@ -241,6 +241,9 @@ pub struct SceneCost {
     pub spent: f64,
     /// Compared value of the time series.
     pub reduction: Reduction,
+    /// Names of all solvers.
+    #[serde(default)]
+    pub names: Vec<String>,
     /// All runs.
     pub levels: Vec<Level>,
     /// Target quantities.
@@ -250,10 +253,29 @@ pub struct SceneCost {
 }
 
 impl SceneCost {
-    /// Returns the solvers with at least one run, in the order of their first run.
+    /// Returns the solvers of the study.
     #[must_use]
     pub fn solvers(&self) -> Vec<&str> {
-        super::stability::distinct(self.levels.iter().map(|level| level.solver.as_str()))
+        let run = self.levels.iter().map(|level| level.solver.as_str());
+        super::stability::distinct(self.names.iter().map(String::as_str).chain(run))
+    }
+
+    /// Returns the reason why a solver has no reference value.
+    fn reason(&self, solver: &str) -> String {
+        let own = || self.levels.iter().filter(|level| level.solver == solver);
+        let count = |status| own().filter(|level| level.status == status).count();
+        match (count(LevelStatus::Measured), count(LevelStatus::Failed), own().last()) {
+            (_, _, None) => "no run".to_owned(),
+            (0, failed, Some(last)) if last.status == LevelStatus::Failed => format!("{failed} levels failed"),
+            (0, _, Some(last)) => last.status.word().to_owned(),
+            (1, ..) => "only one level ended, and two are needed".to_owned(),
+            _ => "no finite value".to_owned(),
+        }
+    }
+
+    /// Returns the words about a solver without a value.
+    fn without_value(&self, solver: &str) -> String {
+        format!("{solver} has no value ({})", self.reason(solver))
     }
 
     /// Returns the fastest setting of a solver with which the error of each quantity is certainly at most `target`, and its
@@ -272,17 +294,19 @@ impl SceneCost {
     /// Returns the sentence about the cost of an error of at most `target` in all quantities.
     #[must_use]
     pub fn sentence(&self, target: f64) -> String {
-        let solvers = self.estimated();
+        let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| Some((*solver, self.cheapest_for_all(solver, target)?)));
         let unreached = |solver: &str| {
             let own = || self.quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
-            let (quantity, error) = own().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let Some((quantity, error)) = own().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                return self.without_value(solver);
+            };
             let (within, all) = (own().filter(|(_, error)| *error <= target).count(), own().count());
             let at_best = format!("at best {}", number::fraction(error));
-            Some(match all {
+            match all {
                 1 => format!("{solver} does not reach it ({at_best})"),
                 _ => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
-            })
+            }
         };
         let count = self.quantities.len();
         let of_all = if count == 1 { String::new() } else { format!(" in each of {count} quantities") };
@@ -293,14 +317,14 @@ impl SceneCost {
     /// Returns the sentence about the cost of an error of at most `target` in one quantity.
     #[must_use]
     pub fn sentence_of(&self, quantity: &Quantity, target: f64) -> String {
-        let solvers = self.estimated();
+        let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| {
             let point = quantity.cheapest(solver, target)?;
             Some((*solver, (point.setting.as_str(), point.wall_seconds)))
         });
-        let unreached = |solver: &str| {
-            let at_best = number::fraction(least(quantity, solver)?);
-            Some(format!("{solver} does not reach it (at best {at_best})"))
+        let unreached = |solver: &str| match least(quantity, solver) {
+            Some(error) => format!("{solver} does not reach it (at best {})", number::fraction(error)),
+            None => self.without_value(solver),
         };
         words(&number::fraction(target), reached, &solvers, &unreached, self.budget)
     }
@@ -323,7 +347,7 @@ fn words<'a>(
     target: &str,
     reached: impl Iterator<Item = (&'a str, (&'a str, f64))>,
     solvers: &[&str],
-    unreached: &dyn Fn(&str) -> Option<String>,
+    unreached: &dyn Fn(&str) -> String,
     budget: f64,
 ) -> String {
     let mut reached: Vec<_> = reached.collect();
@@ -341,7 +365,7 @@ fn words<'a>(
         parts.push(format!("no solver reaches it within the budget of {}", number::seconds(budget)));
     }
     let others = solvers.iter().filter(|solver| reached.iter().all(|(name, _)| name != *solver));
-    parts.extend(others.filter_map(|solver| unreached(solver)));
+    parts.extend(others.map(|solver| unreached(solver)));
     format!("{target}: {}.", parts.join("; "))
 }
 
@@ -441,7 +465,7 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
 
 /// Renders the fastest setting of each solver for an error of 1 %, by quantity.
 fn costs(cost: &SceneCost) -> Markup {
-    let solvers = cost.estimated();
+    let solvers = cost.solvers();
     let table = html! {
         table.cases {
             thead { tr { th scope="col" { "Quantity" } @for solver in &solvers { th scope="col" { (solver) } } } }
@@ -457,7 +481,7 @@ fn costs(cost: &SceneCost) -> Markup {
                                         span.fine { (point.setting) ", error " (interval(point)) }
                                     }
                                     (None, Some(error)) => { "at best " (number::fraction(error)) }
-                                    (None, None) => { "—" }
+                                    (None, None) => { "no value: " (cost.reason(solver)) }
                                 }
                             }
                         }

@@ -40,6 +40,7 @@ fn cost(quantities: Vec<Quantity>) -> SceneCost {
         budget: 60.0,
         spent: 50.0,
         reduction: Reduction::End,
+        names: vec!["rigid".to_owned()],
         levels: points.map(level).collect(),
         quantities,
         notes: Vec::new(),
@@ -74,4 +75,28 @@ fn agreement_needs_a_small_uncertainty() {
     let different = words(0.22, 0.02);
     assert!(different.starts_with("dem and mpm differ by 22") && different.contains("(more than their uncertainty of ± 2"));
     assert!(words(0.6, 0.5).contains("differ by 60"));
+}
+
+/// Each solver without a value is in the sentence, with the reason.
+#[test]
+fn a_solver_without_a_value_is_named() {
+    let mut cost = cost(vec![ladder(&[0.04, 0.02, 0.008])]);
+    let measured = cost.levels[0].clone();
+    let level = |solver: &str, status| Level { solver: solver.to_owned(), status, ..measured.clone() };
+    cost.names = ["rigid", "dem", "mpm", "other", "slow"].map(str::to_owned).to_vec();
+    cost.levels.extend([LevelStatus::Failed; 5].map(|status| level("dem", status)));
+    cost.levels.push(level("mpm", LevelStatus::Unsupported));
+    cost.levels.push(level("slow", LevelStatus::Measured));
+    let sentences = [cost.sentence(0.01), cost.sentence_of(&cost.quantities[0], 0.01)];
+    for sentence in sentences {
+        for words in [
+            "dem has no value (5 levels failed)",
+            "mpm has no value (cannot run the scene)",
+            "other has no value (no run)",
+            "slow has no value (only one level ended, and two are needed)",
+        ] {
+            assert!(sentence.contains(words), "{words}: {sentence}");
+        }
+        assert!(!sentence.contains("rigid has no value"), "{sentence}");
+    }
 }

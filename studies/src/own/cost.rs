@@ -4,7 +4,7 @@ use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, 
 use super::ladder::Ladder;
 use super::schedule::{self, Finished};
 use super::storage::RunStore;
-use super::stored_run::{StoredColumn, StoredRun, columns, wall_seconds};
+use super::stored_run::{StoredColumn, StoredRun, columns, failure, wall_seconds};
 use super::within::Within;
 use crate::chaos::perturbed_runs;
 use crate::run_cache::key_of_run;
@@ -18,7 +18,7 @@ use grainbench_reports::study::estimate::{
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
-use grainbench_solver::failure::{RunError, StorageError};
+use grainbench_solver::failure::StorageError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
@@ -45,8 +45,9 @@ const ROUNDING: f64 = 1e-12;
 const ZERO: f64 = 1e-9;
 /// Factors by which the stiffness of contacts is divided.
 const SOFTER: [f64; 2] = [10.0, 100.0];
-/// Number of failures in a row after which a solver gets no further level.
-const FAILURES: usize = 4;
+/// Number of failures in a row after which a solver gets no further level: with time steps or substeps, and with cells,
+/// whose refinement costs much more.
+const FAILURES: [usize; 2] = [12, 6];
 /// Columns that count something. They change in jumps, and are target quantities only if the user names them.
 const COUNTS: [&str; 6] = ["slipping", "contacts", "slipping_contacts", "present", "entered", "left"];
 
@@ -243,8 +244,9 @@ impl<'a> Measurement<'a> {
         self.runs.push(run);
         let is_last_factor = last > 0.0 && self.ladders[at].listed.is_empty() && fineness < 1.9 * last;
         let failures = self.own(at).rev().take_while(|run| run.stored.status == LevelStatus::Failed).count();
+        let most = FAILURES[usize::from(self.ladders[at].has_cells())];
         let is_over = !matches!(status, LevelStatus::Measured | LevelStatus::Failed);
-        if is_over || is_last_factor || failures >= FAILURES || self.is_converged(at) {
+        if is_over || is_last_factor || failures >= most || self.is_converged(at) {
             self.finished[at].closed = true;
         }
         if self.perturbed.is_none() && self.measured(at, Purpose::Level).len() >= 2 {
@@ -379,8 +381,8 @@ impl<'a> Measurement<'a> {
             columns: Vec::new(),
         };
         let Some(solver) = &self.found[at] else { return stored };
-        // A first level of unknown cost must not use the time of the other solvers.
-        let limit = match self.finished[at].levels.is_empty() {
+        // A first whole run of unknown cost must not use the time of the other solvers.
+        let limit = match self.measured(at, Purpose::Level).is_empty() {
             true => FIRST * self.remaining(PARTS[0]),
             false => self.remaining(LATEST),
         };
@@ -484,6 +486,7 @@ impl<'a> Measurement<'a> {
             detail: run.stored.detail.clone(),
         };
         let mut notes = self.notes.clone();
+        notes.extend((0..self.study.names.len()).filter_map(|at| self.failures(at)));
         if self.is_chaotic() {
             notes.push(
                 "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes by more \
@@ -496,10 +499,32 @@ impl<'a> Measurement<'a> {
             budget: self.study.budget.as_secs_f64(),
             spent: self.start.elapsed().as_secs_f64(),
             reduction,
+            names: self.study.names.clone(),
             levels: self.runs.iter().map(level).collect(),
             quantities: self.quantities(reduction),
             notes,
         }
+    }
+
+    /// Returns a note about a solver of which no level ended.
+    fn failures(&self, at: usize) -> Option<String> {
+        let name = &self.study.names[at];
+        let levels: Vec<&Run> = self.own(at).filter(|run| run.purpose == Purpose::Level).collect();
+        let Some(last) = levels.last() else {
+            return self.found[at].as_ref().map(|_| format!("{name}: no run fits into the time that the other solvers leave."));
+        };
+        let failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
+        let (count, finest) = (failed.clone().count(), failed.last()?);
+        if levels.iter().any(|run| run.stored.status == LevelStatus::Measured) {
+            return None;
+        }
+        let end = if last.stored.status == LevelStatus::Failed && !self.finished[at].closed {
+            "; a finer one does not fit into the budget"
+        } else {
+            ""
+        };
+        let detail = finest.stored.detail.as_deref().unwrap_or_default();
+        Some(format!("{name}: {count} levels failed, the finest at {}{end}: {detail}", finest.setting))
     }
 
     fn quantities(&self, reduction: Reduction) -> Vec<Quantity> {
@@ -642,30 +667,6 @@ fn soften(scene: &mut Scene, factor: f64) {
         law.tangential_damping /= factor.sqrt();
         law.stiffness_damping *= factor.sqrt();
     });
-}
-
-/// Returns the status and the message of a run that did not end.
-fn failure(
-    error: &RunError,
-    completed: Option<f64>,
-    seconds: f64,
-    resolution: &Resolution,
-) -> (LevelStatus, Option<String>) {
-    let status = match error {
-        RunError::Unsupported { .. } => LevelStatus::Unsupported,
-        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
-        RunError::Interrupted { .. } => LevelStatus::OverBudget,
-        _ => LevelStatus::Failed,
-    };
-    let whole =
-        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
-    let detail = match status {
-        LevelStatus::OverBudget => {
-            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
-        }
-        _ => error.to_string(),
-    };
-    (status, Some(detail))
 }
 
 #[cfg(test)]

@@ -1,8 +1,11 @@
 //! Values and times of a finished run, as they are stored.
 
 use crate::chaos::scale_of;
+use grainbench_reports::number;
 use grainbench_reports::study::estimate::LevelStatus;
+use grainbench_solver::failure::RunError;
 use grainbench_solver::record::{Column, Record};
+use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
 
 /// Column of a finished run.
@@ -62,4 +65,28 @@ pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
         (values.iter().all(|value| value.is_finite()) && mean.is_finite()).then_some(stored)
     };
     series.columns.iter().enumerate().filter_map(column).collect()
+}
+
+/// Returns the status and the message of a run that did not end.
+pub(super) fn failure(
+    error: &RunError,
+    completed: Option<f64>,
+    seconds: f64,
+    resolution: &Resolution,
+) -> (LevelStatus, Option<String>) {
+    let status = match error {
+        RunError::Unsupported { .. } => LevelStatus::Unsupported,
+        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
+        RunError::Interrupted { .. } => LevelStatus::OverBudget,
+        _ => LevelStatus::Failed,
+    };
+    let whole =
+        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
+    let detail = match status {
+        LevelStatus::OverBudget => {
+            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
+        }
+        _ => error.to_string(),
+    };
+    (status, Some(detail))
 }
