@@ -327,7 +327,7 @@ fn text(study: &Study) -> String {
             cost.reduction.word()
         ));
         for target in TARGETS {
-            text.push_str(&format!("  {}\n", cost.sentence(target)));
+            text.push_str(&format!("  {}\n", cost.sentence(target, &study.limits)));
         }
         for quantity in &cost.quantities {
             text.push_str(&format!("{} ({})\n", quantity.name, quantity.unit));
@@ -341,7 +341,7 @@ fn text(study: &Study) -> String {
             for difference in quantity.differences() {
                 text.push_str(&format!("  {}\n", difference_words(&difference)));
             }
-            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1])));
+            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1], &study.limits)));
         }
         for sentence in softer_words(cost) {
             text.push_str(&format!("softer contacts: {sentence}\n"));

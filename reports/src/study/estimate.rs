@@ -1,5 +1,6 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
+use super::stability::Limit;
 use crate::number;
 use crate::page::{captioned as figure, slug};
 use crate::plot::DrawError;
@@ -15,6 +16,10 @@ pub const TARGETS: [f64; 3] = super::cost::TARGETS;
 pub const TARGET: f64 = 0.01;
 /// Uncertainty of a difference, as a fraction of the scale, from which two methods cannot be compared.
 const COMPARABLE: f64 = 0.05;
+/// Time step relative to the largest stable one above which a sentence has a remark.
+const MARGIN: f64 = 0.5;
+/// Unit of a time step of a solver with springs: the critical time step.
+const CRITICAL_STEP: &str = "2√(m/k)";
 /// Number of quantities whose figures are visible without a click.
 const OPEN: usize = 3;
 /// Smallest plotted error.
@@ -291,9 +296,10 @@ impl SceneCost {
         Some((&best.setting, best.wall_seconds))
     }
 
-    /// Returns the sentence about the cost of an error of at most `target` in all quantities.
+    /// Returns the sentence about the cost of an error of at most `target` in all quantities. `limits` are the largest stable
+    /// steps, as far as they are known.
     #[must_use]
-    pub fn sentence(&self, target: f64) -> String {
+    pub fn sentence(&self, target: f64, limits: &[Limit]) -> String {
         let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| Some((*solver, self.cheapest_for_all(solver, target)?)));
         let unreached = |solver: &str| {
@@ -311,12 +317,12 @@ impl SceneCost {
         let count = self.quantities.len();
         let of_all = if count == 1 { String::new() } else { format!(" in each of {count} quantities") };
         let target_words = format!("{}{of_all}", number::fraction(target));
-        words(&target_words, reached, &solvers, &unreached, self.budget)
+        words(&target_words, reached, &solvers, &unreached, (self.budget, limits))
     }
 
     /// Returns the sentence about the cost of an error of at most `target` in one quantity.
     #[must_use]
-    pub fn sentence_of(&self, quantity: &Quantity, target: f64) -> String {
+    pub fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
         let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| {
             let point = quantity.cheapest(solver, target)?;
@@ -326,7 +332,7 @@ impl SceneCost {
             Some(error) => format!("{solver} does not reach it (at best {})", number::fraction(error)),
             None => self.without_value(solver),
         };
-        words(&number::fraction(target), reached, &solvers, &unreached, self.budget)
+        words(&number::fraction(target), reached, &solvers, &unreached, (self.budget, limits))
     }
 
     /// Returns the solvers with a reference value of at least one quantity.
@@ -348,7 +354,7 @@ fn words<'a>(
     reached: impl Iterator<Item = (&'a str, (&'a str, f64))>,
     solvers: &[&str],
     unreached: &dyn Fn(&str) -> String,
-    budget: f64,
+    (budget, limits): (f64, &[Limit]),
 ) -> String {
     let mut reached: Vec<_> = reached.collect();
     reached.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
@@ -358,7 +364,8 @@ fn words<'a>(
         .map(|(solver, (setting, seconds))| {
             let times = seconds / fastest;
             let times = if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
-            format!("{solver} {}{times} with {setting}", number::seconds(*seconds))
+            let margin = margin_words(solver, setting, limits).unwrap_or_default();
+            format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
         })
         .collect();
     if parts.is_empty() {
@@ -367,6 +374,15 @@ fn words<'a>(
     let others = solvers.iter().filter(|solver| reached.iter().all(|(name, _)| name != *solver));
     parts.extend(others.map(|solver| unreached(solver)));
     format!("{target}: {}.", parts.join("; "))
+}
+
+/// Returns a remark about a time step near the largest stable step of the solver.
+fn margin_words(solver: &str, setting: &str, limits: &[Limit]) -> Option<String> {
+    let step: f64 = setting.strip_prefix("dt=")?.parse().ok()?;
+    let limit = limits.iter().find(|limit| limit.solver == solver && limit.unit == CRITICAL_STEP)?;
+    let share = step / limit.found?;
+    (share > MARGIN)
+        .then(|| format!(", where {setting} is {} of the largest stable step", number::significant(share, 2)))
 }
 
 /// Returns one figure for each quantity: estimated error against time.
@@ -416,7 +432,7 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
+pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawError> {
     let pictures: Vec<(&Quantity, Markup)> = cost
         .quantities
         .iter()
@@ -428,8 +444,8 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs in " (cost.scene) }
-            p.lead { b { (cost.sentence(TARGET)) } }
-            p { @for target in TARGETS.into_iter().filter(|target| *target != TARGET) { (cost.sentence(target)) " " } }
+            p.lead { b { (cost.sentence(TARGET, limits)) } }
+            p { @for target in TARGETS.into_iter().filter(|target| *target != TARGET) { (cost.sentence(target, limits)) " " } }
             p {
                 "The scene has no exact solution. The reference value of each solver is estimated from its own levels \
                  (evidence: " (Evidence::Convergence.word()) "). Errors are estimates with an uncertainty, and nothing passes or \

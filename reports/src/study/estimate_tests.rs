@@ -56,12 +56,12 @@ fn a_level_that_is_right_by_chance_reaches_nothing() {
         assert_eq!(quantity.cheapest("rigid", 0.01).map(|point| point.setting.as_str()), Some(setting));
         let cost = cost(vec![quantity]);
         assert_eq!(cost.cheapest_for_all("rigid", 0.01).map(|(setting, _)| setting), Some(setting));
-        assert!(cost.sentence(0.01).ends_with(&format!("with {setting}.")), "{}", cost.sentence(0.01));
+        assert!(cost.sentence(0.01, &[]).ends_with(&format!("with {setting}.")), "{}", cost.sentence(0.01, &[]));
     }
     // An error of the finest level above the target: the accurate coarse level is not "at best".
     let unreached = cost(vec![ladder(&[0.002, 0.027, 0.02])]);
     assert_eq!(unreached.cheapest_for_all("rigid", 0.01), None);
-    assert!(unreached.sentence(0.01).contains("at best 2.1"), "{}", unreached.sentence(0.01));
+    assert!(unreached.sentence(0.01, &[]).contains("at best 2.1"), "{}", unreached.sentence(0.01, &[]));
 }
 
 /// A difference of 22 % with an uncertainty of 50 % is no agreement. Negative control: a small uncertainty.
@@ -87,7 +87,7 @@ fn a_solver_without_a_value_is_named() {
     cost.levels.extend([LevelStatus::Failed; 5].map(|status| level("dem", status)));
     cost.levels.push(level("mpm", LevelStatus::Unsupported));
     cost.levels.push(level("slow", LevelStatus::Measured));
-    let sentences = [cost.sentence(0.01), cost.sentence_of(&cost.quantities[0], 0.01)];
+    let sentences = [cost.sentence(0.01, &[]), cost.sentence_of(&cost.quantities[0], 0.01, &[])];
     for sentence in sentences {
         for words in [
             "dem has no value (5 levels failed)",
@@ -98,5 +98,35 @@ fn a_solver_without_a_value_is_named() {
             assert!(sentence.contains(words), "{words}: {sentence}");
         }
         assert!(!sentence.contains("rigid has no value"), "{sentence}");
+    }
+}
+
+/// A step of 0.4 is 0.87 of a largest stable step of 0.46. Negative controls: a limit of 1, and the limit of another solver.
+#[test]
+fn a_step_near_the_stable_one_has_a_remark() {
+    let mut quantity = ladder(&[0.002, 0.001]);
+    for (point, step) in quantity.points.iter_mut().zip(["dt=0.4", "dt=0.2"]) {
+        (point.solver, point.setting) = ("dem".to_owned(), step.to_owned());
+    }
+    let cost = SceneCost { names: vec!["dem".to_owned()], ..cost(vec![quantity]) };
+    let limit = |solver: &str, found| Limit {
+        scene: cost.scene.clone(),
+        knob: String::new(),
+        at: None,
+        solver: solver.to_owned(),
+        unit: CRITICAL_STEP.to_owned(),
+        found,
+        unstable: None,
+        exact: None,
+        error: None,
+        default: None,
+        margin: None,
+        detail: String::new(),
+    };
+    let remark = "with dt=0.4, where dt=0.4 is 0.87 of the largest stable step.";
+    assert!(cost.sentence(0.01, &[limit("dem", Some(0.46))]).ends_with(remark));
+    assert!(cost.sentence_of(&cost.quantities[0], 0.01, &[limit("dem", Some(0.46))]).ends_with(remark));
+    for control in [limit("dem", Some(1.0)), limit("rigid", Some(0.46)), limit("dem", None)] {
+        assert!(cost.sentence(0.01, &[control]).ends_with("with dt=0.4."));
     }
 }

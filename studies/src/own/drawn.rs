@@ -226,7 +226,7 @@ fn intervals_contain_the_true_error() {
     for (drawn, study) in &studies {
         for target in [0.1, 0.01, 0.001] {
             let Some((setting, _)) = study.cheapest_for_all("dem", target) else { continue };
-            let sentence = study.sentence(target);
+            let sentence = study.sentence(target, &[]);
             assert!(sentence.contains("dem ") && sentence.contains(setting), "{sentence}");
             for (name, exact) in &drawn.exact {
                 let quantity = study.quantities.iter().find(|quantity| quantity.name == *name).unwrap();
@@ -243,11 +243,11 @@ fn intervals_contain_the_true_error() {
 #[test]
 fn a_sentence_says_when_nobody_reaches_the_target() {
     let mut study = study(&flight(&mut |low, high| 0.5 * (low + high)).text);
-    assert!(study.sentence(0.01).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01));
+    assert!(study.sentence(0.01, &[]).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01, &[]));
     for point in study.quantities.iter_mut().flat_map(|quantity| &mut quantity.points) {
         point.uncertainty = 0.02;
     }
-    let sentence = study.sentence(0.01);
+    let sentence = study.sentence(0.01, &[]);
     assert!(
         sentence.contains("no solver reaches it within the budget") && sentence.contains("at best 2"),
         "{sentence}"
