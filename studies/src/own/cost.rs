@@ -69,6 +69,8 @@ pub struct SceneStudy<'a> {
     pub cache: &'a RunStore,
     /// Hash of this program.
     pub program: String,
+    /// Returns true if the user stops the study. The current run then ends and is not stored.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Receiver of the progress and of preliminary results.
@@ -172,6 +174,12 @@ impl<'a> Measurement<'a> {
         }
     }
 
+    /// Returns true if the user stops the study.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        (self.study.stop)()
+    }
+
     /// Returns the time that is spent (s). The time of reused runs counts, so that a continued study makes the same choices.
     #[must_use]
     pub fn spent(&self) -> f64 {
@@ -225,7 +233,8 @@ impl<'a> Measurement<'a> {
                 self.notes.push(format!("{name}: there is no such solver."));
             }
         }
-        while let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0])) {
+        while !self.is_stopped()
+            && let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0])) {
             self.level(at, fineness, follower)?;
             let line = self.line();
             follower.result(&line, &|| self.result())?;
@@ -237,7 +246,9 @@ impl<'a> Measurement<'a> {
     fn level(&mut self, at: usize, fineness: f64, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
         let resolution = self.ladders[at].at(fineness);
         let scene = self.scene.clone();
-        let run = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)?;
+        let Some(run) = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)? else {
+            return Ok(());
+        };
         let (status, seconds) = (run.stored.status, run.stored.seconds);
         let last = self.finished[at].levels.last().map_or(0.0, |(last, _)| *last);
         self.finished[at].levels.push((fineness, seconds));
@@ -249,7 +260,7 @@ impl<'a> Measurement<'a> {
         if is_over || is_last_factor || failures >= most || self.is_converged(at) {
             self.finished[at].closed = true;
         }
-        if self.perturbed.is_none() && self.measured(at, Purpose::Level).len() >= 2 {
+        if self.perturbed.is_none() && !self.is_stopped() && self.measured(at, Purpose::Level).len() >= 2 {
             self.test_for_chaos(at, follower);
         }
         Ok(())
@@ -273,7 +284,7 @@ impl<'a> Measurement<'a> {
                 let half = Resolution::Grid { cells, points, courant: 0.5 * courant };
                 let scene = self.scene.clone();
                 let run = self.run(at, (fineness, half, Purpose::HalfStep), &scene, String::new(), follower)?;
-                self.runs.push(run);
+                self.runs.extend(run);
             } else if self.study.names[at] == "dem" && self.scene.laws.iter().flatten().any(ContactLaw::has_stiffness) {
                 let limit = 0.5 * self.remaining(PARTS[2]);
                 let fits = levels.iter().rev().find(|run| run.fineness <= 4.0 && run.stored.seconds <= limit);
@@ -283,7 +294,7 @@ impl<'a> Measurement<'a> {
                     soften(&mut scene, factor);
                     let words = format!(", contacts softer by {factor}");
                     let run = self.run(at, (fineness, resolution, Purpose::Softer), &scene, words, follower)?;
-                    self.runs.push(run);
+                    self.runs.extend(run);
                 }
             }
         }
@@ -300,7 +311,7 @@ impl<'a> Measurement<'a> {
             return Ok(());
         }
         self.stored += std::mem::take(&mut self.repeated);
-        loop {
+        while !self.is_stopped() {
             let time =
                 |run: &Run| if run.stored.status == LevelStatus::Measured { run.stored.seconds } else { f64::INFINITY };
             // Softer contacts are timed once.
@@ -310,7 +321,7 @@ impl<'a> Measurement<'a> {
             let run = &self.runs[at];
             follower.now(&format!("{} {} again", self.study.names[run.solver], run.setting), self.spent());
             let Some(solver) = self.found[run.solver].clone() else { return Ok(()) };
-            let within = Within::new(&*solver, self.deadline(self.remaining(LATEST)));
+            let within = Within::new(&*solver, self.deadline(self.remaining(LATEST)), self.study.stop);
             let begin = Instant::now();
             let Ok(record) = within.run(&self.scene, &run.resolution, &mut NoSnapshots) else { return Ok(()) };
             let wall = wall_seconds(&record, begin.elapsed().as_secs_f64());
@@ -318,6 +329,7 @@ impl<'a> Measurement<'a> {
             run.stored.walls.push(wall);
             self.study.cache.put(&run.name, &run.stored)?;
         }
+        Ok(())
     }
 
     /// Returns the runs of a solver.
@@ -331,7 +343,8 @@ impl<'a> Measurement<'a> {
         self.own(solver).filter(is_measured).collect()
     }
 
-    /// Runs a level, or takes it from the storage. `words` describes a change of the scene.
+    /// Runs a level, or takes it from the storage. Returns none if the user stops the study. `words` describes a change of the
+    /// scene.
     fn run(
         &mut self,
         at: usize,
@@ -339,7 +352,10 @@ impl<'a> Measurement<'a> {
         scene: &Scene,
         words: String,
         follower: &mut dyn StudyFollower,
-    ) -> Result<Run, WriteError> {
+    ) -> Result<Option<Run>, WriteError> {
+        if self.is_stopped() {
+            return Ok(None);
+        }
         let solver_name = &self.study.names[at];
         let setting = format!("{resolution}{words}");
         let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
@@ -354,6 +370,10 @@ impl<'a> Measurement<'a> {
             None => {
                 let stored = self.measure(at, scene, &resolution);
                 self.is_reused &= stored.status == LevelStatus::OverBudget;
+                // An external program fails when it is stopped.
+                if self.is_stopped() && stored.status != LevelStatus::Measured {
+                    return Ok(None);
+                }
                 if stored.status != LevelStatus::OverBudget {
                     self.study.cache.put(&name, &stored)?;
                 }
@@ -368,7 +388,7 @@ impl<'a> Measurement<'a> {
                 self.notes.push(if is_named { detail } else { format!("{solver_name}: {detail}") });
             }
         }
-        Ok(Run { solver: at, fineness, resolution, setting, purpose, name, stored })
+        Ok(Some(Run { solver: at, fineness, resolution, setting, purpose, name, stored }))
     }
 
     fn measure(&self, at: usize, scene: &Scene, resolution: &Resolution) -> StoredRun {
@@ -386,7 +406,7 @@ impl<'a> Measurement<'a> {
             true => FIRST * self.remaining(PARTS[0]),
             false => self.remaining(LATEST),
         };
-        let within = Within::new(&**solver, self.deadline(limit));
+        let within = Within::new(&**solver, self.deadline(limit), self.study.stop);
         let begin = Instant::now();
         let record = within.run(scene, resolution, &mut NoSnapshots);
         stored.seconds = begin.elapsed().as_secs_f64();
@@ -420,7 +440,7 @@ impl<'a> Measurement<'a> {
         let Some(solver) = self.found[at].clone() else { return };
         follower.now(&format!("{} {resolution}, test for chaos", self.study.names[at]), self.spent());
         let begin = Instant::now();
-        let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])));
+        let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])), self.study.stop);
         let mut again = |scene: &Scene| within.run(scene, &resolution, &mut NoSnapshots);
         let whole = again(&self.scene);
         let found = whole.and_then(|whole| {
@@ -428,6 +448,9 @@ impl<'a> Measurement<'a> {
             Ok((whole, others))
         });
         let Ok((whole, others)) = found else {
+            if self.is_stopped() {
+                return;
+            }
             self.notes.push("The test for chaos did not end within the budget.".to_owned());
             self.perturbed = Some(Vec::new());
             return;

@@ -177,6 +177,7 @@ fn with_study(
         budget,
         cache: &cache,
         program: String::new(),
+        stop: &|| false,
     };
     let mut measurement = Measurement::new(&study);
     runs(&mut measurement);
