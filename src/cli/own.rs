@@ -183,8 +183,9 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let mut result = measured.result();
     result.notes.extend(skipped);
     let is_red = result.quantities.iter().all(|quantity| quantity.estimates.is_empty());
-    let study = follower.study(result, stop());
-    if stop() {
+    let is_stopped = stop();
+    let study = follower.study(result, is_stopped);
+    if is_stopped {
         drop(follower);
         write_study(input.out, &study).map_err(Fault::writing)?;
         return Err(stopped());
@@ -214,7 +215,12 @@ fn limits(
         let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
         let deadline = Instant::now() + Duration::from_secs_f64(share);
         let program = study.program.clone() + &solvers.edition(solver);
-        let limit = limit::of_scene((&study.name, study.scene), (solvers, solver), (deadline, study.stop), (&program, study.cache));
+        let limit = limit::of_scene(
+            (&study.name, study.scene),
+            (solvers, solver),
+            (deadline, study.stop),
+            (&program, study.cache),
+        );
         let limit = limit.map_err(Fault::writing)?;
         if (study.stop)() {
             break;

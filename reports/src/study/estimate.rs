@@ -463,11 +463,11 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawE
             h3 { "Reference values" }
             (references(cost))
             (agreement(cost))
-            div.figures { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
+            div.figures.two { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
             @if folded > 0 {
                 details {
                     summary { "Figures of " (folded) " further quantities" }
-                    div.figures { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
+                    div.figures.two { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
                 }
             }
             (softer(cost))
@@ -488,7 +488,7 @@ fn costs(cost: &SceneCost) -> Markup {
             tbody {
                 @for quantity in &cost.quantities {
                     tr {
-                        th scope="row" { (quantity.name) }
+                        th.name scope="row" { (breakable(&quantity.name)) }
                         @for solver in &solvers {
                             td {
                                 @match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
@@ -509,6 +509,11 @@ fn costs(cost: &SceneCost) -> Markup {
     scrolling("Which solver at 1 %", &table)
 }
 
+/// Renders a name that breaks only after a dot.
+fn breakable(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive('.') { (part) wbr; } }
+}
+
 /// Returns an error with its uncertainty.
 fn interval(point: &EstimatedPoint) -> String {
     format!("{} ± {}", number::fraction(point.error), number::fraction(point.uncertainty))
@@ -519,7 +524,7 @@ fn references(cost: &SceneCost) -> Markup {
         table.rows {
             thead {
                 tr {
-                    th scope="col" { "Quantity" }
+                    th.name scope="col" { "Quantity" }
                     th scope="col" { "Solver" }
                     th.n scope="col" { "Reference" }
                     th.n scope="col" { "Uncertainty" }
@@ -533,7 +538,7 @@ fn references(cost: &SceneCost) -> Markup {
                 @for quantity in &cost.quantities {
                     @for row in &quantity.estimates {
                         tr {
-                            th scope="row" { (quantity.name) }
+                            th.name scope="row" { (breakable(&quantity.name)) }
                             td { (row.solver) }
                             td.n { (number::with_unit(row.value, &quantity.unit)) }
                             td.n { "± " (number::significant(row.uncertainty, 2)) }

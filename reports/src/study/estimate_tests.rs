@@ -50,7 +50,8 @@ fn cost(quantities: Vec<Quantity>) -> SceneCost {
 /// The coarsest level is right by chance: the next one has a larger error. Negative control: a ladder without such a level.
 #[test]
 fn a_level_that_is_right_by_chance_reaches_nothing() {
-    for (errors, setting) in [([0.002, 0.027, 0.008, 0.004], "substeps=4"), ([0.009, 0.008, 0.006, 0.003], "substeps=1")]
+    for (errors, setting) in
+        [([0.002, 0.027, 0.008, 0.004], "substeps=4"), ([0.009, 0.008, 0.006, 0.003], "substeps=1")]
     {
         let quantity = ladder(&errors);
         assert_eq!(quantity.cheapest("rigid", 0.01).map(|point| point.setting.as_str()), Some(setting));
@@ -73,7 +74,9 @@ fn agreement_needs_a_small_uncertainty() {
     assert!(words(0.01, 0.06).contains("cannot be decided"));
     assert!(words(0.01, 0.02).starts_with("dem and mpm agree within"));
     let different = words(0.22, 0.02);
-    assert!(different.starts_with("dem and mpm differ by 22") && different.contains("(more than their uncertainty of ± 2"));
+    assert!(
+        different.starts_with("dem and mpm differ by 22") && different.contains("(more than their uncertainty of ± 2")
+    );
     assert!(words(0.6, 0.5).contains("differ by 60"));
 }
 

@@ -234,7 +234,8 @@ impl<'a> Measurement<'a> {
             }
         }
         while !self.is_stopped()
-            && let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0])) {
+            && let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0]))
+        {
             self.level(at, fineness, follower)?;
             let line = self.line();
             follower.result(&line, &|| self.result())?;
@@ -532,20 +533,20 @@ impl<'a> Measurement<'a> {
     /// Returns a note about a solver of which no level ended.
     fn failures(&self, at: usize) -> Option<String> {
         let name = &self.study.names[at];
+        // A preliminary result says nothing about levels that follow.
+        let is_over = schedule::next(&self.finished, self.remaining(PARTS[0])).is_none();
         let levels: Vec<&Run> = self.own(at).filter(|run| run.purpose == Purpose::Level).collect();
         let Some(last) = levels.last() else {
-            return self.found[at].as_ref().map(|_| format!("{name}: no run fits into the time that the other solvers leave."));
+            let is_known = is_over && self.found[at].is_some();
+            return is_known.then(|| format!("{name}: no run fits into the time that the other solvers leave."));
         };
         let failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
         let (count, finest) = (failed.clone().count(), failed.last()?);
         if levels.iter().any(|run| run.stored.status == LevelStatus::Measured) {
             return None;
         }
-        let end = if last.stored.status == LevelStatus::Failed && !self.finished[at].closed {
-            "; a finer one does not fit into the budget"
-        } else {
-            ""
-        };
+        let is_cut = is_over && last.stored.status == LevelStatus::Failed && !self.finished[at].closed;
+        let end = if is_cut { "; a finer one does not fit into the budget" } else { "" };
         let detail = finest.stored.detail.as_deref().unwrap_or_default();
         Some(format!("{name}: {count} levels failed, the finest at {}{end}: {detail}", finest.setting))
     }

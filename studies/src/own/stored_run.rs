@@ -50,7 +50,11 @@ pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
         let mean = |part: fn(f64) -> f64| {
             let areas = series.time.windows(2).zip(values.windows(2));
             let areas = areas.map(|(t, v)| 0.5 * (t[1] - t[0]) * (part(v[0]) + part(v[1])));
-            if last > first { areas.sum::<f64>() / (last - first) } else { values.first().map_or(f64::NAN, |v| part(*v)) }
+            if last > first {
+                areas.sum::<f64>() / (last - first)
+            } else {
+                values.first().map_or(f64::NAN, |v| part(*v))
+            }
         };
         let (mean, mean_absolute) = (mean(|value| value), mean(f64::abs));
         let stored = StoredColumn {

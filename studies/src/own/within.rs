@@ -17,7 +17,8 @@ const SURE: f64 = 0.2;
 /// Expected time of a run, relative to the time limit, above which it is ended before its deadline.
 const HOPELESS: f64 = 2.0;
 
-/// Solver whose runs are interrupted at a deadline, and when the user stops the study. An external program has its own time limit instead.
+/// Solver whose runs are interrupted at a deadline, and when the user stops the study. An external program has its own time
+/// limit instead.
 pub struct Within<'a> {
     solver: &'a dyn Solver,
     deadline: Instant,
