@@ -237,8 +237,10 @@ impl<'a> Measurement<'a> {
             && let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0]))
         {
             self.level(at, fineness, follower)?;
-            let line = self.line();
-            follower.result(&line, &|| self.result())?;
+            if self.is_stopped() {
+                break;
+            }
+            follower.result(&self.line(), &|| self.result())?;
         }
         Ok(())
     }
