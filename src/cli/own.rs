@@ -1,6 +1,7 @@
 //! Cost, stability and effects of a scene of the user's, which has no exact solution.
 
 use super::exit::{Fault, Outcome, check_writable};
+use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
@@ -155,6 +156,8 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     check_writable(input.out)?;
     let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
     let words = input.words("cost", options.budget());
+    let interrupt = Interrupt::listen();
+    let stop = || interrupt.is_asked();
     let study = SceneStudy {
         name: input.path.clone(),
         scene: &scene,
@@ -164,6 +167,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
         budget: options.budget(),
         cache: &cache,
         program: key::of_this_program(),
+        stop: &stop,
     };
     let mut follower = Follower::new(&study, input.out, &words);
     let mut measured = Measurement::new(&study);
@@ -179,11 +183,22 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let mut result = measured.result();
     result.notes.extend(skipped);
     let is_red = result.quantities.iter().all(|quantity| quantity.estimates.is_empty());
-    let study = follower.study(result, false);
+    let is_stopped = stop();
+    let study = follower.study(result, is_stopped);
+    if is_stopped {
+        drop(follower);
+        write_study(input.out, &study).map_err(Fault::writing)?;
+        return Err(stopped());
+    }
     let text = text(&study);
     drop(follower);
     let output = Output { text: Some(text), ..Output::new(input.out, input.json, false) };
     publish_study(&study, output, is_red)
+}
+
+/// Returns the error of a study that the user stops.
+fn stopped() -> Fault {
+    Fault::Broken("stopped; the same command continues".to_owned())
 }
 
 /// Finds the largest stable step of each solver.
@@ -200,8 +215,17 @@ fn limits(
         let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
         let deadline = Instant::now() + Duration::from_secs_f64(share);
         let program = study.program.clone() + &solvers.edition(solver);
-        let limit = limit::of_scene((&study.name, study.scene), (solvers, solver), deadline, (&program, study.cache));
-        found.push(limit.map_err(Fault::writing)?.0);
+        let limit = limit::of_scene(
+            (&study.name, study.scene),
+            (solvers, solver),
+            (deadline, study.stop),
+            (&program, study.cache),
+        );
+        let limit = limit.map_err(Fault::writing)?;
+        if (study.stop)() {
+            break;
+        }
+        found.push(limit.0);
     }
     Ok(found)
 }
@@ -212,6 +236,8 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
     let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let interrupt = Interrupt::listen();
+    let stop = || interrupt.is_asked();
     let study = SceneStudy {
         name: input.path.clone(),
         scene: &scene,
@@ -221,6 +247,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
         budget: options.budget(),
         cache: &cache,
         program: key::of_this_program(),
+        stop: &stop,
     };
     let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
     let mut bar = Bar::new(budget);
@@ -228,6 +255,9 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
     let limits = limits((&study, &study.names), &solvers, &mut remaining, &mut bar)?;
     drop(bar);
+    if stop() {
+        return Err(stopped());
+    }
     let mut written = Study::new(provenance(input.words("stability", options.budget()), start.elapsed().as_secs_f64()));
     written.limits = limits;
     written.sources = sources(&study.names);
@@ -327,7 +357,7 @@ fn text(study: &Study) -> String {
             cost.reduction.word()
         ));
         for target in TARGETS {
-            text.push_str(&format!("  {}\n", cost.sentence(target)));
+            text.push_str(&format!("  {}\n", cost.sentence(target, &study.limits)));
         }
         for quantity in &cost.quantities {
             text.push_str(&format!("{} ({})\n", quantity.name, quantity.unit));
@@ -341,7 +371,7 @@ fn text(study: &Study) -> String {
             for difference in quantity.differences() {
                 text.push_str(&format!("  {}\n", difference_words(&difference)));
             }
-            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1])));
+            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1], &study.limits)));
         }
         for sentence in softer_words(cost) {
             text.push_str(&format!("softer contacts: {sentence}\n"));

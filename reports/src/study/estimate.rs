@@ -1,5 +1,6 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
+use super::stability::Limit;
 use crate::number;
 use crate::page::{captioned as figure, slug};
 use crate::plot::DrawError;
@@ -13,6 +14,12 @@ use serde::{Deserialize, Serialize};
 pub const TARGETS: [f64; 3] = super::cost::TARGETS;
 /// Error of the sentence that summarises a study.
 pub const TARGET: f64 = 0.01;
+/// Uncertainty of a difference, as a fraction of the scale, from which two methods cannot be compared.
+const COMPARABLE: f64 = 0.05;
+/// Time step relative to the largest stable one above which a sentence has a remark.
+const MARGIN: f64 = 0.5;
+/// Unit of a time step of a solver with springs: the critical time step.
+const CRITICAL_STEP: &str = "2√(m/k)";
 /// Number of quantities whose figures are visible without a click.
 const OPEN: usize = 3;
 /// Smallest plotted error.
@@ -37,6 +44,15 @@ impl Reduction {
             Self::Mean => "mean over time",
         }
     }
+
+    /// Returns the definition of the scale of a quantity.
+    #[must_use]
+    pub const fn scale(self) -> &'static str {
+        match self {
+            Self::End => "the larger of |reference value| and the largest |value| of this quantity over the run",
+            Self::Mean => "the mean over time of |value| of this quantity",
+        }
+    }
 }
 
 /// Method by which a reference value is estimated.
@@ -57,7 +73,7 @@ impl Basis {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Extrapolated => "extrapolated",
-            Self::Spread => "finest level, spread of three",
+            Self::Spread => "no visible order: finest level, spread of the levels",
             Self::Ensemble => "mean of three levels",
         }
     }
@@ -174,11 +190,12 @@ pub struct Quantity {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Largest absolute value of the probe in this unit. Errors are fractions of it.
+    /// Scale of this column, as in [`Reduction::scale`]. Errors are fractions of it.
     pub scale: f64,
     /// One reference value for each solver with at least two levels.
     pub estimates: Vec<Estimate>,
-    /// Values at all levels, for solvers with a reference value.
+    /// Values at all levels, for solvers with a reference value. The levels of each solver are in the order from coarse to
+    /// fine.
     pub points: Vec<EstimatedPoint>,
 }
 
@@ -186,8 +203,14 @@ impl Quantity {
     /// Returns the fastest setting of a solver whose error is certainly at most `target`. Softer contacts are left out.
     #[must_use]
     pub fn cheapest(&self, solver: &str, target: f64) -> Option<&EstimatedPoint> {
-        let within = self.of_solver(solver).filter(|point| point.at_most() <= target);
-        within.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))
+        self.within(solver, target).min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))
+    }
+
+    /// Returns the points of a solver that reach `target`: their errors and the errors of all finer levels are certainly at
+    /// most `target`. A coarse level whose finer levels have larger errors is right by chance.
+    fn within(&self, solver: &str, target: f64) -> impl Iterator<Item = &EstimatedPoint> {
+        let points: Vec<_> = self.of_solver(solver).collect();
+        points.into_iter().rev().take_while(move |point| point.at_most() <= target)
     }
 
     /// Returns the points of a solver with the contacts of the scene.
@@ -223,6 +246,9 @@ pub struct SceneCost {
     pub spent: f64,
     /// Compared value of the time series.
     pub reduction: Reduction,
+    /// Names of all solvers.
+    #[serde(default)]
+    pub names: Vec<String>,
     /// All runs.
     pub levels: Vec<Level>,
     /// Target quantities.
@@ -232,10 +258,29 @@ pub struct SceneCost {
 }
 
 impl SceneCost {
-    /// Returns the solvers with at least one run, in the order of their first run.
+    /// Returns the solvers of the study.
     #[must_use]
     pub fn solvers(&self) -> Vec<&str> {
-        super::stability::distinct(self.levels.iter().map(|level| level.solver.as_str()))
+        let run = self.levels.iter().map(|level| level.solver.as_str());
+        super::stability::distinct(self.names.iter().map(String::as_str).chain(run))
+    }
+
+    /// Returns the reason why a solver has no reference value.
+    fn reason(&self, solver: &str) -> String {
+        let own = || self.levels.iter().filter(|level| level.solver == solver);
+        let count = |status| own().filter(|level| level.status == status).count();
+        match (count(LevelStatus::Measured), count(LevelStatus::Failed), own().next_back()) {
+            (_, _, None) => "no run".to_owned(),
+            (0, failed, Some(last)) if last.status == LevelStatus::Failed => format!("{failed} levels failed"),
+            (0, _, Some(last)) => last.status.word().to_owned(),
+            (1, ..) => "only one level ended, and two are needed".to_owned(),
+            _ => "no finite value".to_owned(),
+        }
+    }
+
+    /// Returns the words about a solver without a value.
+    fn without_value(&self, solver: &str) -> String {
+        format!("{solver} has no value ({})", self.reason(solver))
     }
 
     /// Returns the fastest setting of a solver with which the error of each quantity is certainly at most `target`, and its
@@ -244,49 +289,50 @@ impl SceneCost {
     pub fn cheapest_for_all(&self, solver: &str, target: f64) -> Option<(&str, f64)> {
         let quantities = || self.quantities.iter().filter(|quantity| quantity.of_solver(solver).next().is_some());
         let is_enough = |setting: &str| {
-            quantities().all(|quantity| {
-                quantity.of_solver(solver).any(|point| point.setting == setting && point.at_most() <= target)
-            })
+            quantities().all(|quantity| quantity.within(solver, target).any(|point| point.setting == setting))
         };
         let settings = quantities().next()?.of_solver(solver).filter(|point| is_enough(&point.setting));
         let best = settings.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))?;
         Some((&best.setting, best.wall_seconds))
     }
 
-    /// Returns the sentence about the cost of an error of at most `target` in all quantities.
+    /// Returns the sentence about the cost of an error of at most `target` in all quantities. `limits` are the largest stable
+    /// steps, as far as they are known.
     #[must_use]
-    pub fn sentence(&self, target: f64) -> String {
-        let solvers = self.estimated();
+    pub fn sentence(&self, target: f64, limits: &[Limit]) -> String {
+        let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| Some((*solver, self.cheapest_for_all(solver, target)?)));
         let unreached = |solver: &str| {
             let own = || self.quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
-            let (quantity, error) = own().max_by(|a, b| a.1.total_cmp(&b.1))?;
+            let Some((quantity, error)) = own().max_by(|a, b| a.1.total_cmp(&b.1)) else {
+                return self.without_value(solver);
+            };
             let (within, all) = (own().filter(|(_, error)| *error <= target).count(), own().count());
             let at_best = format!("at best {}", number::fraction(error));
-            Some(match all {
+            match all {
                 1 => format!("{solver} does not reach it ({at_best})"),
                 _ => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
-            })
+            }
         };
         let count = self.quantities.len();
         let of_all = if count == 1 { String::new() } else { format!(" in each of {count} quantities") };
         let target_words = format!("{}{of_all}", number::fraction(target));
-        words(&target_words, reached, &solvers, &unreached, self.budget)
+        words(&target_words, reached, &solvers, &unreached, (self.budget, limits))
     }
 
     /// Returns the sentence about the cost of an error of at most `target` in one quantity.
     #[must_use]
-    pub fn sentence_of(&self, quantity: &Quantity, target: f64) -> String {
-        let solvers = self.estimated();
+    pub fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
+        let solvers = self.solvers();
         let reached = solvers.iter().filter_map(|solver| {
             let point = quantity.cheapest(solver, target)?;
             Some((*solver, (point.setting.as_str(), point.wall_seconds)))
         });
-        let unreached = |solver: &str| {
-            let at_best = number::fraction(least(quantity, solver)?);
-            Some(format!("{solver} does not reach it (at best {at_best})"))
+        let unreached = |solver: &str| match least(quantity, solver) {
+            Some(error) => format!("{solver} does not reach it (at best {})", number::fraction(error)),
+            None => self.without_value(solver),
         };
-        words(&number::fraction(target), reached, &solvers, &unreached, self.budget)
+        words(&number::fraction(target), reached, &solvers, &unreached, (self.budget, limits))
     }
 
     /// Returns the solvers with a reference value of at least one quantity.
@@ -296,9 +342,9 @@ impl SceneCost {
     }
 }
 
-/// Returns the smallest upper end of the error of a solver.
+/// Returns the smallest target that a solver reaches: the upper end of the error of its finest level.
 fn least(quantity: &Quantity, solver: &str) -> Option<f64> {
-    quantity.of_solver(solver).map(EstimatedPoint::at_most).min_by(f64::total_cmp)
+    quantity.of_solver(solver).last().map(EstimatedPoint::at_most)
 }
 
 /// Returns a sentence of the settings and times (s) at which solvers reach an error. `unreached` describes the errors of a
@@ -307,8 +353,8 @@ fn words<'a>(
     target: &str,
     reached: impl Iterator<Item = (&'a str, (&'a str, f64))>,
     solvers: &[&str],
-    unreached: &dyn Fn(&str) -> Option<String>,
-    budget: f64,
+    unreached: &dyn Fn(&str) -> String,
+    (budget, limits): (f64, &[Limit]),
 ) -> String {
     let mut reached: Vec<_> = reached.collect();
     reached.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
@@ -318,15 +364,25 @@ fn words<'a>(
         .map(|(solver, (setting, seconds))| {
             let times = seconds / fastest;
             let times = if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
-            format!("{solver} {}{times} with {setting}", number::seconds(*seconds))
+            let margin = margin_words(solver, setting, limits).unwrap_or_default();
+            format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
         })
         .collect();
     if parts.is_empty() {
         parts.push(format!("no solver reaches it within the budget of {}", number::seconds(budget)));
     }
     let others = solvers.iter().filter(|solver| reached.iter().all(|(name, _)| name != *solver));
-    parts.extend(others.filter_map(|solver| unreached(solver)));
+    parts.extend(others.map(|solver| unreached(solver)));
     format!("{target}: {}.", parts.join("; "))
+}
+
+/// Returns a remark about a time step near the largest stable step of the solver.
+fn margin_words(solver: &str, setting: &str, limits: &[Limit]) -> Option<String> {
+    let step: f64 = setting.strip_prefix("dt=")?.parse().ok()?;
+    let limit = limits.iter().find(|limit| limit.solver == solver && limit.unit == CRITICAL_STEP)?;
+    let share = step / limit.found?;
+    (share > MARGIN)
+        .then(|| format!(", where {setting} is {} of the largest stable step", number::significant(share, 2)))
 }
 
 /// Returns one figure for each quantity: estimated error against time.
@@ -376,7 +432,7 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
+pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawError> {
     let pictures: Vec<(&Quantity, Markup)> = cost
         .quantities
         .iter()
@@ -388,16 +444,17 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs in " (cost.scene) }
-            p.lead { b { (cost.sentence(TARGET)) } }
-            p { @for target in TARGETS.into_iter().filter(|target| *target != TARGET) { (cost.sentence(target)) " " } }
+            p.lead { b { (cost.sentence(TARGET, limits)) } }
+            p { @for target in TARGETS.into_iter().filter(|target| *target != TARGET) { (cost.sentence(target, limits)) " " } }
             p {
                 "The scene has no exact solution. The reference value of each solver is estimated from its own levels \
                  (evidence: " (Evidence::Convergence.word()) "). Errors are estimates with an uncertainty, and nothing passes or \
-                 fails. An error is reached if it is certain up to its uncertainty. Agreement of two methods does not show \
-                 that they are right."
+                 fails. A setting reaches an error if its own error and the errors of all finer levels are at most as large, \
+                 uncertainty included. Agreement of two methods does not show that they are right."
             }
             p.note {
-                "Compared value of each probe: " (cost.reduction.word()) ". The study took " (number::seconds(cost.spent))
+                "Compared value of each probe: " (cost.reduction.word()) ". The scale of an error is "
+                (cost.reduction.scale()) ", by the first solver. The study took " (number::seconds(cost.spent))
                 " of a budget of " (number::seconds(cost.budget)) "."
             }
             @for note in &cost.notes { p.note { (note) } }
@@ -406,11 +463,11 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
             h3 { "Reference values" }
             (references(cost))
             (agreement(cost))
-            div.figures { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
+            div.figures.two { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
             @if folded > 0 {
                 details {
                     summary { "Figures of " (folded) " further quantities" }
-                    div.figures { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
+                    div.figures.two { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
                 }
             }
             (softer(cost))
@@ -424,14 +481,14 @@ pub(crate) fn render(cost: &SceneCost) -> Result<Markup, DrawError> {
 
 /// Renders the fastest setting of each solver for an error of 1 %, by quantity.
 fn costs(cost: &SceneCost) -> Markup {
-    let solvers = cost.estimated();
+    let solvers = cost.solvers();
     let table = html! {
         table.cases {
             thead { tr { th scope="col" { "Quantity" } @for solver in &solvers { th scope="col" { (solver) } } } }
             tbody {
                 @for quantity in &cost.quantities {
                     tr {
-                        th scope="row" { (quantity.name) }
+                        th.name scope="row" { (breakable(&quantity.name)) }
                         @for solver in &solvers {
                             td {
                                 @match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
@@ -440,7 +497,7 @@ fn costs(cost: &SceneCost) -> Markup {
                                         span.fine { (point.setting) ", error " (interval(point)) }
                                     }
                                     (None, Some(error)) => { "at best " (number::fraction(error)) }
-                                    (None, None) => { "—" }
+                                    (None, None) => { "no value: " (cost.reason(solver)) }
                                 }
                             }
                         }
@@ -450,6 +507,11 @@ fn costs(cost: &SceneCost) -> Markup {
         }
     };
     scrolling("Which solver at 1 %", &table)
+}
+
+/// Renders a name that breaks only after a dot.
+fn breakable(name: &str) -> Markup {
+    html! { @for part in name.split_inclusive('.') { (part) wbr; } }
 }
 
 /// Returns an error with its uncertainty.
@@ -462,7 +524,7 @@ fn references(cost: &SceneCost) -> Markup {
         table.rows {
             thead {
                 tr {
-                    th scope="col" { "Quantity" }
+                    th.name scope="col" { "Quantity" }
                     th scope="col" { "Solver" }
                     th.n scope="col" { "Reference" }
                     th.n scope="col" { "Uncertainty" }
@@ -476,7 +538,7 @@ fn references(cost: &SceneCost) -> Markup {
                 @for quantity in &cost.quantities {
                     @for row in &quantity.estimates {
                         tr {
-                            th scope="row" { (quantity.name) }
+                            th.name scope="row" { (breakable(&quantity.name)) }
                             td { (row.solver) }
                             td.n { (number::with_unit(row.value, &quantity.unit)) }
                             td.n { "± " (number::significant(row.uncertainty, 2)) }
@@ -493,15 +555,17 @@ fn references(cost: &SceneCost) -> Markup {
     scrolling("Reference values", &table)
 }
 
-/// Returns the difference of two solvers in words.
+/// Returns the difference of two solvers in words. Methods agree only if the uncertainty of their difference is small.
 #[must_use]
 pub fn difference_words(difference: &Difference<'_>) -> String {
     let [a, b] = difference.solvers;
     let [size, uncertainty] = [difference.size, difference.uncertainty].map(number::fraction);
-    if difference.size <= difference.uncertainty {
+    if difference.size > difference.uncertainty {
+        format!("{a} and {b} differ by {size} (more than their uncertainty of ± {uncertainty})")
+    } else if difference.uncertainty < COMPARABLE {
         format!("{a} and {b} agree within their uncertainties ({size} ± {uncertainty})")
     } else {
-        format!("{a} and {b} differ by {size} ± {uncertainty}")
+        format!("the agreement of {a} and {b} cannot be decided: the uncertainty is ± {uncertainty}")
     }
 }
 
@@ -517,7 +581,8 @@ fn agreement(cost: &SceneCost) -> Markup {
             h3 { "Agreement between the methods" }
             p.note {
                 "The methods model contacts differently. Agreement is not evidence of truth, and a difference does not tell \
-                 which method is wrong."
+                 which method is wrong. It cannot be decided if the uncertainty is at least " (number::fraction(COMPARABLE))
+                " of the scale."
             }
             ul {
                 @for (quantity, differences) in &rows {
@@ -529,7 +594,7 @@ fn agreement(cost: &SceneCost) -> Markup {
 }
 
 /// Returns, for each setting with softer contacts, its time relative to the same level of the scene, and the largest change
-/// of a quantity with its name.
+/// of a quantity beyond its uncertainty, with its name.
 #[must_use]
 pub fn softer_words(cost: &SceneCost) -> Vec<String> {
     let points =
@@ -538,7 +603,8 @@ pub fn softer_words(cost: &SceneCost) -> Vec<String> {
         super::stability::distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));
     let sentence = |setting: &str| {
         let own = || points().filter(move |(_, point)| point.setting == setting);
-        let (quantity, worst) = own().max_by(|a, b| a.1.error.total_cmp(&b.1.error))?;
+        let certain = |point: &EstimatedPoint| point.error - point.uncertainty;
+        let (quantity, worst) = own().max_by(|a, b| certain(a.1).total_cmp(&certain(b.1)))?;
         Some(format!(
             "{} {setting}: {}, largest change {} in {}",
             worst.solver,
@@ -595,3 +661,7 @@ fn levels(rows: &[Level]) -> Markup {
     };
     scrolling("Every run", &table)
 }
+
+#[cfg(test)]
+#[path = "estimate_tests.rs"]
+mod tests;

@@ -26,7 +26,7 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
         }
     }
     for cost in &study.scenes {
-        sections.push(estimate::render(cost)?);
+        sections.push(estimate::render(cost, &study.limits)?);
     }
     let is_cost = !(study.diagrams.is_empty() && study.scenes.is_empty());
     let mut title = "what accuracy costs";

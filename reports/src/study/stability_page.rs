@@ -59,7 +59,7 @@ pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
                  elastic energy grows threefold. 2√(m/k) is the critical time step of the scene, and h/c is the time in \
                  which a wave crosses a cell."
             }
-            (limits(rows))
+            (limits(rows, "Scene"))
         }
     }
 }
@@ -83,7 +83,7 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
         @if !stability.limits.is_empty() {
             h3 { "Largest stable steps" }
             div.figures { @for picture in &pictures { (picture) } }
-            (limits(&stability.limits))
+            (limits(&stability.limits, "Assembly"))
         }
     })
 }
@@ -134,24 +134,55 @@ fn details_of(rows: &[HardCaseResult]) -> Markup {
     }
 }
 
-fn limits(rows: &[Limit]) -> Markup {
+/// Renders a table of largest stable steps. It has exact limits only if at least one is known.
+fn limits(rows: &[Limit], heading: &str) -> Markup {
     let number = |name| Column::new(name, Format::Digits(4));
-    let columns = [
-        Column::heading("Assembly"),
-        Column::text("Solver"),
-        number("Found"),
-        number("Exact"),
-        Column::new("Error", Format::Error),
+    let is_exact = rows.iter().any(|row| row.exact.is_some());
+    let exact = is_exact.then(|| [number("Exact"), Column::new("Error", Format::Error)]);
+    let columns = [Column::heading(heading), Column::text("Solver"), number("Found")].into_iter();
+    let columns = columns.chain(exact.into_iter().flatten()).chain([
         Column::text("Unit"),
         number("Default"),
         number("Margin"),
         Column::text("How it fails above").class("wide"),
-    ];
+    ]);
     let row = |row: &Limit| {
         let at = row.at.map(|at| format!("{} = {}", row.knob, number::significant(at, 4)));
         let scene = html! { (row.scene) @if let Some(at) = at { span.fine { (at) } } };
         let Limit { solver, found, exact, error, unit, default, margin, detail, .. } = row;
-        row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
+        if is_exact {
+            row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
+        } else {
+            row![scene, solver, *found, unit, *default, *margin, detail]
+        }
     };
     Table::new("Largest stable steps", columns, rows.iter().map(row)).page("rows")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Columns without a value are left out. Negative control: a known exact limit.
+    #[test]
+    fn exact_limits_have_columns_only_if_one_is_known() {
+        let mut limit = Limit {
+            scene: "heap.toml".to_owned(),
+            knob: String::new(),
+            at: None,
+            solver: "dem".to_owned(),
+            unit: "2√(m/k)".to_owned(),
+            found: Some(0.5),
+            unstable: None,
+            exact: None,
+            error: None,
+            default: Some(0.1),
+            margin: Some(5.0),
+            detail: String::new(),
+        };
+        let page = largest_steps(std::slice::from_ref(&limit)).into_string();
+        assert!(page.contains("Scene") && !page.contains("Assembly") && !page.contains("Exact"), "{page}");
+        (limit.exact, limit.error) = (Some(0.5), Some(0.0));
+        assert!(largest_steps(&[limit]).into_string().contains("Exact"));
+    }
 }

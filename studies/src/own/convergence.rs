@@ -12,13 +12,17 @@
 //! (F_s − 1)|δ|. F_s is 1.25 only if p is 1 or the order of the method within 10 %, and if the three levels before the finest
 //! level show an order too. The uncertainty is never smaller than the change of f₀ that the finest level causes.
 //!
-//! If the differences change sign or grow, no order is visible. Then the reference is f₁, and its uncertainty is the spread
+//! If the differences change sign or grow, or if p is below ½, above 4 or above twice the order of the method, no order is
+//! visible: the levels are not in the asymptotic range. Then the reference is f₁, and its uncertainty is the spread
 //! of the three values. In a chaotic scene, single values scatter, so that the mean of the three values is the reference.
 
 use grainbench_reports::study::estimate::Basis;
 
 /// Smallest order of which an extrapolation makes use.
 const LEAST_ORDER: f64 = 0.5;
+/// Largest order of which an extrapolation makes use, and its largest multiple of the order of the method. A larger order is
+/// not asymptotic.
+const LARGEST_ORDER: [f64; 2] = [4.0, 2.0];
 /// Relative deviation of the observed order from a whole order that is expected.
 const NEAR: f64 = 0.1;
 /// Factor of safety of an order that is confirmed, and of any other order.
@@ -115,10 +119,11 @@ fn range(levels: &[LevelValue]) -> f64 {
 }
 
 /// Returns the extrapolated value, the correction of the finest value, and the observed order of three levels from coarse to
-/// fine. Returns none if no order of at least [`LEAST_ORDER`] is visible.
+/// fine. Returns none if no order in the asymptotic range is visible.
 fn extrapolated([coarse, middle, fine]: [LevelValue; 3], formal: f64) -> Option<(f64, f64, f64)> {
     let (far, near) = (coarse.value - middle.value, middle.value - fine.value);
-    let order = order([coarse.size, middle.size, fine.size], far / near).filter(|order| *order >= LEAST_ORDER)?;
+    let asymptotic = LEAST_ORDER..=LARGEST_ORDER[0].min(LARGEST_ORDER[1] * formal);
+    let order = order([coarse.size, middle.size, fine.size], far / near).filter(|order| asymptotic.contains(order))?;
     let believed = order.min(formal);
     let correction = near * fine.size.powf(believed) / (middle.size.powf(believed) - fine.size.powf(believed));
     Some((fine.value - correction, correction, order))
@@ -191,6 +196,24 @@ mod tests {
         assert!((two.value, two.uncertainty) == (1.0, 3.0), "{two:?}");
         assert_eq!(reference(&levels(&[1.0], |h| h), 2.0, 0.0), None);
         assert_eq!(reference(&levels(&[2.0, 1.0], |_| f64::NAN), 2.0, 0.0), None);
+    }
+
+    /// f(h) = hᵖ at three levels. The orders 4.5, 2.5 of a method of first order, and 0.4 are not asymptotic.
+    #[test]
+    fn an_order_outside_the_asymptotic_range_is_not_visible() {
+        for (order, formal, is_visible) in [
+            (4.5, 2.0, false),
+            (2.5, 1.0, false),
+            (0.4, 2.0, false),
+            (3.9, 2.0, true),
+            (1.9, 1.0, true),
+            (0.6, 2.0, true),
+        ] {
+            let found = reference(&levels(&[4.0, 2.0, 1.0], |h: f64| h.powf(order)), formal, 1e-14).unwrap();
+            assert_eq!(found.order.is_some(), is_visible, "{order}: {found:?}");
+            let spread = 4.0_f64.powf(order) - 1.0;
+            assert_eq!((found.uncertainty - spread).abs() < 1e-9 * spread, !is_visible, "{order}: {found:?}");
+        }
     }
 
     #[test]

@@ -4,7 +4,7 @@ use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, 
 use super::ladder::Ladder;
 use super::schedule::{self, Finished};
 use super::storage::RunStore;
-use super::stored_run::{StoredColumn, StoredRun, columns, wall_seconds};
+use super::stored_run::{StoredColumn, StoredRun, columns, failure, wall_seconds};
 use super::within::Within;
 use crate::chaos::perturbed_runs;
 use crate::run_cache::key_of_run;
@@ -18,7 +18,7 @@ use grainbench_reports::study::estimate::{
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
-use grainbench_solver::failure::{RunError, StorageError};
+use grainbench_solver::failure::StorageError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
@@ -39,14 +39,15 @@ pub const MATTERS: f64 = 0.01;
 const REPETITIONS: usize = 9;
 /// Uncertainty relative to the scale below which no further level is useful.
 const ENOUGH: f64 = 1e-7;
-/// Difference relative to the scale that counts as rounding error.
+/// Difference relative to the scale of the probe that counts as rounding error.
 const ROUNDING: f64 = 1e-12;
-/// Value relative to the scale below which a column is zero apart from rounding.
+/// Value relative to the scale of the probe below which a column is zero apart from rounding.
 const ZERO: f64 = 1e-9;
 /// Factors by which the stiffness of contacts is divided.
 const SOFTER: [f64; 2] = [10.0, 100.0];
-/// Number of failures in a row after which a solver gets no further level.
-const FAILURES: usize = 4;
+/// Number of failures in a row after which a solver gets no further level: with time steps or substeps, and with cells,
+/// whose refinement costs much more.
+const FAILURES: [usize; 2] = [12, 6];
 /// Columns that count something. They change in jumps, and are target quantities only if the user names them.
 const COUNTS: [&str; 6] = ["slipping", "contacts", "slipping_contacts", "present", "entered", "left"];
 
@@ -68,6 +69,8 @@ pub struct SceneStudy<'a> {
     pub cache: &'a RunStore,
     /// Hash of this program.
     pub program: String,
+    /// Returns true if the user stops the study. The current run then ends and is not stored.
+    pub stop: &'a (dyn Fn() -> bool + Sync),
 }
 
 /// Receiver of the progress and of preliminary results.
@@ -171,6 +174,12 @@ impl<'a> Measurement<'a> {
         }
     }
 
+    /// Returns true if the user stops the study.
+    #[must_use]
+    pub fn is_stopped(&self) -> bool {
+        (self.study.stop)()
+    }
+
     /// Returns the time that is spent (s). The time of reused runs counts, so that a continued study makes the same choices.
     #[must_use]
     pub fn spent(&self) -> f64 {
@@ -224,10 +233,14 @@ impl<'a> Measurement<'a> {
                 self.notes.push(format!("{name}: there is no such solver."));
             }
         }
-        while let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0])) {
+        while !self.is_stopped()
+            && let Some((at, fineness)) = schedule::next(&self.finished, self.remaining(PARTS[0]))
+        {
             self.level(at, fineness, follower)?;
-            let line = self.line();
-            follower.result(&line, &|| self.result())?;
+            if self.is_stopped() {
+                break;
+            }
+            follower.result(&self.line(), &|| self.result())?;
         }
         Ok(())
     }
@@ -236,18 +249,21 @@ impl<'a> Measurement<'a> {
     fn level(&mut self, at: usize, fineness: f64, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
         let resolution = self.ladders[at].at(fineness);
         let scene = self.scene.clone();
-        let run = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)?;
+        let Some(run) = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)? else {
+            return Ok(());
+        };
         let (status, seconds) = (run.stored.status, run.stored.seconds);
         let last = self.finished[at].levels.last().map_or(0.0, |(last, _)| *last);
         self.finished[at].levels.push((fineness, seconds));
         self.runs.push(run);
         let is_last_factor = last > 0.0 && self.ladders[at].listed.is_empty() && fineness < 1.9 * last;
         let failures = self.own(at).rev().take_while(|run| run.stored.status == LevelStatus::Failed).count();
+        let most = FAILURES[usize::from(self.ladders[at].has_cells())];
         let is_over = !matches!(status, LevelStatus::Measured | LevelStatus::Failed);
-        if is_over || is_last_factor || failures >= FAILURES || self.is_converged(at) {
+        if is_over || is_last_factor || failures >= most || self.is_converged(at) {
             self.finished[at].closed = true;
         }
-        if self.perturbed.is_none() && self.measured(at, Purpose::Level).len() >= 2 {
+        if self.perturbed.is_none() && !self.is_stopped() && self.measured(at, Purpose::Level).len() >= 2 {
             self.test_for_chaos(at, follower);
         }
         Ok(())
@@ -271,7 +287,7 @@ impl<'a> Measurement<'a> {
                 let half = Resolution::Grid { cells, points, courant: 0.5 * courant };
                 let scene = self.scene.clone();
                 let run = self.run(at, (fineness, half, Purpose::HalfStep), &scene, String::new(), follower)?;
-                self.runs.push(run);
+                self.runs.extend(run);
             } else if self.study.names[at] == "dem" && self.scene.laws.iter().flatten().any(ContactLaw::has_stiffness) {
                 let limit = 0.5 * self.remaining(PARTS[2]);
                 let fits = levels.iter().rev().find(|run| run.fineness <= 4.0 && run.stored.seconds <= limit);
@@ -281,7 +297,7 @@ impl<'a> Measurement<'a> {
                     soften(&mut scene, factor);
                     let words = format!(", contacts softer by {factor}");
                     let run = self.run(at, (fineness, resolution, Purpose::Softer), &scene, words, follower)?;
-                    self.runs.push(run);
+                    self.runs.extend(run);
                 }
             }
         }
@@ -298,7 +314,7 @@ impl<'a> Measurement<'a> {
             return Ok(());
         }
         self.stored += std::mem::take(&mut self.repeated);
-        loop {
+        while !self.is_stopped() {
             let time =
                 |run: &Run| if run.stored.status == LevelStatus::Measured { run.stored.seconds } else { f64::INFINITY };
             // Softer contacts are timed once.
@@ -308,7 +324,7 @@ impl<'a> Measurement<'a> {
             let run = &self.runs[at];
             follower.now(&format!("{} {} again", self.study.names[run.solver], run.setting), self.spent());
             let Some(solver) = self.found[run.solver].clone() else { return Ok(()) };
-            let within = Within::new(&*solver, self.deadline(self.remaining(LATEST)));
+            let within = Within::new(&*solver, self.deadline(self.remaining(LATEST)), self.study.stop);
             let begin = Instant::now();
             let Ok(record) = within.run(&self.scene, &run.resolution, &mut NoSnapshots) else { return Ok(()) };
             let wall = wall_seconds(&record, begin.elapsed().as_secs_f64());
@@ -316,6 +332,7 @@ impl<'a> Measurement<'a> {
             run.stored.walls.push(wall);
             self.study.cache.put(&run.name, &run.stored)?;
         }
+        Ok(())
     }
 
     /// Returns the runs of a solver.
@@ -329,7 +346,8 @@ impl<'a> Measurement<'a> {
         self.own(solver).filter(is_measured).collect()
     }
 
-    /// Runs a level, or takes it from the storage. `words` describes a change of the scene.
+    /// Runs a level, or takes it from the storage. Returns none if the user stops the study. `words` describes a change of the
+    /// scene.
     fn run(
         &mut self,
         at: usize,
@@ -337,7 +355,10 @@ impl<'a> Measurement<'a> {
         scene: &Scene,
         words: String,
         follower: &mut dyn StudyFollower,
-    ) -> Result<Run, WriteError> {
+    ) -> Result<Option<Run>, WriteError> {
+        if self.is_stopped() {
+            return Ok(None);
+        }
         let solver_name = &self.study.names[at];
         let setting = format!("{resolution}{words}");
         let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
@@ -352,6 +373,10 @@ impl<'a> Measurement<'a> {
             None => {
                 let stored = self.measure(at, scene, &resolution);
                 self.is_reused &= stored.status == LevelStatus::OverBudget;
+                // An external program fails when it is stopped.
+                if self.is_stopped() && stored.status != LevelStatus::Measured {
+                    return Ok(None);
+                }
                 if stored.status != LevelStatus::OverBudget {
                     self.study.cache.put(&name, &stored)?;
                 }
@@ -366,7 +391,7 @@ impl<'a> Measurement<'a> {
                 self.notes.push(if is_named { detail } else { format!("{solver_name}: {detail}") });
             }
         }
-        Ok(Run { solver: at, fineness, resolution, setting, purpose, name, stored })
+        Ok(Some(Run { solver: at, fineness, resolution, setting, purpose, name, stored }))
     }
 
     fn measure(&self, at: usize, scene: &Scene, resolution: &Resolution) -> StoredRun {
@@ -379,12 +404,12 @@ impl<'a> Measurement<'a> {
             columns: Vec::new(),
         };
         let Some(solver) = &self.found[at] else { return stored };
-        // A first level of unknown cost must not use the time of the other solvers.
-        let limit = match self.finished[at].levels.is_empty() {
+        // A first whole run of unknown cost must not use the time of the other solvers.
+        let limit = match self.measured(at, Purpose::Level).is_empty() {
             true => FIRST * self.remaining(PARTS[0]),
             false => self.remaining(LATEST),
         };
-        let within = Within::new(&**solver, self.deadline(limit));
+        let within = Within::new(&**solver, self.deadline(limit), self.study.stop);
         let begin = Instant::now();
         let record = within.run(scene, resolution, &mut NoSnapshots);
         stored.seconds = begin.elapsed().as_secs_f64();
@@ -418,7 +443,7 @@ impl<'a> Measurement<'a> {
         let Some(solver) = self.found[at].clone() else { return };
         follower.now(&format!("{} {resolution}, test for chaos", self.study.names[at]), self.spent());
         let begin = Instant::now();
-        let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])));
+        let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])), self.study.stop);
         let mut again = |scene: &Scene| within.run(scene, &resolution, &mut NoSnapshots);
         let whole = again(&self.scene);
         let found = whole.and_then(|whole| {
@@ -426,6 +451,9 @@ impl<'a> Measurement<'a> {
             Ok((whole, others))
         });
         let Ok((whole, others)) = found else {
+            if self.is_stopped() {
+                return;
+            }
             self.notes.push("The test for chaos did not end within the budget.".to_owned());
             self.perturbed = Some(Vec::new());
             return;
@@ -484,6 +512,7 @@ impl<'a> Measurement<'a> {
             detail: run.stored.detail.clone(),
         };
         let mut notes = self.notes.clone();
+        notes.extend((0..self.study.names.len()).filter_map(|at| self.failures(at)));
         if self.is_chaotic() {
             notes.push(
                 "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes by more \
@@ -496,10 +525,32 @@ impl<'a> Measurement<'a> {
             budget: self.study.budget.as_secs_f64(),
             spent: self.start.elapsed().as_secs_f64(),
             reduction,
+            names: self.study.names.clone(),
             levels: self.runs.iter().map(level).collect(),
             quantities: self.quantities(reduction),
             notes,
         }
+    }
+
+    /// Returns a note about a solver of which no level ended.
+    fn failures(&self, at: usize) -> Option<String> {
+        let name = &self.study.names[at];
+        // A preliminary result says nothing about levels that follow.
+        let is_over = schedule::next(&self.finished, self.remaining(PARTS[0])).is_none();
+        let levels: Vec<&Run> = self.own(at).filter(|run| run.purpose == Purpose::Level).collect();
+        let Some(last) = levels.last() else {
+            let is_known = is_over && self.found[at].is_some();
+            return is_known.then(|| format!("{name}: no run fits into the time that the other solvers leave."));
+        };
+        let failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
+        let (count, finest) = (failed.clone().count(), failed.last()?);
+        if levels.iter().any(|run| run.stored.status == LevelStatus::Measured) {
+            return None;
+        }
+        let is_cut = is_over && last.stored.status == LevelStatus::Failed && !self.finished[at].closed;
+        let end = if is_cut { "; a finer one does not fit into the budget" } else { "" };
+        let detail = finest.stored.detail.as_deref().unwrap_or_default();
+        Some(format!("{name}: {count} levels failed, the finest at {}{end}: {detail}", finest.setting))
     }
 
     fn quantities(&self, reduction: Reduction) -> Vec<Quantity> {
@@ -509,36 +560,38 @@ impl<'a> Measurement<'a> {
             if is_known || !self.is_wanted(column) {
                 continue;
             }
-            // The scale is that of the finest run of the first solver.
-            let finest = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
+            // Scales are those of the finest run of the first solver.
+            let levels = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
             let named = |run: &&Run| run.stored.columns.iter().any(|other| other.name == column.name);
-            let first = finest.clone().find(named).map_or(0, |run| run.solver);
-            let scales = finest.filter(|run| run.solver == first);
-            let mut scales = scales.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
-            let scale = scales.next_back().map_or(0.0, |column| column.scale);
+            let first = levels.clone().find(named).map_or(0, |run| run.solver);
+            let own = levels.filter(|run| run.solver == first);
+            let mut own = own.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
+            let Some(finest) = own.next_back() else { continue };
             let all = self.runs.iter().flat_map(|run| &run.stored.columns);
             let largest =
                 all.filter(|other| other.name == column.name).fold(0.0, |most: f64, other| most.max(other.largest));
-            if scale <= self.negligible(&column.unit) || largest <= ZERO * scale {
+            if finest.scale <= self.negligible(&column.unit) || largest <= ZERO * finest.scale {
                 continue;
             }
+            let scale = if reduction == Reduction::End { finest.largest } else { finest.mean_absolute };
             let mut quantity = Quantity {
                 name: column.name.clone(),
                 unit: column.unit.clone(),
-                scale,
+                // A column may be zero in the finest run alone.
+                scale: scale.max(ZERO * finest.scale),
                 estimates: Vec::new(),
                 points: Vec::new(),
             };
             for at in 0..self.ladders.len() {
-                self.estimate(at, reduction, &mut quantity);
+                self.estimate(at, (reduction, ROUNDING * finest.scale), &mut quantity);
             }
             found.push(quantity);
         }
         found
     }
 
-    /// Adds the reference value and the points of a solver to a quantity.
-    fn estimate(&self, at: usize, reduction: Reduction, quantity: &mut Quantity) {
+    /// Adds the reference value and the points of a solver to a quantity. Differences up to `rounding` are rounding errors.
+    fn estimate(&self, at: usize, (reduction, rounding): (Reduction, f64), quantity: &mut Quantity) {
         let value = |run: &Run| {
             let column = run.stored.columns.iter().find(|column| column.name == quantity.name)?;
             Some(if reduction == Reduction::End { column.end } else { column.mean })
@@ -555,10 +608,13 @@ impl<'a> Measurement<'a> {
         let perturbed = self.perturbed.iter().flatten().find(|(name, _)| *name == quantity.name);
         let spread = perturbed.map_or(0.0, |(_, values)| deviation(values));
         let found = match reduction {
-            Reduction::End => reference(&values, ladder.order(), ROUNDING * quantity.scale),
+            Reduction::End => reference(&values, ladder.order(), rounding),
             Reduction::Mean => ensemble(&values, spread),
         };
         let Some(Reference { value: limit, mut uncertainty, order, basis }) = found else { return };
+        if reduction == Reduction::End && quantity.estimates.is_empty() {
+            quantity.scale = quantity.scale.max(limit.abs());
+        }
         for half in self.measured(at, Purpose::HalfStep) {
             let same = levels.iter().find(|run| run.fineness == half.fineness);
             if let (Some(half), Some(whole)) = (value(half), same.and_then(|run| value(run))) {
@@ -637,30 +693,6 @@ fn soften(scene: &mut Scene, factor: f64) {
         law.tangential_damping /= factor.sqrt();
         law.stiffness_damping *= factor.sqrt();
     });
-}
-
-/// Returns the status and the message of a run that did not end.
-fn failure(
-    error: &RunError,
-    completed: Option<f64>,
-    seconds: f64,
-    resolution: &Resolution,
-) -> (LevelStatus, Option<String>) {
-    let status = match error {
-        RunError::Unsupported { .. } => LevelStatus::Unsupported,
-        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
-        RunError::Interrupted { .. } => LevelStatus::OverBudget,
-        _ => LevelStatus::Failed,
-    };
-    let whole =
-        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
-    let detail = match status {
-        LevelStatus::OverBudget => {
-            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
-        }
-        _ => error.to_string(),
-    };
-    (status, Some(detail))
 }
 
 #[cfg(test)]

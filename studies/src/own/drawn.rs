@@ -7,6 +7,8 @@ use super::*;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_scene::source::SceneSource;
+use grainbench_solver::failure::RunError;
+use grainbench_solver::record::Record;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::path::Path;
@@ -149,6 +151,20 @@ fn slips(dice: &mut dyn FnMut(f64, f64) -> f64) -> Drawn {
 
 /// Returns the study of a scene with fixed levels.
 fn study(text: &str) -> SceneCost {
+    with_study(text, &OnlyDem, Duration::from_secs(3600), |measurement| {
+        for fineness in LEVELS {
+            measurement.level(0, fineness, &mut ()).unwrap();
+        }
+    })
+}
+
+/// Returns the results of a study of a scene after some runs.
+fn with_study(
+    text: &str,
+    solvers: &dyn Solvers,
+    budget: Duration,
+    runs: impl FnOnce(&mut Measurement<'_>),
+) -> SceneCost {
     let source = SceneSource::from_text("scene", Path::new(""), text);
     let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let cache = RunStore::none();
@@ -156,16 +172,15 @@ fn study(text: &str) -> SceneCost {
         name: "drawn".to_owned(),
         scene: &scene,
         names: vec!["dem".to_owned()],
-        solvers: &OnlyDem,
+        solvers,
         quantities: Vec::new(),
-        budget: Duration::from_secs(3600),
+        budget,
         cache: &cache,
         program: String::new(),
+        stop: &|| false,
     };
     let mut measurement = Measurement::new(&study);
-    for fineness in LEVELS {
-        measurement.level(0, fineness, &mut ()).unwrap();
-    }
+    runs(&mut measurement);
     measurement.result()
 }
 
@@ -212,7 +227,7 @@ fn intervals_contain_the_true_error() {
     for (drawn, study) in &studies {
         for target in [0.1, 0.01, 0.001] {
             let Some((setting, _)) = study.cheapest_for_all("dem", target) else { continue };
-            let sentence = study.sentence(target);
+            let sentence = study.sentence(target, &[]);
             assert!(sentence.contains("dem ") && sentence.contains(setting), "{sentence}");
             for (name, exact) in &drawn.exact {
                 let quantity = study.quantities.iter().find(|quantity| quantity.name == *name).unwrap();
@@ -229,13 +244,56 @@ fn intervals_contain_the_true_error() {
 #[test]
 fn a_sentence_says_when_nobody_reaches_the_target() {
     let mut study = study(&flight(&mut |low, high| 0.5 * (low + high)).text);
-    assert!(study.sentence(0.01).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01));
+    assert!(study.sentence(0.01, &[]).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01, &[]));
     for point in study.quantities.iter_mut().flat_map(|quantity| &mut quantity.points) {
         point.uncertainty = 0.02;
     }
-    let sentence = study.sentence(0.01);
+    let sentence = study.sentence(0.01, &[]);
     assert!(
         sentence.contains("no solver reaches it within the budget") && sentence.contains("at best 2"),
         "{sentence}"
     );
+}
+
+/// The solver `dem`, which breaks above a fraction of the critical time step.
+struct Breaks(f64);
+
+impl Solver for Breaks {
+    fn name(&self) -> String {
+        "dem".to_owned()
+    }
+
+    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        match resolution {
+            Resolution::CriticalFraction(fraction) if *fraction > self.0 => {
+                Err(RunError::Resolution { solver: self.name(), reason: "the step is too large".to_owned() })
+            }
+            _ => Dem::new(Convention::DEFAULT).run(scene, resolution, observer),
+        }
+    }
+}
+
+impl Solvers for Breaks {
+    fn find(&self, _name: &str) -> Option<Arc<dyn Solver>> {
+        Some(Arc::new(Self(self.0)))
+    }
+}
+
+/// A solver that breaks at the first six levels still gets a value. Negative control: a solver that always breaks ends after
+/// a limited number of levels, and the results name it.
+#[test]
+fn a_solver_that_breaks_at_coarse_levels_gets_finer_ones() {
+    let text = between(&mut |low, high| 0.5 * (low + high)).text;
+    let levels = |coarsest| {
+        with_study(&text, &Breaks(coarsest), Duration::from_secs(5), |measurement| measurement.levels(&mut ()).unwrap())
+    };
+    let late = levels(0.4 / 50.0);
+    let failed = late.levels.iter().take_while(|level| level.status == LevelStatus::Failed).count();
+    assert_eq!(failed, 6);
+    assert!(late.levels[failed..].iter().filter(|level| level.status == LevelStatus::Measured).count() >= 2);
+    assert!(!late.sentence(0.01).contains("no value"), "{}", late.sentence(0.01));
+    let never = levels(0.0);
+    assert!(never.levels.len() == FAILURES[0] && never.quantities.is_empty());
+    assert!(never.sentence(0.01).contains("dem has no value (12 levels failed)"), "{}", never.sentence(0.01));
+    assert!(never.notes.iter().any(|note| note.starts_with("dem: 12 levels failed")), "{:?}", never.notes);
 }

@@ -58,7 +58,7 @@ impl Importance<'_> {
         }
         let Some(solver) = self.study.solvers.find(name) else { return Ok((Vec::new(), None)) };
         let deadline = measured.deadline(measured.remaining(1.05));
-        let within = Within::new(&*solver, deadline);
+        let within = Within::new(&*solver, deadline, self.study.stop);
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..self.study.scene.clone() };
         let (matters, study_name) = (self.matters, self.study.name.clone());
         let input = StudyInput { name: study_name, scene: &scene, solver: &within, resolution, matters };
@@ -71,6 +71,9 @@ impl Importance<'_> {
         for effect in effects {
             follower.now(&format!("{name}: without {}", effect.word()), measured.spent());
             let entry = input.entry(&whole, effect);
+            if measured.is_stopped() {
+                return Ok((entries, None));
+            }
             if Instant::now() >= deadline {
                 return Ok((entries, Some(format!("Some effects were left out because of the time. {command}"))));
             }

@@ -88,14 +88,14 @@ enum Stop {
 }
 
 /// Returns the largest stable time step of a solver in a scene, and true if it is from the cache. No run continues after the
-/// deadline. The limit is then a lower bound, and its detail says so.
+/// deadline, or when `stop` returns true. The limit is then a lower bound, and its detail says so.
 ///
 /// # Errors
 /// When the limit cannot be stored.
 pub fn of_scene(
     (name, scene): (&str, &Scene),
     (solvers, solver): (&dyn Solvers, &str),
-    deadline: Instant,
+    (deadline, stop): (Instant, &(dyn Fn() -> bool + Sync)),
     (program, cache): (&str, &RunStore),
 ) -> Result<(Limit, bool), WriteError> {
     let id = key_of_run(program, solver, scene, &Resolution::TimeStep(0.0), "largest stable step");
@@ -132,19 +132,25 @@ pub fn of_scene(
             "the scene has no contact springs, so no step is too large".clone_into(&mut limit.detail);
             true
         }
-        Some(solver) => bisect(&mut limit, &*solver, scene, parameter, deadline),
+        Some(solver) => bisect(&mut limit, (&*solver, scene), parameter, (deadline, stop)),
     };
-    if is_whole {
+    // An external program fails when it is stopped.
+    if is_whole && !stop() {
         cache.put(&id, &limit)?;
     }
     Ok((limit, false))
 }
 
 /// Finds the limit by bisection. Returns false if the deadline ended it.
-fn bisect(limit: &mut Limit, solver: &dyn Solver, scene: &Scene, parameter: Parameter, deadline: Instant) -> bool {
+fn bisect(
+    limit: &mut Limit,
+    (solver, scene): (&dyn Solver, &Scene),
+    parameter: Parameter,
+    (deadline, stop): (Instant, &(dyn Fn() -> bool + Sync)),
+) -> bool {
     let mut scene = Scene { snapshots: SNAPSHOTS, snapshot_times: Vec::new(), ..scene.clone() };
     scene.probes.push(Probe { name: PROBE.to_owned(), target: ProbeTarget::System });
-    let within = Within::new(solver, deadline);
+    let within = Within::new(solver, deadline, stop);
     let (mut energies, mut exact, mut unstable) = (None, None, None);
     let found = largest(parameter.range(), PRECISION, 0, |value| {
         let record = within.run(&scene, &parameter.at(value), &mut RunOptions::unstable());

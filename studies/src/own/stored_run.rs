@@ -1,8 +1,11 @@
 //! Values and times of a finished run, as they are stored.
 
 use crate::chaos::scale_of;
+use grainbench_reports::number;
 use grainbench_reports::study::estimate::LevelStatus;
+use grainbench_solver::failure::RunError;
 use grainbench_solver::record::{Column, Record};
+use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
 
 /// Column of a finished run.
@@ -12,6 +15,8 @@ pub(super) struct StoredColumn {
     pub(super) unit: String,
     pub(super) end: f64,
     pub(super) mean: f64,
+    /// Mean over time of the absolute value.
+    pub(super) mean_absolute: f64,
     /// Largest absolute value of the column.
     pub(super) largest: f64,
     /// Largest absolute value of the probe in this unit.
@@ -42,17 +47,50 @@ pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
     let column = |(at, column): (usize, &Column)| {
         let values = series.values.get(at)?;
         let (first, last) = (series.time.first()?, series.time.last()?);
-        let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| 0.5 * (t[1] - t[0]) * (v[0] + v[1]));
-        let mean = if last > first { areas.sum::<f64>() / (last - first) } else { *values.first()? };
+        let mean = |part: fn(f64) -> f64| {
+            let areas = series.time.windows(2).zip(values.windows(2));
+            let areas = areas.map(|(t, v)| 0.5 * (t[1] - t[0]) * (part(v[0]) + part(v[1])));
+            if last > first {
+                areas.sum::<f64>() / (last - first)
+            } else {
+                values.first().map_or(f64::NAN, |v| part(*v))
+            }
+        };
+        let (mean, mean_absolute) = (mean(|value| value), mean(f64::abs));
         let stored = StoredColumn {
             name: column.name.clone(),
             unit: column.unit.clone(),
             end: *values.last()?,
             mean,
+            mean_absolute,
             largest: values.iter().fold(0.0, |largest: f64, value| largest.max(value.abs())),
             scale: scale_of(record, at),
         };
         (values.iter().all(|value| value.is_finite()) && mean.is_finite()).then_some(stored)
     };
     series.columns.iter().enumerate().filter_map(column).collect()
+}
+
+/// Returns the status and the message of a run that did not end.
+pub(super) fn failure(
+    error: &RunError,
+    completed: Option<f64>,
+    seconds: f64,
+    resolution: &Resolution,
+) -> (LevelStatus, Option<String>) {
+    let status = match error {
+        RunError::Unsupported { .. } => LevelStatus::Unsupported,
+        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
+        RunError::Interrupted { .. } => LevelStatus::OverBudget,
+        _ => LevelStatus::Failed,
+    };
+    let whole =
+        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
+    let detail = match status {
+        LevelStatus::OverBudget => {
+            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
+        }
+        _ => error.to_string(),
+    };
+    (status, Some(detail))
 }

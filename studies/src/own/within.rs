@@ -17,19 +17,21 @@ const SURE: f64 = 0.2;
 /// Expected time of a run, relative to the time limit, above which it is ended before its deadline.
 const HOPELESS: f64 = 2.0;
 
-/// Solver whose runs are interrupted at a deadline. An external program has its own time limit instead.
+/// Solver whose runs are interrupted at a deadline, and when the user stops the study. An external program has its own time
+/// limit instead.
 pub struct Within<'a> {
     solver: &'a dyn Solver,
     deadline: Instant,
+    stop: &'a (dyn Fn() -> bool + Sync),
     /// Numbers of completed steps and of all steps of the last run.
     progress: [AtomicU64; 2],
 }
 
 impl<'a> Within<'a> {
-    /// Returns the solver with a deadline.
+    /// Returns the solver with a deadline. `stop` returns true if the user stops the study.
     #[must_use]
-    pub const fn new(solver: &'a dyn Solver, deadline: Instant) -> Self {
-        Self { solver, deadline, progress: [AtomicU64::new(0), AtomicU64::new(0)] }
+    pub const fn new(solver: &'a dyn Solver, deadline: Instant, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
+        Self { solver, deadline, stop, progress: [AtomicU64::new(0), AtomicU64::new(0)] }
     }
 
     /// Returns the completed fraction of the last run; none if it has not begun.
@@ -102,7 +104,7 @@ impl Observer for Watch<'_> {
         let (elapsed, limit) = (now - self.begin, deadline.saturating_duration_since(self.begin));
         let whole = self.solver.completed().map_or(0.0, |completed| elapsed.as_secs_f64() / completed);
         let is_hopeless = elapsed > limit.mul_f64(SURE) && whole > HOPELESS * limit.as_secs_f64();
-        now >= deadline || is_hopeless || self.observer.is_over()
+        now >= deadline || is_hopeless || (self.solver.stop)() || self.observer.is_over()
     }
 
     fn broke(&mut self, remains: PartialOutput) {
