@@ -542,8 +542,8 @@ impl<'a> Measurement<'a> {
             let is_known = is_over && self.found[at].is_some();
             return is_known.then(|| format!("{name}: no run fits into the time that the other solvers leave."));
         };
-        let failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
-        let (count, finest) = (failed.clone().count(), failed.last()?);
+        let mut failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
+        let (count, finest) = (failed.clone().count(), failed.next_back()?);
         if levels.iter().any(|run| run.stored.status == LevelStatus::Measured) {
             return None;
         }

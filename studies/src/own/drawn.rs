@@ -291,9 +291,9 @@ fn a_solver_that_breaks_at_coarse_levels_gets_finer_ones() {
     let failed = late.levels.iter().take_while(|level| level.status == LevelStatus::Failed).count();
     assert_eq!(failed, 6);
     assert!(late.levels[failed..].iter().filter(|level| level.status == LevelStatus::Measured).count() >= 2);
-    assert!(!late.sentence(0.01).contains("no value"), "{}", late.sentence(0.01));
+    assert!(!late.sentence(0.01, &[]).contains("no value"), "{}", late.sentence(0.01, &[]));
     let never = levels(0.0);
     assert!(never.levels.len() == FAILURES[0] && never.quantities.is_empty());
-    assert!(never.sentence(0.01).contains("dem has no value (12 levels failed)"), "{}", never.sentence(0.01));
+    assert!(never.sentence(0.01, &[]).contains("dem has no value (12 levels failed)"), "{}", never.sentence(0.01, &[]));
     assert!(never.notes.iter().any(|note| note.starts_with("dem: 12 levels failed")), "{:?}", never.notes);
 }
