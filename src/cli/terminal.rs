@@ -36,7 +36,7 @@ pub(crate) fn choice_in(arguments: &[OsString]) -> clap::ColorChoice {
         [] => None,
     };
     let pairs = (0..words.len()).map(|at| &words[at..words.len().min(at + 2)]);
-    match pairs.filter_map(value).last().as_deref() {
+    match pairs.filter_map(value).next_back().as_deref() {
         Some("always") => clap::ColorChoice::Always,
         Some("never") => clap::ColorChoice::Never,
         _ => clap::ColorChoice::Auto,
