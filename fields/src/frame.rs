@@ -10,7 +10,7 @@ pub struct Frame {
     pub step: u64,
     /// Time (s); NaN if unknown.
     pub time: f64,
-    /// Elements in the order of [`Grid::place`].
+    /// Elements in the order of [`crate::grid::Grid::place`].
     pub elements: Vec<Element>,
     /// For each element, the reasons for its exclusion from means, if any.
     pub masked: Vec<MaskReasons>,
