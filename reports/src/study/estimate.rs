@@ -381,8 +381,7 @@ fn margin_words(solver: &str, setting: &str, limits: &[Limit]) -> Option<String>
     let step: f64 = setting.strip_prefix("dt=")?.parse().ok()?;
     let limit = limits.iter().find(|limit| limit.solver == solver && limit.unit == CRITICAL_STEP)?;
     let share = step / limit.found?;
-    (share > MARGIN)
-        .then(|| format!(", where {setting} is {} of the largest stable step", number::significant(share, 2)))
+    (share > MARGIN).then(|| format!(", which is {} of the largest stable step", number::significant(share, 2)))
 }
 
 /// Returns one figure for each quantity: estimated error against time.

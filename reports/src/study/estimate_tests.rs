@@ -126,7 +126,7 @@ fn a_step_near_the_stable_one_has_a_remark() {
         margin: None,
         detail: String::new(),
     };
-    let remark = "with dt=0.4, where dt=0.4 is 0.87 of the largest stable step.";
+    let remark = "with dt=0.4, which is 0.87 of the largest stable step.";
     assert!(cost.sentence(0.01, &[limit("dem", Some(0.46))]).ends_with(remark));
     assert!(cost.sentence_of(&cost.quantities[0], 0.01, &[limit("dem", Some(0.46))]).ends_with(remark));
     for control in [limit("dem", Some(1.0)), limit("rigid", Some(0.46)), limit("dem", None)] {
