@@ -12,6 +12,7 @@ use grainbench_solver::record::Record;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
 use std::path::Path;
+use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Number of drawn scenes.
 const SCENES: u64 = 50;
@@ -151,7 +152,7 @@ fn slips(dice: &mut dyn FnMut(f64, f64) -> f64) -> Drawn {
 
 /// Returns the study of a scene with fixed levels.
 fn study(text: &str) -> SceneCost {
-    with_study(text, &OnlyDem, Duration::from_secs(3600), |measurement| {
+    with_study(text, (&OnlyDem, &|| false), Duration::from_secs(3600), |measurement| {
         for fineness in LEVELS {
             measurement.level(0, fineness, &mut ()).unwrap();
         }
@@ -161,7 +162,7 @@ fn study(text: &str) -> SceneCost {
 /// Returns the results of a study of a scene after some runs.
 fn with_study(
     text: &str,
-    solvers: &dyn Solvers,
+    (solvers, stop): (&dyn Solvers, &(dyn Fn() -> bool + Sync)),
     budget: Duration,
     runs: impl FnOnce(&mut Measurement<'_>),
 ) -> SceneCost {
@@ -177,7 +178,7 @@ fn with_study(
         budget,
         cache: &cache,
         program: String::new(),
-        stop: &|| false,
+        stop,
     };
     let mut measurement = Measurement::new(&study);
     runs(&mut measurement);
@@ -255,6 +256,44 @@ fn a_sentence_says_when_nobody_reaches_the_target() {
     );
 }
 
+/// The scale of a column is its own largest value or its own mean absolute value. The largest velocity is vertical, and its
+/// scale would be wrong for the horizontal one.
+#[test]
+fn each_column_has_its_own_scale() {
+    let (rate, time, speed) = (1.6, 1.15, 3.0);
+    let middle = |low: f64, high: f64| 0.5 * (low + high);
+    let text = flight(&mut |low, high| middle(low, high)).text;
+    with_study(&text, (&OnlyDem, &|| false), Duration::from_secs(3600), |measurement| {
+        for fineness in LEVELS {
+            measurement.level(0, fineness, &mut ()).unwrap();
+        }
+        let scale = |reduction, name: &str| {
+            let found = measurement.quantities(reduction);
+            found.into_iter().find(|quantity| quantity.name == name).unwrap().scale
+        };
+        assert!((scale(Reduction::End, "ball.vx") - speed).abs() < 1e-9);
+        assert!(scale(Reduction::End, "ball.vy") > 1.2 * speed);
+        let mean = speed * (1.0 - f64::exp(-rate * time)) / (rate * time);
+        assert!((scale(Reduction::Mean, "ball.vx") / mean - 1.0).abs() < 1e-2);
+    });
+}
+
+/// A stopped study has whole runs only, and no note. Negative control: without a stop there are further levels.
+#[test]
+fn a_stopped_study_has_whole_runs_only() {
+    let text = between(&mut |low, high| 0.5 * (low + high)).text;
+    let levels = |most: usize| {
+        let asked = AtomicUsize::new(0);
+        let stop = || asked.fetch_add(1, Ordering::Relaxed) >= most;
+        with_study(&text, (&OnlyDem, &stop), Duration::from_secs(5), |measurement| {
+            measurement.levels(&mut ()).unwrap();
+        })
+    };
+    let (stopped, whole) = (levels(100), levels(usize::MAX));
+    assert!(stopped.levels.len() < whole.levels.len(), "{} {}", stopped.levels.len(), whole.levels.len());
+    assert!(stopped.levels.iter().all(|level| level.status == LevelStatus::Measured) && stopped.notes.is_empty());
+}
+
 /// The solver `dem`, which breaks above a fraction of the critical time step.
 struct Breaks(f64);
 
@@ -285,7 +324,9 @@ impl Solvers for Breaks {
 fn a_solver_that_breaks_at_coarse_levels_gets_finer_ones() {
     let text = between(&mut |low, high| 0.5 * (low + high)).text;
     let levels = |coarsest| {
-        with_study(&text, &Breaks(coarsest), Duration::from_secs(5), |measurement| measurement.levels(&mut ()).unwrap())
+        with_study(&text, (&Breaks(coarsest), &|| false), Duration::from_secs(5), |measurement| {
+            measurement.levels(&mut ()).unwrap();
+        })
     };
     let late = levels(0.4 / 50.0);
     let failed = late.levels.iter().take_while(|level| level.status == LevelStatus::Failed).count();
