@@ -135,12 +135,12 @@ impl FieldResults {
     }
 }
 
-/// Renders the median error by field of physics and solver, for solvers without settings for single cases. Solvers with
-/// the smallest error in most fields come first. Empty if all cases are in one field.
+/// Renders the median error by field of physics and solver, for solvers without settings for single cases.
+/// Empty if all cases are in one field.
 pub(crate) fn by_physics(report: &Report) -> Markup {
     const MAIN: [&str; 5] = ["dem", "rigid", "mpm", "dem:lammps", "dem:liggghts"];
     let fields = fields_of(report);
-    let mut columns: Vec<(&str, Vec<Option<FieldResults>>)> = MAIN
+    let columns: Vec<(&str, Vec<Option<FieldResults>>)> = MAIN
         .into_iter()
         .map(|solver| (solver, fields.iter().map(|physics| FieldResults::new(report, *physics, solver)).collect()))
         .filter(|(_, results): &(&str, Vec<Option<FieldResults>>)| results.iter().any(Option::is_some))
@@ -156,14 +156,6 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
     let is_least = |field: usize, results: &FieldResults| {
         results.passes() && results.error.is_some() && results.error == least[field]
     };
-    let wins = |results: &[Option<FieldResults>]| {
-        results
-            .iter()
-            .enumerate()
-            .filter(|(field, results)| results.as_ref().is_some_and(|results| is_least(*field, results)))
-            .count()
-    };
-    columns.sort_by_key(|(_, results)| std::cmp::Reverse(wins(results)));
     let cell = |field: usize, solver: &str, results: &FieldResults| {
         let class = match results.counts.first().map_or(Outcome::Pass, |(worst, _)| *worst) {
             Outcome::Pass if is_least(field, results) => "c2",
@@ -174,8 +166,7 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
         let error = results.error.map_or("–".to_owned(), percent);
         html! { a class=(class) href="#matrix" title=(title) data-solver=(solver) { (error) } }
     };
-    // A long name may break after its colon.
-    let heads = columns.iter().map(|(solver, _)| table::Column::text(solver.replace(':', ":\u{200b}")));
+    let heads = columns.iter().map(|(solver, _)| table::Column::text(*solver));
     let heads = [table::Column::heading("Median error")].into_iter().chain(heads);
     let row = |(field, physics): (usize, &Physics)| {
         let cells = columns.iter().map(|(solver, results)| {
