@@ -109,8 +109,9 @@ struct Contact {
 /// New position of a grain: its index, and the key and the value of its position.
 type NewPosition = (usize, (String, String));
 
-/// Returns the new positions of the grains that touch a wall or a grain, if a radius changes. A grain at rest under its weight is placed at its new static overlap; every other overlap keeps its ratio
-/// to the radius. Returns no position if the grains cannot keep their contacts.
+/// Returns the new positions of the grains that touch a wall or a grain, if a radius changes. A grain at rest under its
+/// weight is placed at its new static overlap; every other overlap keeps its ratio to the radius. Returns no position if
+/// the grains cannot keep their contacts.
 fn positions(
     source: &SceneSource,
     changed: &SceneSource,
