@@ -138,8 +138,8 @@ impl Plan {
     }
 }
 
-/// Runs a scene up to the last sample of the output with each of our contact conventions. Also returns the last snapshot
-/// of each run.
+/// Runs a scene up to the last sample of the output with each of our contact conventions. Each run comes
+/// with its last snapshot.
 pub(super) fn ours(scene: &Scene, plan: &Plan) -> Result<(Vec<Peer>, Vec<Option<Snapshot>>), String> {
     let [last, _] = plan.counts;
     if last as f64 * scene.grains.len() as f64 > MOST_WORK {
@@ -178,8 +178,8 @@ fn common_divisor(a: u64, b: u64) -> u64 {
     if b == 0 { a } else { common_divisor(b, a % b) }
 }
 
-/// Returns true if a column is compared: motion, kinetic energy, contact forces, forces on walls, mean stress, or numbers
-/// of grains that are present and that have left.
+/// Returns true if a column is compared: motion, kinetic energy, contact forces, forces on walls, mean stress, or the
+/// numbers of present grains and of grains that have left.
 pub(super) fn is_compared(name: &str) -> bool {
     let quantity = name.rsplit_once('.').map_or(name, |(_, quantity)| quantity);
     ["x", "y", "z", "vx", "vy", "vz", "kinetic_energy", "normal_force", "shear_force"].contains(&quantity)
@@ -194,8 +194,8 @@ pub(super) fn is_count(name: &str) -> bool {
     name.ends_with(".present") || name.ends_with(".left")
 }
 
-/// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the change
-/// of this run due to smaller time steps.
+/// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the
+/// change that smaller time steps cause in this run.
 pub(super) fn compare(
     scene: &Scene,
     ours: &[Peer],

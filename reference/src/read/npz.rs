@@ -78,8 +78,8 @@ const CONTACT_STEP: &str = "contact_step";
 const CONTACT: [(&str, &[&str]); 2] =
     [("contact_id", &["id1", "id2"]), ("contact_force", &["force_x", "force_y", "force_z"])];
 
-/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, the forces of walls on grains, contacts
-/// of grains, and the arrays `step` and `time` of moments. At least one of `step` and `time` is required.
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, the forces of walls, the contacts between
+/// grains, and the arrays `step` and `time` of moments. At least one of `step` and `time` is required.
 ///
 /// # Errors
 /// If the file cannot be read, lacks a required array, or has arrays of other shapes.

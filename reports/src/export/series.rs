@@ -3,8 +3,8 @@
 use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_solver::record::Series;
 
-/// Returns the table with the columns `step`, `time (s)`, `NAME (unit)`, … and one row per sample. Cells after the end
-/// of a short column are empty.
+/// Returns the table with the columns `step`, `time (s)`, `NAME (unit)`, … and one row per sample. A short column ends
+/// with empty cells.
 #[must_use]
 pub fn table(series: &Series) -> Table<'_> {
     let columns = [Column::new("step", Format::Count), Column::number("time").unit("s")].into_iter();

@@ -592,8 +592,8 @@ fn agreement(cost: &SceneCost) -> Markup {
     }
 }
 
-/// Returns, for each setting with softer contacts, its time relative to the same level of the scene, and the largest change
-/// of a quantity beyond its uncertainty, with its name.
+/// Returns, for each setting with softer contacts, its time relative to the same level of the scene. Also returns the quantity
+/// that changes most beyond its uncertainty, with this change.
 #[must_use]
 pub fn softer_words(cost: &SceneCost) -> Vec<String> {
     let points =

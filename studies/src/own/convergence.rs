@@ -13,8 +13,9 @@
 //! level show an order too. The uncertainty is never smaller than the change of f₀ that the finest level causes.
 //!
 //! If the differences change sign or grow, or if p is below ½, above 4 or above twice the order of the method, no order is
-//! visible: the levels are not in the asymptotic range. Then the reference is f₁, and its uncertainty is the spread
-//! of the three values. In a chaotic scene, single values scatter, so that the mean of the three values is the reference.
+//! visible: the levels are not in the asymptotic range. Then the reference is f₁, and its uncertainty is the
+//! range from the smallest to the largest of the three values. In a chaotic scene, single values scatter, so their mean is
+//! the reference.
 
 use grainbench_reports::study::estimate::Basis;
 
