@@ -26,8 +26,8 @@ pub(crate) struct NamedSolvers {
 }
 
 impl NamedSolvers {
-    /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with each path replaced by
-    /// the name of its solver. If several processes share the work, an external solver is identified by the contents of its files.
+    /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with each path replaced by its
+    /// solver's name. If several processes share the work, an external solver is identified by the contents of its files.
     pub(crate) fn read_for(names: &[String], is_shared: bool) -> Result<(Self, Vec<String>), Fault> {
         let (mut strangers, mut known) = (Vec::new(), Vec::new());
         for name in names {
