@@ -158,17 +158,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let words = input.words("cost", options.budget());
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
-    let study = SceneStudy {
-        name: input.path.clone(),
-        scene: &scene,
-        names: solver_names(named),
-        solvers: &solvers,
-        quantities: input.quantities.to_vec(),
-        budget: options.budget(),
-        cache: &cache,
-        program: key::of_this_program(),
-        stop: &stop,
-    };
+    let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
     let mut follower = Follower::new(&study, input.out, &words);
     let mut measured = Measurement::new(&study);
     measured.levels(&mut follower).map_err(Fault::writing)?;
@@ -194,6 +184,27 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     drop(follower);
     let output = Output { text: Some(text), ..Output::new(input.out, input.json, false) };
     publish_study(&study, output, is_red)
+}
+
+/// Returns the study of a scene.
+fn scene_study<'a>(
+    input: &Input<'_>,
+    scene: &'a Scene,
+    (solvers, named): (&'a NamedSolvers, Vec<String>),
+    cache: &'a RunStore,
+    (options, stop): (&Options, &'a (dyn Fn() -> bool + Sync)),
+) -> SceneStudy<'a> {
+    SceneStudy {
+        name: input.path.clone(),
+        scene,
+        names: solver_names(named),
+        solvers,
+        quantities: input.quantities.to_vec(),
+        budget: options.budget(),
+        cache,
+        program: key::of_this_program(),
+        stop,
+    }
 }
 
 /// Returns the error of a study that the user stops.
@@ -238,17 +249,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
-    let study = SceneStudy {
-        name: input.path.clone(),
-        scene: &scene,
-        names: solver_names(named),
-        solvers: &solvers,
-        quantities: Vec::new(),
-        budget: options.budget(),
-        cache: &cache,
-        program: key::of_this_program(),
-        stop: &stop,
-    };
+    let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
     let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
     let mut bar = Bar::new(budget);
     // The bisection may use the whole budget.
