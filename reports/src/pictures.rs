@@ -33,10 +33,8 @@ pub(crate) fn write_page(
     leads: &[String],
     figures: &[Figure],
 ) -> Result<(), SaveError> {
-    let mut names = BTreeSet::new();
     let mut drawn = Vec::new();
-    for figure in figures {
-        let name = unique(&slug(&figure.name), &mut names);
+    for (name, figure) in named_figures(figures) {
         add_figure(out, figure, &name)?;
         drawn.push(figures::part(figure, &name, &name)?);
     }
@@ -52,6 +50,13 @@ pub(crate) fn write_page(
     };
     out.write("index.html", shell(&format!("grainbench · {title}"), &body))?;
     Ok(())
+}
+
+/// Returns figures with the names of their files.
+#[must_use]
+pub fn named_figures(figures: &[Figure]) -> Vec<(String, &Figure)> {
+    let mut names = BTreeSet::new();
+    figures.iter().map(|figure| (unique(&slug(&figure.name), &mut names), figure)).collect()
 }
 
 fn words(from: &Provenance) -> String {

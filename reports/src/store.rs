@@ -13,7 +13,6 @@ use crate::badge::badge;
 use crate::junit::junit_xml;
 use crate::page;
 use crate::plot;
-use crate::plot::style::FigureStyle;
 use crate::report::Report;
 use crate::results::{points_csv, results_json};
 use crate::row;
@@ -41,6 +40,20 @@ pub enum SaveError {
         file: &'static str,
         /// Message of the encoder.
         reason: String,
+    },
+    /// A figure cannot be converted.
+    #[error("{}: {reason}", path.display())]
+    Convert {
+        /// Path of the figure, or of the directory of figures.
+        path: PathBuf,
+        /// Reason why the figure cannot be converted.
+        reason: String,
+    },
+    /// No font family of a style is installed.
+    #[error("font: expected an installed family for PDF and PNG, found none of `{families}`")]
+    NoFont {
+        /// Font families of the style.
+        families: String,
     },
 }
 
@@ -106,19 +119,11 @@ pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Resul
     Ok(())
 }
 
-/// Writes the figures of a report to `dir/figures` again, in a style for a publication. All other files stay.
-///
-/// # Errors
-/// When a file cannot be written or a figure cannot be drawn.
-pub fn write_figures(dir: impl AsRef<Path>, report: &Report, style: &FigureStyle) -> Result<(), SaveError> {
-    let mut out = StagedDir::new(dir.as_ref())?;
-    for (section, names) in report.sections.iter().zip(page::figure_names(report)) {
-        for (figure, name) in section.figures.iter().zip(names) {
-            out.write(format!("figures/{name}.svg"), style.draw(figure)?)?;
-        }
-    }
-    out.commit_beside()?;
-    Ok(())
+/// Returns the figures of a report with the names of their files.
+#[must_use]
+pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
+    let figures = report.sections.iter().flat_map(|section| &section.figures);
+    page::figure_names(report).into_iter().flatten().zip(figures).collect()
 }
 
 /// Adds all files of a report to a staged directory.
@@ -136,10 +141,8 @@ pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError>
     let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
     out.write("junit.xml", junit)?;
     out.write("badge.svg", badge(report))?;
-    let names = page::figure_names(report);
-    let figures: Vec<(&Figure, &String)> =
-        report.sections.iter().zip(&names).flat_map(|(section, names)| section.figures.iter().zip(names)).collect();
-    let drawn = || figures.par_iter().map(|(figure, name)| figure_files(figure, name)).collect::<Result<Vec<_>, _>>();
+    let figures = named_figures(report);
+    let drawn = || figures.par_iter().map(|(name, figure)| figure_files(figure, name)).collect::<Result<Vec<_>, _>>();
     let stored = || serde_json::to_string(report).map_err(|error| encode(REPORT_FILE)(error.to_string()));
     let (stored, (page, drawn)) = rayon::join(stored, || rayon::join(|| page::render(report), drawn));
     out.write(REPORT_FILE, stored? + "\n")?;

@@ -9,17 +9,21 @@ use super::publish::exit_code;
 use super::stability;
 use super::terminal::width;
 use super::value::{positive, whole};
+use grainbench::harness::figure::Figure;
 use grainbench::jobs::plan::Plan;
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
+use grainbench::reports::pictures;
 use grainbench::reports::plot::style::FigureStyle;
+use grainbench::reports::publication::{FigureFormat, convert_figures, write_figures};
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
-use grainbench::reports::store::REPORT_FILE;
-use grainbench::reports::study::{STUDY_FILE, Study, load_study, write_study};
-use grainbench::reports::{summary_table_within, write_figures, write_pictures, write_report};
+use grainbench::reports::store::{REPORT_FILE, named_figures};
+use grainbench::reports::study::{self, STUDY_FILE, Study, load_study, write_study};
+use grainbench::reports::{SaveError, summary_table_within, write_pictures, write_report};
 use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
+use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -44,10 +48,21 @@ pub(crate) struct Arguments {
     /// Largest number of frames of a film. Default: 60.
     #[arg(long, value_name = "N", value_parser = whole::<u16>(2, 500))]
     frames: Option<u16>,
-    /// Draw the figures of a report again, for a publication: `width` in mm, `font_size` in pt, `font`, and `colors` as a
+    /// Draw the figures again for a publication: `width` in mm, `font_size` in pt, `font`, and `colors` as a
     /// list of `#rrggbb`.
     #[arg(long, value_name = "FILE.toml")]
     style: Option<PathBuf>,
+    /// Write each figure also as PDF, or as PNG with 300 pixels in an inch. Repeatable.
+    #[arg(long, value_name = "FORMAT", value_enum)]
+    figures: Vec<Format>,
+}
+
+/// File format of figures on the command line.
+#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
+enum Format {
+    Svg,
+    Pdf,
+    Png,
 }
 
 impl Arguments {
@@ -89,7 +104,6 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
             "{option}: expected the directory of a plan, found {there}, which has no plan"
         )));
     }
-    let page = format!("{}\n", arguments.dir.join("index.html").display());
     for dir in std::iter::once(&arguments.dir).chain(&arguments.beside) {
         refuse_mixed(dir).map_err(Fault::input)?;
     }
@@ -102,15 +116,9 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
              {found}"
         )));
     }
-    if arguments.style.is_some() && !holds(REPORT_FILE) {
-        let there = arguments.dir.display();
-        return Err(Fault::input(format!(
-            "--style: expected a directory written by `run`, with {REPORT_FILE}, found {there}"
-        )));
-    }
+    let style = arguments.style.as_deref().map(style).transpose()?.unwrap_or_default();
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
-        pictures(arguments)?;
-        print(&page)?;
+        publish(arguments, &style, &pictures::named_figures(&pictures(arguments)?))?;
         return Ok(ExitCode::SUCCESS);
     }
     if arguments.is_of_pictures() {
@@ -120,18 +128,35 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if holds(STUDY_FILE) {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;
         write_study(&arguments.dir, &study).map_err(Fault::writing)?;
-        print(&page)?;
+        publish(arguments, &style, &study::named_figures(&study))?;
         return Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS });
     }
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
-    let style = arguments.style.as_deref().map(style).transpose()?;
     write_report(&arguments.dir, &report).map_err(Fault::writing)?;
-    if let Some(style) = &style {
-        write_figures(&arguments.dir, &report, style).map_err(Fault::writing)?;
-    }
     print_text(&format!("{}\n", summary_table_within(&report, width())))?;
-    print(&page)?;
+    publish(arguments, &style, &named_figures(&report))?;
     Ok(exit_code(&report, false))
+}
+
+/// Draws figures in a style, converts them to the requested formats and prints the path of the page.
+fn publish<F: Borrow<Figure>>(
+    arguments: &Arguments,
+    style: &FigureStyle,
+    figures: &[(String, F)],
+) -> Result<(), Fault> {
+    let dir = &arguments.dir;
+    if arguments.style.is_some() {
+        write_figures(dir, figures, style).map_err(Fault::writing)?;
+    }
+    for (format, asked) in [(FigureFormat::Pdf, Format::Pdf), (FigureFormat::Png, Format::Png)] {
+        if arguments.figures.contains(&asked) {
+            convert_figures(dir, format, style.font.as_deref()).map_err(|error| match error {
+                SaveError::NoFont { .. } => Fault::input(error),
+                error => Fault::writing(error),
+            })?;
+        }
+    }
+    print(&format!("{}\n", dir.join("index.html").display()))
 }
 
 /// Reads a style of figures.
@@ -160,8 +185,8 @@ fn is_red(study: &Study) -> bool {
         }
 }
 
-/// Draws the figures of a simulation and of the simulations compared with it.
-fn pictures(arguments: &Arguments) -> Result<(), Fault> {
+/// Writes and returns the figures of a simulation and of the simulations compared with it.
+fn pictures(arguments: &Arguments) -> Result<Vec<Figure>, Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
     let records: Vec<Record> =
         dirs.map(|dir| record_json::load(dir).map_err(Fault::input)).collect::<Result<_, _>>()?;
@@ -182,7 +207,8 @@ fn pictures(arguments: &Arguments) -> Result<(), Fault> {
             file.display()
         )));
     }
-    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)
+    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)?;
+    Ok(figures)
 }
 
 /// Returns a name that distinguishes a record from all records: empty for a single record, else the solver, or the

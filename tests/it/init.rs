@@ -210,16 +210,35 @@ fn figures_have_the_style_of_a_file() {
         assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
         assert_eq!(figures(), plain);
     }
-    fs::write(path.join("style.toml"), "width = 86\nfont_size = 8\nfont = \"Times, serif\"\ncolors = [\"#123456\"]")
-        .unwrap();
+    fs::write(
+        path.join("style.toml"),
+        "width = 86\nfont_size = 8\nfont = \"No Such Family, serif\"\ncolors = [\"#123456\"]",
+    )
+    .unwrap();
     let answer = grainbench(path, &["report", "out", "--style", "style.toml"]);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     for svg in figures() {
         assert!(
-            svg.contains("width=\"86mm\"") && svg.contains("font-family=\"Times, serif\"") && !svg.contains("#0072b2")
+            svg.contains("width=\"86mm\"")
+                && svg.contains("font-family=\"No Such Family, serif\"")
+                && !svg.contains("#0072b2")
         );
     }
     assert_eq!(fs::read_to_string(path.join("out/index.html")).unwrap(), page, "the page keeps its figures");
+    let formats = ["--figures", "pdf", "--figures", "png"];
+    let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
+    assert_eq!(answer.code, Some(2), "the family is not installed");
+    assert!(answer.err.contains("font: expected an installed family"), "{}", answer.err);
+    fs::write(path.join("style.toml"), "width = 86").unwrap();
+    let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
+    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    for svg in files(&path.join("out")).into_iter().filter(|name| name.starts_with("figures") && name.ends_with(".svg"))
+    {
+        let read = |ending: &str| fs::read(path.join("out").join(&svg).with_extension(ending)).unwrap();
+        assert!(read("pdf").starts_with(b"%PDF-"));
+        // 86 mm with 300 pixels in an inch.
+        assert_eq!(read("png")[16..20], 1016_u32.to_be_bytes());
+    }
     let answer = grainbench(path, &["report", ".", "--style", "style.toml"]);
     assert_eq!(answer.code, Some(2), "a directory without a report");
 }

@@ -80,17 +80,16 @@ pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError
     let points = cost::points_csv(&study.diagrams).map_err(|error| encode("points.csv")(error.to_string()))?;
     out.write("points.csv", points)?;
     out.write("index.html", page::render(study)?)?;
-    let mut names = BTreeSet::new();
-    for (stem, figure) in figures(study) {
-        let name = shared::unique(&shared::slug(&stem), &mut names);
+    for (name, figure) in named_figures(study) {
         out.write(format!("figures/{name}.svg"), plot::draw(&figure)?)?;
     }
     out.commit()?;
     Ok(())
 }
 
-/// Returns all figures of a study with their file names.
-fn figures(study: &Study) -> Vec<(String, Figure)> {
+/// Returns the figures of a study with the names of their files.
+#[must_use]
+pub fn named_figures(study: &Study) -> Vec<(String, Figure)> {
     let diagrams = study.diagrams.iter().map(|diagram| {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
@@ -100,7 +99,9 @@ fn figures(study: &Study) -> Vec<(String, Figure)> {
         .chain(load::figure(&study.loads))
         .chain(stability::figures(&study.limits))
         .chain(study.scenes.iter().flat_map(estimate::figures));
-    diagrams.chain(others.map(|figure| (figure.name.clone(), figure))).collect()
+    let all = diagrams.chain(others.map(|figure| (figure.name.clone(), figure)));
+    let mut names = BTreeSet::new();
+    all.map(|(stem, figure)| (shared::unique(&shared::slug(&stem), &mut names), figure)).collect()
 }
 
 /// Returns a study as text for storage in the source tree. It contains the Pareto front of each solver and the effects
