@@ -3,8 +3,7 @@
 use crate::fault::Fault;
 use crate::shard;
 use crate::task::{self, Task};
-use grainbench_scene::error::expected_and_found;
-use grainbench_scene::text::line_of;
+use grainbench_scene::toml_error::TomlError;
 use grainbench_store::results::RESULTS;
 use grainbench_store::{StagedDir, WriteError, is_scratch, key};
 use serde::{Deserialize, Serialize};
@@ -180,9 +179,8 @@ impl Plan {
         }
         let text = text_of(&file)?;
         let head: Head = toml::from_str(&text).map_err(|error| {
-            let place = format!("{}:{}", file.display(), line_of(&text, &error).unwrap_or(1));
-            let (expected, found) = expected_and_found(error.message());
-            Fault::expected(place, &expected, found)
+            let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
+            Fault::expected(format!("{}:{line}", file.display()), &expected, found)
         })?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
         if head.format != FORMAT {

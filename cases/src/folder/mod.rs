@@ -22,9 +22,9 @@ use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
 use grainbench_harness::run::MissingData;
 use grainbench_harness::tolerance::exactly;
-use grainbench_scene::error::expected_and_found;
 use grainbench_scene::source::{SceneSource, named_files};
-use grainbench_scene::text::{line_of, written};
+use grainbench_scene::text::written;
+use grainbench_scene::toml_error::TomlError;
 use row::Reader;
 use std::fs;
 use std::path::{Path, PathBuf};
@@ -70,8 +70,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
     let no_case = |what: String| CaseFolderError { file: file.clone(), what };
     let text = text_of(&file)?;
     let claims: ClaimsFile = toml::from_str(&text).map_err(|error| {
-        let line = line_of(&text, &error).unwrap_or(1);
-        let (expected, found) = expected_and_found(error.message());
+        let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
         no_case(format!("line {line}: expected {expected}, found {found}"))
     })?;
     let words = [&claims.title, &claims.claim, &claims.weakness];

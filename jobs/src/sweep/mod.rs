@@ -16,10 +16,11 @@ use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::Outcome;
 use grainbench_reports::study::point::Timing;
 use grainbench_reports::sweep::{Factor, PointOutput, Quantity, RunCounts};
-use grainbench_scene::error::{did_you_mean, expected_and_found};
+use grainbench_scene::error::did_you_mean;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
-use grainbench_scene::text::{line_of, written};
+use grainbench_scene::text::written;
+use grainbench_scene::toml_error::TomlError;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
@@ -121,9 +122,8 @@ impl Sweep {
         let input_fault = |(expected, found): (&'static str, String)| Fault::in_file(path, expected, found);
         let text = written(path).map_err(input_fault)?;
         let file: File = toml::from_str(&text).map_err(|error| {
-            let place = format!("{}:{}", path.display(), line_of(&text, &error).unwrap_or(1));
-            let (expected, found) = expected_and_found(error.message());
-            Fault::expected(place, &expected, found)
+            let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
+            Fault::expected(format!("{}:{line}", path.display()), &expected, found)
         })?;
         let wrong = |key: &str, expected: &str, found: String| {
             Fault::expected(format!("{}: {key}", path.display()), expected, found)

@@ -4,9 +4,9 @@ use crate::names::Names;
 use crate::read::read_error::{one_line, quoted};
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::effect::Effect;
-use grainbench_scene::error::expected_and_found;
 use grainbench_scene::material::ConstitutiveKind;
-use grainbench_scene::text::{line_of, written};
+use grainbench_scene::text::written;
+use grainbench_scene::toml_error::TomlError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
@@ -230,9 +230,8 @@ impl Manifest {
         };
         let text = written(path).map_err(|(expected, found)| error("", expected, found))?;
         let wrong = |reason: toml::de::Error| {
-            let place = line_of(&text, &reason).map(|line| format!("line {line}")).unwrap_or_default();
-            let (expected, found) = expected_and_found(reason.message());
-            error(&place, &expected, one_line(&found))
+            let TomlError { line, expected, found, .. } = TomlError::new(&text, &reason);
+            error(&format!("line {line}"), &expected, one_line(&found))
         };
         let manifest: Self = toml::from_str(&text).map_err(wrong)?;
         manifest.check().map_err(|(place, expected, found)| error(place, &expected, found))?;

@@ -29,6 +29,27 @@ pub(crate) struct Accounts {
     forces: Vec<Vector3<f64>>,
 }
 
+/// Energy budget of a run.
+pub(crate) struct EnergyBudget {
+    /// True if the energy budget is requested.
+    pub(crate) is_requested: bool,
+    pub(crate) accounts: Accounts,
+    /// Mass of the grains without prescribed motion (kg).
+    pub(crate) free_mass: f64,
+}
+
+impl EnergyBudget {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let groups = scene.driven_group_of_grains();
+        let free = scene.grains.iter().zip(groups).filter(|(_, group)| group.is_none());
+        Self {
+            is_requested: scene.asks_for_budget(),
+            accounts: Accounts::default(),
+            free_mass: free.map(|(grain, _)| grain.mass).sum(),
+        }
+    }
+}
+
 /// Returns the reason why the energy budget of a scene cannot be computed; `None` if it can.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let effects = Effects::from_scene(scene);

@@ -3,8 +3,8 @@
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
 use crate::walls::MovingWall;
-use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
-use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
+use grainbench_scene::contact_law::ContactLaw;
+use grainbench_solver::failure::{Cause, SimulationFailure};
 
 /// Contact whose critical time step is checked.
 struct CheckedContact<'a> {
@@ -20,19 +20,11 @@ struct CheckedContact<'a> {
 }
 
 impl<S: Geometry> DemSimulation<S> {
-    /// Enables checks of contacts against the time step during the run, unless unstable steps are allowed. They are
-    /// needed only if the stiffness of contacts depends on the overlap (Hertz), or if the time step already exceeds the
-    /// critical time step of the scene.
-    pub(crate) fn follow_critical_step(&mut self, allow_unstable: bool) {
-        let curved = self.scene.laws.iter().flatten().any(|law| law.springs.kind() == SpringsKind::HertzMindlin);
-        self.follows_critical = !allow_unstable && (curved || self.motion.time_step > self.critical);
-    }
-
     /// Returns an error if the critical time step 2√(m/k) of a contact is below the time step. m is the smaller mass of
     /// the two bodies. k is the normal or the tangential stiffness, whichever is larger.
     pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<SimulationFailure>> {
         let grains = &self.grains;
-        for share in &self.neighbours.shares {
+        for share in &self.neighbours.list.shares {
             for pairs in [&share.across, &share.near] {
                 for at in pairs.own() {
                     let [one, other] = [pairs.row[at], pairs.partner[at]].map(|slot| slot as usize);
@@ -80,18 +72,9 @@ impl<S: Geometry> DemSimulation<S> {
             return Ok(());
         }
         let critical = 2.0 / (stiffness * look.inverse_mass).sqrt();
-        Err(Box::new(SimulationFailure {
-            time: self.time(),
-            step: self.step,
-            subject: FailedParticle::Grain(self.grains.id[look.slot] + 1),
-            position: self.grains.position(look.slot),
-            cause: Cause::StiffContact { stiffness },
-            time_step,
-            critical,
-            advice: format!(
-                "a step of at most {:.4e} s, a tenth of the critical one, resolves the contact",
-                0.1 * critical
-            ),
-        }))
+        let tenth = 0.1 * critical;
+        let advice = format!("a step of at most {tenth:.4e} s, a tenth of the critical one, resolves the contact");
+        let position = self.grains.position(look.slot);
+        Err(self.failure(look.slot, position, Cause::StiffContact { stiffness }, critical, advice))
     }
 }

@@ -3,6 +3,7 @@
 
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
+use crate::walls::MovingWall;
 use grainbench_scene::end_state::EndState;
 use grainbench_solver::brief::Brief;
 use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
@@ -57,7 +58,8 @@ impl<S: Geometry> Simulation for DemSimulation<S> {
     }
 
     fn forget_history(&mut self) {
-        self.forget();
+        self.neighbours.list.forget();
+        self.walls.iter_mut().for_each(MovingWall::forget);
     }
 
     fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
@@ -69,7 +71,7 @@ impl<S: Geometry> Simulation for DemSimulation<S> {
     }
 
     fn layout(&self) -> &'static str {
-        self.forces.words()
+        self.model.loops.words()
     }
 
     fn counts(&self) -> Counts {
@@ -89,11 +91,11 @@ impl<S: Geometry> Simulation for DemSimulation<S> {
     }
 
     fn rows(&self) -> u64 {
-        Self::rows(self)
+        self.recording.rows(self.grains.len())
     }
 
     fn shows(&self, most_rows: u64) -> bool {
-        Self::shows(self, most_rows)
+        self.recording.one_by_one && self.rows() <= most_rows
     }
 
     fn brief(&self) -> Brief {
@@ -102,7 +104,7 @@ impl<S: Geometry> Simulation for DemSimulation<S> {
 
     fn look_for_snapshot(&mut self) -> StepState {
         let mut look = crate::observe::look(self);
-        if let Some(mean) = &mut self.mean_virial {
+        if let Some(mean) = &mut self.recording.mean_virial {
             mean.tell(&mut look.snapshot.grains);
         }
         look

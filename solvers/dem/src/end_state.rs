@@ -28,10 +28,10 @@ impl<S: Geometry> DemSimulation<S> {
         let states: Vec<_> = grain_states(self).collect();
         let place: BTreeMap<u32, u32> = states.iter().map(|grain| grain.id - 1).zip(0..).collect();
         let of_slot = |slot: u32| place[&self.grains.id[slot as usize]];
-        let numbers = self.forces.layout().numbers;
-        let pairs = self.neighbours.shares.iter().flat_map(|share| [&share.across, &share.near]);
+        let numbers = self.model.loops.layout().numbers;
+        let pairs = self.neighbours.list.shares.iter().flat_map(|share| [&share.across, &share.near]);
         let mut springs = Springs {
-            layout: words(self.forces.springs()),
+            layout: words(self.model.loops.springs()),
             pairs: pairs
                 .flat_map(Pairs::remembered)
                 .map(|(row, partner, memory)| (of_slot(row), of_slot(partner), memory[..numbers].to_vec()))
@@ -65,7 +65,7 @@ impl<S: Geometry> DemSimulation<S> {
         EndState {
             of: [scene.title.clone(), solver.to_owned()],
             dimension: scene.dimension.count(),
-            time: self.step as f64 * self.motion.time_step,
+            time: self.time(),
             materials: scene.materials.clone(),
             grains: states.iter().map(grain).collect(),
             springs,
@@ -87,11 +87,11 @@ impl<S: Geometry> DemSimulation<S> {
             .iter()
             .filter_map(|(first, second, numbers)| Some((slot(*first)?, slot(*second)?, memory(numbers))))
             .collect();
-        let layout = self.forces.layout();
+        let layout = self.model.loops.layout();
         if layout.numbers > 0 {
             let mut whole = ThreadPartition::new(0..count);
             whole.near = Pairs::remembering(count, layout, &pairs);
-            self.neighbours.shares = vec![whole];
+            self.neighbours.list.shares = vec![whole];
         }
         for (grain, name, numbers) in &springs.walls {
             let (name, part) =

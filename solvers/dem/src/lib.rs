@@ -28,6 +28,7 @@ mod observe;
 mod pairs;
 #[cfg(test)]
 mod processors;
+mod recording;
 mod seen;
 mod share;
 mod simulation;

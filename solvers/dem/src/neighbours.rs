@@ -12,11 +12,16 @@ use crate::geometry::{Geometry, Linear};
 use crate::grains::Grains;
 use crate::listed::Pairs;
 use crate::share::{ThreadPartition, rows_of};
+use crate::skin;
 use grainbench_lanes::{Quad, Team};
-use grainbench_scene::scene::Domain;
+use grainbench_scene::scene::{Domain, Driven, Scene};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
+
+/// Radius above which a grain has no cell in the search grid, in mean radii. Cells as large as such a grain would contain
+/// hundreds of other grains.
+const FAR_LARGER: f64 = 4.0;
 
 /// Neighbour list of all grains, divided into thread partitions.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -125,6 +130,79 @@ impl Neighbours {
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.shares.iter_mut().for_each(ThreadPartition::forget);
+    }
+}
+
+/// Neighbour list of a simulation, with the displacements since the list was built.
+pub(crate) struct NeighbourSearch {
+    pub(crate) list: Neighbours,
+    /// Largest radius of a grain (m).
+    largest_radius: f64,
+    /// Mean radius of the grains (m).
+    mean_radius: f64,
+    /// Largest prescribed speed of a group of grains (m/s).
+    driven_speed: f64,
+    /// Upper bound of the displacement of any grain since the list was built (m).
+    pub(crate) travelled: f64,
+    /// Upper bound of the distance from any wall's centre of rotation to any grain (m).
+    pub(crate) extent: f64,
+}
+
+impl NeighbourSearch {
+    /// Creates an empty list for the grains of a scene.
+    pub(crate) fn new(scene: &Scene) -> Self {
+        let radii = || scene.grains.iter().map(|grain| grain.radius);
+        let mean_radius = radii().sum::<f64>() / scene.grains.len() as f64;
+        Self {
+            list: Neighbours::new(skin::first(mean_radius)),
+            largest_radius: radii().fold(0.0, f64::max),
+            mean_radius,
+            driven_speed: scene.driven.iter().map(Driven::fastest).fold(0.0, f64::max),
+            travelled: 0.0,
+            extent: 0.0,
+        }
+    }
+
+    /// Resets the bounds after a build at a step. `distance` is the largest distance from any wall's centre of rotation
+    /// to the centre of any grain (m).
+    pub(crate) fn begin(&mut self, distance: f64, step: u64) {
+        self.extent = distance + (self.largest_radius + self.list.skin);
+        self.travelled = 0.0;
+        self.list.built_at = step;
+    }
+
+    /// Adds the displacement of one step to the upper bound `travelled`. `fastest` is the square of the largest speed
+    /// (m²/s²).
+    pub(crate) fn travel(&mut self, fastest: f64, time_step: f64) {
+        self.travelled += fastest.sqrt().max(self.driven_speed) * time_step;
+    }
+
+    /// Returns true if a grain, or a wall that has moved by `walls_moved` (m), may have moved by half of the skin.
+    pub(crate) fn is_worn_out<S: Geometry>(&mut self, grains: &Grains<S>, walls_moved: f64) -> bool {
+        let half_skin = 0.5 * self.list.skin;
+        if self.travelled > half_skin {
+            self.travelled = self.list.farthest(grains);
+        }
+        self.travelled.max(walls_moved) > half_skin
+    }
+
+    /// Adjusts the skin by the cost model of [`crate::skin`], from the number of pairs and the number of steps since the
+    /// neighbour list was built.
+    pub(crate) fn fit_skin(&mut self, step: u64, grains: usize, dimension: usize) {
+        let steps = (step - self.list.built_at).max(1);
+        let counts = [self.list.pairs() as f64, grains as f64, steps as f64];
+        self.list.skin = skin::next(self.list.skin, self.mean_radius, counts, dimension);
+    }
+
+    /// Returns two radii (m): the largest radius of a grain with a cell in the search grid, and the radius above which
+    /// grains have no cell. With a periodic axis, all grains have cells.
+    pub(crate) fn radii_of_cells(&self, scene: &Scene) -> [f64; 2] {
+        let limit = if scene.is_periodic() { f64::MAX } else { FAR_LARGER * self.mean_radius };
+        if self.largest_radius <= limit {
+            return [self.largest_radius, f64::MAX];
+        }
+        let radii = scene.grains.iter().map(|grain| grain.radius);
+        [radii.filter(|radius| *radius <= limit).fold(0.0, f64::max), limit]
     }
 }
 

@@ -1,5 +1,6 @@
 //! Output of a simulation at a step: grains with their velocities at the time of the positions, contacts, walls and energies.
 
+use crate::accounts::EnergyBudget;
 use crate::geometry::Geometry;
 use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
@@ -12,12 +13,15 @@ use nalgebra::Vector3;
 /// Returns the state at this step: grains, contacts, walls and energies. It moves out the recorded contacts, so a
 /// second call at the same step returns none.
 pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState {
-    let touching = simulation.touching();
-    let contacts = simulation.take_contacts();
+    let DemSimulation { recording, neighbours, step, .. } = simulation;
+    let touching = recording.touching(*step, &neighbours.list.shares);
+    let contacts = recording.take_contacts(*step, &mut neighbours.list.shares);
     let (simulation, scene) = (&*simulation, &simulation.scene);
     let grains: Vec<GrainState> = grain_states(simulation).collect();
-    let elastic_energy = simulation.energies().map(|energies| energies.elastic).sum();
-    let budget = simulation.accounting.then(|| simulation.accounts.budget(scene, &grains, elastic_energy));
+    let energies = simulation.recording.energies(&simulation.neighbours.list.shares);
+    let elastic_energy = energies.map(|energies| energies.elastic).sum();
+    let EnergyBudget { is_requested, accounts, .. } = &simulation.budget;
+    let budget = is_requested.then(|| accounts.budget(scene, &grains, elastic_energy));
     let walls = simulation
         .walls
         .iter()
@@ -28,7 +32,7 @@ pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState 
         .collect();
     let snapshot = Snapshot {
         step: simulation.step,
-        time: simulation.step as f64 * simulation.motion.time_step,
+        time: simulation.time(),
         bounds: record::bounds(scene, &grains),
         periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
         grains,
@@ -47,7 +51,8 @@ pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState 
 
 /// Summarises the state at this step.
 pub(crate) fn brief<S: Geometry>(simulation: &DemSimulation<S>) -> Brief {
-    Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), simulation.touching())
+    let touching = simulation.recording.touching(simulation.step, &simulation.neighbours.list.shares);
+    Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), touching)
 }
 
 /// Returns the grains that are present, sorted by id.

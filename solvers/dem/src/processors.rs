@@ -54,18 +54,20 @@ fn scene(dimension: usize) -> Scene {
 
 /// Returns the state after 300 steps and the recorded contacts, as text.
 fn state<S: Geometry>(mut simulation: DemSimulation<S>, path: Processor) -> String {
-    simulation.processor = path;
-    simulation.fewest_in_a_share = 5;
+    simulation.model.processor = path;
+    simulation.threads.fewest = 5;
     simulation.take_cycles(300).unwrap_or_else(|error| panic!("{error:?}"));
-    assert_eq!(simulation.neighbours.shares.len(), simulation.shares(), "lists were made anew on the way");
-    let listed = simulation.neighbours.in_shares(1);
+    let partitions = simulation.threads.partitions(simulation.grains.len());
+    assert_eq!(simulation.neighbours.list.shares.len(), partitions, "lists were made anew on the way");
+    let listed = simulation.neighbours.list.in_shares(1);
     let touched: u32 = listed.shares[0].near.touches.iter().map(|bits| bits.count_ones()).sum();
     let across: u32 = listed.shares[0].across.touches.iter().map(|bits| bits.count_ones()).sum();
     assert!(touched == 0 || (touched > 10 && across > 0), "{touched} pairs touch, {across} across a face");
-    let contacts = simulation.take_contacts();
-    let energies: Vec<_> = simulation.energies().collect();
+    let DemSimulation { grains, recording, neighbours, step, cost, .. } = &mut simulation;
+    let contacts = recording.take_contacts(*step, &mut neighbours.list.shares);
+    let energies: Vec<_> = recording.energies(&neighbours.list.shares).collect();
     assert!(contacts.as_ref().is_some_and(|contacts| contacts.len() == energies.len()));
-    format!("{:?} {listed:?} {contacts:?} {energies:?} {:?}", simulation.grains, simulation.cost)
+    format!("{grains:?} {listed:?} {contacts:?} {energies:?} {cost:?}")
 }
 
 /// Returns the name and two contact laws for every combination of effects. The second law has neither rolling
@@ -152,7 +154,7 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
             let mut simulation =
                 simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
             (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
-            format!("{:?} {:?}", simulation.grains, simulation.neighbours.shares[0].near.memory)
+            format!("{:?} {:?}", simulation.grains, simulation.neighbours.list.shares[0].near.memory)
         };
         assert!(end(60) == end(1), "{name}");
     }
@@ -177,7 +179,7 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     let scene = ball_under_beads();
     let end = |at_once: u64, team: Team| {
         let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), team);
-        simulation.fewest_in_a_share = 5;
+        simulation.threads.fewest = 5;
         (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
         let ball = simulation.grains.slot[0] as usize;
         assert!(simulation.grains.force(ball).z < -1e3, "the ball is held back");
@@ -193,10 +195,10 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
 fn whatever_touches_is_listed_while_the_skin_widens() {
     let scene = ball_under_beads();
     let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
-    let first = simulation.neighbours.skin;
+    let first = simulation.neighbours.list.skin;
     for _ in 0..8 {
         simulation.take_cycles(100).expect("it goes on");
-        let (grains, near) = (&simulation.grains, &simulation.neighbours.shares[0].near);
+        let (grains, near) = (&simulation.grains, &simulation.neighbours.list.shares[0].near);
         let listed: std::collections::BTreeSet<(u32, u32)> =
             near.own().map(|at| (near.row[at].min(near.partner[at]), near.row[at].max(near.partner[at]))).collect();
         for a in 0..grains.len() {
@@ -206,7 +208,7 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
             }
         }
     }
-    assert!(simulation.neighbours.skin > first, "the skin has widened");
+    assert!(simulation.neighbours.list.skin > first, "the skin has widened");
 }
 
 /// A checkpoint is rejected if the radius stored beside a spin differs from the radius of the grain. The stored radius is

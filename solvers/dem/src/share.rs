@@ -6,19 +6,36 @@
 //! depend on the number of partitions.
 
 use crate::contact::chain::Layout;
+use crate::contact::options::Options;
 use crate::forces::Forces;
 use crate::geometry::Geometry;
 use crate::grains::{GrainTables, Sums};
+use crate::laws::Laws;
 use crate::listed::{BLOCK, Pairs};
 use crate::seen::RecordedContacts;
 use crate::terms::Terms;
 use crate::touching::{ContactList, blocks};
-use grainbench_lanes::Processor;
+use grainbench_lanes::{Processor, Team};
+use grainbench_scene::scene::Scene;
 use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// Smallest number of grains in a partition. With fewer grains, threads wait for each other longer than they work.
 pub(crate) const FEWEST: usize = 500;
+
+/// Threads of a run.
+pub(crate) struct Threads {
+    pub(crate) team: Team,
+    /// Smallest number of grains in a partition.
+    pub(crate) fewest: usize,
+}
+
+impl Threads {
+    /// Returns the number of partitions for `grains` grains: one per thread, or fewer for few grains.
+    pub(crate) fn partitions(&self, grains: usize) -> usize {
+        self.team.members().min(grains / self.fewest).max(1)
+    }
+}
 
 /// Part of the neighbour list that one thread processes.
 #[derive(Clone, Debug, Serialize, Deserialize)]
@@ -45,6 +62,26 @@ struct Work {
     /// History index of each pair in the previous list. The first list is for pairs across a periodic face, the second
     /// for all others.
     places: [Vec<u32>; 2],
+}
+
+/// Contact laws of a scene with the options of the convention, and the loops over contacts compiled for them.
+pub(crate) struct ContactModel<S: Geometry> {
+    laws: Laws,
+    options: Options,
+    pub(crate) loops: Box<dyn Forces<S>>,
+    /// Instruction set of the loops over contacts.
+    pub(crate) processor: Processor,
+}
+
+impl<S: Geometry> ContactModel<S> {
+    pub(crate) fn new(scene: &Scene, loops: Box<dyn Forces<S>>, options: Options) -> Self {
+        Self { laws: Laws::new(scene, &options), options, loops, processor: Processor::new() }
+    }
+
+    /// Returns the parameters of an evaluation at a time `elapsed` (s) after the last one.
+    pub(crate) fn terms(&self, elapsed: f64) -> Terms<'_> {
+        Terms { laws: &self.laws, options: &self.options, elapsed }
+    }
 }
 
 /// Parameters of a force evaluation.

@@ -156,7 +156,7 @@ impl Dem {
         }
         let mut simulated =
             DemSimulation::new(scene, forces, Options::from_convention(&self.convention), time_step, team)?;
-        simulated.follow_critical_step(self.allow_unstable);
+        simulated.critical.follow_contacts(scene, time_step, self.allow_unstable);
         Ok(Box::new(simulated))
     }
 

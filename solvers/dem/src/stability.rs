@@ -3,9 +3,53 @@
 use crate::contact::options::Options;
 use crate::convention::Convention;
 use crate::laws::damping_ratio;
-use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Scene;
+
+/// Number of steps between two checks of the contact stiffness. At a tenth of the critical time step, a collision takes
+/// about thirty steps. A check costs about as much as a step.
+const STEPS_BETWEEN_LOOKS: u64 = 32;
+
+/// Critical time step of a scene.
+pub(crate) struct CriticalStep {
+    /// Critical time step 2√(m_min/k_max) of the scene (s).
+    pub(crate) time_step: f64,
+    /// True if the stiffness of contacts is checked against the time step.
+    follows_contacts: bool,
+}
+
+impl CriticalStep {
+    pub(crate) fn new(scene: &Scene) -> Self {
+        Self { time_step: scene.critical_time_step(), follows_contacts: false }
+    }
+
+    /// Enables checks of contacts against the time step (s) during the run, unless unstable steps are allowed. They are
+    /// needed only if the stiffness of contacts depends on the overlap (Hertz), or if the time step already exceeds the
+    /// critical time step of the scene.
+    pub(crate) fn follow_contacts(&mut self, scene: &Scene, time_step: f64, allow_unstable: bool) {
+        let curved = scene.laws.iter().flatten().any(|law| law.springs.kind() == SpringsKind::HertzMindlin);
+        self.follows_contacts = !allow_unstable && (curved || time_step > self.time_step);
+    }
+
+    /// Returns true if contacts are checked after this step.
+    pub(crate) const fn is_checked_at(&self, step: u64) -> bool {
+        self.follows_contacts && step % STEPS_BETWEEN_LOOKS == 1
+    }
+
+    /// Returns the advice for a run with this time step (s) that has failed.
+    pub(crate) fn advice(&self, scene: &Scene, time_step: f64) -> String {
+        let stable = stable_fraction(scene);
+        if time_step / self.time_step > stable {
+            let longest = stable * self.time_step;
+            return format!(
+                "{stable:.3} of the critical time step ({longest:.4e} s) is stable for any packing of equal grains"
+            );
+        }
+        "the time step is stable for any packing of equal grains: check velocities, wall motion and initial overlaps"
+            .to_owned()
+    }
+}
 
 /// Returns a fraction f of the critical step `2√(m/k_n)` at which every packing of equal grains is stable.
 ///

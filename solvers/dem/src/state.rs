@@ -36,14 +36,14 @@ impl<S: Geometry> DemSimulation<S> {
     pub(crate) fn kept(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
         let state = State::<S> {
             grains: self.grains.clone(),
-            neighbours: self.neighbours.in_shares(1),
+            neighbours: self.neighbours.list.in_shares(1),
             walls: self.walls.iter().map(|wall| wall.memory()).collect(),
             step: self.step,
-            extent: self.extent,
+            extent: self.neighbours.extent,
             cost: self.cost,
-            accounts: self.accounts.clone(),
+            accounts: self.budget.accounts.clone(),
             entered: self.entered,
-            mean_virial: self.mean_virial.clone(),
+            mean_virial: self.recording.mean_virial.clone(),
             recorder: recorder.clone(),
         };
         Checkpoint::keep(identity, self.step, &state)
@@ -57,14 +57,14 @@ impl<S: Geometry> DemSimulation<S> {
     ) -> Result<Recorder, CheckpointError> {
         let state: State<S> = checkpoint.state(identity)?;
         let count = state.grains.len();
-        let same_mean = match (&state.mean_virial, &self.mean_virial) {
+        let same_mean = match (&state.mean_virial, &self.recording.mean_virial) {
             (Some(state), Some(own)) => state.is_of(own),
             (state, own) => state.is_none() && own.is_none(),
         };
         let same = same_mean
-            && state.grains.is_of(&self.scene, self.forces.turn())
+            && state.grains.is_of(&self.scene, self.model.loops.turn())
             && state.entered <= self.scene.stays.entries.len()
-            && state.neighbours.is_of(count, self.forces.layout())
+            && state.neighbours.is_of(count, self.model.loops.layout())
             && state.walls.len() == self.walls.len()
             && state.walls.iter().zip(&self.walls).all(|(memory, wall)| memory.is_of(count, wall));
         if !same {
@@ -75,16 +75,16 @@ impl<S: Geometry> DemSimulation<S> {
             return Err(CheckpointError::Damaged("it has a number that is not finite".to_owned()));
         }
         self.grains = state.grains;
-        self.neighbours = state.neighbours.in_shares(self.shares());
+        self.neighbours.list = state.neighbours.in_shares(self.threads.partitions(count));
         self.walls.iter_mut().zip(state.walls).for_each(|(wall, memory)| wall.recall(memory));
         self.step = state.step;
         // The displacement bound is not stored. Infinity makes the next cycle compute it.
-        self.travelled = f64::INFINITY;
-        self.extent = state.extent;
+        self.neighbours.travelled = f64::INFINITY;
+        self.neighbours.extent = state.extent;
         self.cost = state.cost;
-        self.accounts = state.accounts;
+        self.budget.accounts = state.accounts;
         self.entered = state.entered;
-        self.mean_virial = state.mean_virial;
+        self.recording.mean_virial = state.mean_virial;
         Ok(state.recorder)
     }
 }

@@ -3,11 +3,11 @@
 //! The order of points is stored, because the last bit of sums at nodes depends on it. Tracer positions and tangential
 //! spring displacements are stored too. Nodes, windows, pairs and planes are recomputed in each step.
 
-use crate::accounts::{Accounts, Sums};
 use crate::contact::friction::Friction;
-use crate::guard::EnergyGuard;
-use crate::ledger::Tally;
-use crate::points::Points;
+use crate::energy::accounts::{Accounts, Sums};
+use crate::energy::guard::EnergyGuard;
+use crate::energy::ledger::Tally;
+use crate::points::arrays::Points;
 use crate::simulation::Simulation;
 use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
 use grainbench_solver::finite::is_finite;

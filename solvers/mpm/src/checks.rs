@@ -2,12 +2,12 @@
 //! compares the energy of a closed run with its initial energy. The initial overlaps of bodies are checked once, in the
 //! first step.
 
-use crate::body::Body;
 use crate::contact::ContactPartner;
+use crate::energy::guard::EnergyGuard;
 use crate::failure::Failure;
-use crate::guard::EnergyGuard;
 use crate::material::{Law, with_law};
 use crate::options::Contact;
+use crate::points::body::Body;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::{Cause, SimulationFailure};

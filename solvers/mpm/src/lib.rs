@@ -9,8 +9,8 @@
 //! 4. velocity gradients give deformation and stress (MUSL: from velocities that points scatter to the nodes again).
 //!
 //! Each part of a simulation has its own type, and each stage of the cycle (`simulation`) uses the parts that it needs:
-//! bodies and points (`state`), the grid (`grid`, `nodes`), prescribed motion (`boundary`), surfaces and contact
-//! (`contacts`) and the energy budget (`accounts`). The sums over points and nodes are in `scatter` and `gather`.
+//! bodies and points (`points`), the grid (`grid`), prescribed motion (`boundary`), surfaces (`surface`), contact
+//! (`contact`), materials (`material`) and energies (`energy`). The sums over points and nodes are in `transfer`.
 //!
 //! Type parameters select space, basis, transfer and material, each only in the loops over points that need it. An enum
 //! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Types also
@@ -18,48 +18,27 @@
 //! [`off::AbsentEffect`] instead, which needs no memory. The affine part of velocities is stored only if the transfer
 //! uses it.
 
-mod accounts;
-mod basis;
-mod bodies;
-mod body;
 mod boundary;
 mod checkpoint;
 mod checks;
 mod contact;
-mod contacts;
-mod damping;
-mod driven;
+mod energy;
 mod failure;
-mod gather;
-mod gradients;
 mod grid;
-mod guard;
-mod held;
-mod ledger;
 mod limits;
 pub mod material;
-mod nodes;
 mod observe;
 pub mod off;
 pub mod options;
-mod patch;
 mod points;
 #[cfg(test)]
 mod processors;
-mod runs;
-mod scatter;
 mod scheme;
-pub mod seed;
-mod share;
 mod simulation;
 pub mod solver;
 mod start;
-mod state;
-mod stress;
-mod stress_at_start;
 mod surface;
 mod terms;
 mod transfer;
 #[cfg(test)]
 mod trial;
-mod walls;

@@ -25,7 +25,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
             scene.materials[usize::from(material)]
         ));
     }
-    if let Some(refusal) = crate::stress_at_start::refusal(scene) {
+    if let Some(refusal) = crate::points::stress_at_start::refusal(scene) {
         return Some(refusal);
     }
     if let Some((name, axis)) = longer_than_period(scene) {
@@ -48,7 +48,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     if scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0) {
         return Some("rolling resistance comes from the deformation of grains here, not from a coefficient".to_owned());
     }
-    if let Some(reason) = crate::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
+    if let Some(reason) = crate::energy::accounts::reason(scene).filter(|_| scene.asks_for_budget()) {
         return Some(reason);
     }
     if scene.driven.iter().any(|driven| driven.spin != nalgebra::Vector3::zeros()) {

@@ -1,10 +1,10 @@
 //! Output of a simulation at a step: bodies, contacts, material points and energies.
 
-use crate::body::Body;
 use crate::contact::{ContactPartner, ContactPoint};
+use crate::material::stress::embed_deformation;
 use crate::material::{self, Law, with_law};
+use crate::points::body::Body;
 use crate::simulation::Simulation;
-use crate::stress::embed_deformation;
 use grainbench_scene::scene::{BodyName, WallShape};
 use grainbench_solver::budget::Budget;
 use grainbench_solver::record::{

@@ -2,27 +2,28 @@
 //!
 //! Each stage uses only the parts that it needs: the state of bodies and points ([`State`]), the grid ([`Grid`]),
 //! boundaries ([`Boundary`]), contact ([`Contacts`]) and the energy budget ([`Accounts`]). The sums over points and
-//! nodes are in [`crate::scatter`] and [`crate::gather`].
+//! nodes are in [`crate::transfer::scatter`] and [`crate::transfer::gather`].
 
-use crate::accounts::Accounts;
-use crate::basis::{Basis, with_basis};
-use crate::bodies::seed;
 use crate::boundary::Boundary;
-use crate::contacts::{ContactRequest, Contacts};
-use crate::damping::Damping;
+use crate::contact::stages::{ContactRequest, Contacts};
+use crate::energy::accounts::Accounts;
+use crate::energy::guard::EnergyGuard;
+use crate::energy::ledger::Tally;
 use crate::failure::Failure;
-use crate::gather::gather;
-use crate::grid::Lattice;
-use crate::guard::EnergyGuard;
-use crate::ledger::Tally;
-use crate::nodes::{Grid, Velocities};
+use crate::grid::basis::{Basis, with_basis};
+use crate::grid::damping::Damping;
+use crate::grid::lattice::Lattice;
+use crate::grid::nodes::{Grid, Velocities};
+use crate::material::stress;
 use crate::options::Setting;
-use crate::points::PointsMut;
-use crate::scatter::scatter;
+use crate::points::arrays::PointsMut;
+use crate::points::bodies::seed;
+use crate::points::share::{FEWEST, LargestDisplacement, ThreadPartition, cut_nodes};
+use crate::points::state::State;
 use crate::scheme::{Scheme, Surroundings};
-use crate::share::{FEWEST, LargestDisplacement, ThreadPartition, cut_nodes};
-use crate::state::State;
-use crate::{stress, transfer};
+use crate::transfer::gather::gather;
+use crate::transfer::scatter::scatter;
+use crate::transfer::schemes;
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::SimulationFailure;
@@ -199,7 +200,7 @@ impl<S: Space> Simulation<S> {
         nodes[..*used].iter_mut().for_each(|node| node.change = S::ORIGIN);
         for body in &state.bodies {
             let points = &state.points;
-            with_basis!(scheme.setting.basis, B => transfer::scatter_force::<S, B>(lattice, &body.part, points, nodes));
+            with_basis!(scheme.setting.basis, B => schemes::scatter_force::<S, B>(lattice, &body.part, points, nodes));
         }
         Ok(())
     }
@@ -221,7 +222,7 @@ impl<S: Space> Simulation<S> {
             let force =
                 |at: usize| S::restrict(motion.body_force(&medium, S::embed(points.start[at]), time)) * points.mass[at];
             with_basis!(scheme.setting.basis, B => {
-                transfer::scatter_body_force::<S, B>(&grid.lattice, &body.part, points, force, &mut grid.nodes);
+                schemes::scatter_body_force::<S, B>(&grid.lattice, &body.part, points, force, &mut grid.nodes);
             });
         }
     }

@@ -1,6 +1,6 @@
 //! Material point method as a solver, with named settings, the time step, and the record of a run.
 
-use crate::grid::Lattice;
+use crate::grid::lattice::Lattice;
 use crate::limits;
 use crate::options::{Contact, Setting};
 use crate::simulation::Simulation;

@@ -1,12 +1,13 @@
 //! Start of a run: initial stress, relaxation and initial velocities.
 
-use crate::basis::with_basis;
 use crate::failure::Failure;
-use crate::nodes::Grid;
+use crate::grid::basis::with_basis;
+use crate::grid::nodes::Grid;
+use crate::points::state::State;
+use crate::points::stress_at_start;
 use crate::scheme::Surroundings;
 use crate::simulation::Simulation;
-use crate::state::State;
-use crate::{stress_at_start, transfer};
+use crate::transfer::schemes;
 use grainbench_solver::failure::SimulationFailure;
 use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
@@ -124,7 +125,7 @@ impl<S: Space> Simulation<S> {
         let Grid { lattice, nodes, .. } = grid;
         for body in &state.bodies {
             with_basis!(scheme.setting.basis, B => {
-                transfer::gather_changes::<S, B>(lattice, &body.part, &state.points, nodes, &mut accelerations);
+                schemes::gather_changes::<S, B>(lattice, &body.part, &state.points, nodes, &mut accelerations);
             });
         }
         Ok(accelerations)

@@ -29,37 +29,8 @@ fn key_prefix(key: &str) -> String {
     if key.is_empty() { String::new() } else { format!("{key}: ") }
 }
 
-fn help_suffix(help: Option<&str>) -> String {
+pub(crate) fn help_suffix(help: Option<&str>) -> String {
     help.map(|help| format!(" ({help})")).unwrap_or_default()
-}
-
-/// Converts an error message of the TOML reader to the expected and the found content.
-#[must_use]
-pub fn expected_and_found(message: &str) -> (String, String) {
-    let quoted: Vec<&str> = message.split('`').skip(1).step_by(2).collect();
-    let word = quoted.first().copied().unwrap_or_default();
-    let unknown = |kind: &str| {
-        let known = quoted.get(1..).unwrap_or_default();
-        let help = did_you_mean(word, known.iter().copied());
-        (format!("{kind} {}", known.join(", ")), format!("`{word}`{}", help_suffix(help.as_deref())))
-    };
-    if message.starts_with("unknown field") {
-        unknown("one of the keys")
-    } else if message.starts_with("unknown variant") {
-        unknown("one of")
-    } else if message.starts_with("missing field") {
-        (format!("the key `{word}`"), "none".to_owned())
-    } else if let Some((found, expected)) = message.trim().split_once("expected ") {
-        let found = found.trim_start_matches("invalid type: ").trim_start_matches("invalid value: ");
-        let expected = match expected {
-            "f64" => "a number",
-            "u8" | "u32" | "u64" | "usize" => "a whole number",
-            other => other,
-        };
-        (expected.to_owned(), found.trim_end().trim_end_matches(',').to_owned())
-    } else {
-        ("TOML".to_owned(), message.replace('\n', ", "))
-    }
 }
 
 /// Returns `did you mean …?` for a mistyped word if a known word is close to it.

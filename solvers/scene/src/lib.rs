@@ -37,6 +37,7 @@ pub mod source;
 mod state_file;
 pub mod stays;
 pub mod text;
+pub mod toml_error;
 
 /// Vector and matrix types of scenes and of records, re-exported for authors of solvers.
 pub use nalgebra;

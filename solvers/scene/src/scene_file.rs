@@ -1,10 +1,11 @@
 //! Reading of a scene file: text from the disk, and its keys as typed values.
 
 use crate::dimension::Dimension;
-use crate::error::{SceneError, expected_and_found};
+use crate::error::SceneError;
 use crate::file::SceneFile;
 use crate::shape;
 use crate::source::{SceneSource, describe, line_of, value_at, variant_names};
+use crate::toml_error::expected_and_found;
 use std::path::Path;
 
 impl SceneSource {

@@ -1,6 +1,7 @@
 //! Text of a scene file: parsing, variants, overrides, and line numbers of keys.
 
-use crate::error::{SceneError, did_you_mean, expected_and_found};
+use crate::error::{SceneError, did_you_mean};
+use crate::toml_error::TomlError;
 use std::path::{Path, PathBuf};
 use std::sync::{Arc, OnceLock};
 
@@ -126,17 +127,9 @@ impl SceneSource {
             return Ok(table);
         }
         let table = self.text.parse::<toml::Table>().map_err(|error| {
-            let line = error.span().map_or(1, |span| line_of(&self.text, span.start));
-            let there = error.span().and_then(|span| self.text.get(span)).map(str::trim).unwrap_or_default();
-            let at = if there.is_empty() { String::new() } else { format!(" at `{}`", shortened(there)) };
-            let (expected, found) = expected_and_found(error.message());
-            SceneError {
-                place: format!("{}:{line}", self.name),
-                key: String::new(),
-                expected,
-                found: found + &at,
-                help: None,
-            }
+            let TomlError { line, column, expected, found } = TomlError::new(&self.text, &error);
+            let place = format!("{}:{line}:{column}", self.name);
+            SceneError { place, key: String::new(), expected, found, help: None }
         })?;
         Ok(self.read.get_or_init(|| table))
     }

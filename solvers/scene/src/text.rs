@@ -23,12 +23,6 @@ pub fn written(path: &Path) -> Result<String, (&'static str, String)> {
     String::from_utf8(text).map_err(|_| ("UTF-8", "other bytes".to_owned()))
 }
 
-/// Returns the line of a text in which TOML found an error.
-#[must_use]
-pub fn line_of(text: &str, error: &toml::de::Error) -> Option<usize> {
-    error.span().map(|span| text[..span.start.min(text.len())].lines().count().max(1))
-}
-
 /// Largest length of an excerpt in a message (characters).
 const EXCERPT: usize = 80;
 /// Largest length of a path or of a quoted sentence in a message (characters).

@@ -1,12 +1,12 @@
 //! Contact between bodies and with walls, by springs between surfaces or by conditions at nodes.
 
 pub(crate) mod friction;
-pub(crate) mod grip;
 pub(crate) mod nodal;
 pub(crate) mod pairs;
 pub(crate) mod penalty;
 pub(crate) mod search;
 pub(crate) mod shared;
+pub(crate) mod stages;
 
 use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};

@@ -17,12 +17,12 @@
 
 use super::shared::{Field, Member, SharedNodes};
 use super::{ContactPartner, FrictionTable};
-use crate::body::Body;
-use crate::driven::Group;
-use crate::grid::Lattice;
-use crate::ledger::Ledger;
+use crate::boundary::driven::Group;
+use crate::boundary::walls::RigidPlane;
+use crate::energy::ledger::Ledger;
+use crate::grid::lattice::Lattice;
 use crate::options::Contact;
-use crate::walls::RigidPlane;
+use crate::points::body::Body;
 use grainbench_solver::space::Space;
 
 /// Safety factor γ of eq. 21.
@@ -351,7 +351,7 @@ const SWEEPS: usize = 12;
 mod tests {
     use super::*;
     use crate::contact::shared::{Face, NodalContact, SteppedVelocities};
-    use crate::grid::Node;
+    use crate::grid::lattice::Node;
     use crate::off::AbsentEffect;
     use crate::options::Setting;
     use crate::trial::prepared;

@@ -1,7 +1,7 @@
 //! Search for pairs of bodies that may be in contact.
 
-use crate::body::Body;
-use crate::grid::Lattice;
+use crate::grid::lattice::Lattice;
+use crate::points::body::Body;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 

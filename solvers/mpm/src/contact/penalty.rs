@@ -4,15 +4,15 @@
 //! so linear momentum is conserved to rounding and torques are consistent.
 
 use super::friction::{Friction, Overlap, Tangential};
-use super::grip::SurfaceShapeFunction;
 use super::search::{PenetratingPoint, Rules, SearchResults};
 use super::{ContactPartner, ContactPoint};
-use crate::basis::Basis;
-use crate::body::Body;
-use crate::grid::Node;
-use crate::ledger::Ledger;
-use crate::surface::Tracers;
-use crate::walls::RigidPlane;
+use crate::boundary::walls::RigidPlane;
+use crate::energy::ledger::Ledger;
+use crate::grid::basis::Basis;
+use crate::grid::lattice::Node;
+use crate::points::body::Body;
+use crate::surface::shape_function::SurfaceShapeFunction;
+use crate::surface::tracers::Tracers;
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;

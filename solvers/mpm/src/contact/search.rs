@@ -2,13 +2,13 @@
 //! there.
 
 use super::friction::Overlap;
-use super::grip::SurfaceShapeFunction;
 use super::pairs::Pair;
-use crate::basis::Basis;
-use crate::body::Body;
 use crate::contact::FrictionTable;
-use crate::grid::{Lattice, Node};
-use crate::surface::{NearSurface, Tracers};
+use crate::grid::basis::Basis;
+use crate::grid::lattice::{Lattice, Node};
+use crate::points::body::Body;
+use crate::surface::shape_function::SurfaceShapeFunction;
+use crate::surface::tracers::{NearSurface, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;

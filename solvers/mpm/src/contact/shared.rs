@@ -2,12 +2,12 @@
 
 use super::ContactPartner;
 use super::pairs::Pair;
-use crate::basis::{Basis, Linear, Quadratic};
-use crate::body::Body;
-use crate::grid::{Lattice, Node, Stencil, Window};
-use crate::points::Points;
-use crate::surface::Tracers;
-use crate::walls::RigidPlane;
+use crate::boundary::walls::RigidPlane;
+use crate::grid::basis::{Basis, Linear, Quadratic};
+use crate::grid::lattice::{Lattice, Node, Stencil, Window};
+use crate::points::arrays::Points;
+use crate::points::body::Body;
+use crate::surface::tracers::Tracers;
 use grainbench_solver::space::Space;
 use std::ops::Range;
 

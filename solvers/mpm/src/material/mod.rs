@@ -3,6 +3,7 @@
 
 mod laws;
 mod plastic_strain;
+pub(crate) mod stress;
 
 pub use laws::{Hypoelastic, KelvinVoigt, NeoHookean, VonMises};
 pub(crate) use laws::{Material, with_law};

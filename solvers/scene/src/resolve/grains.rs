@@ -206,7 +206,11 @@ impl Resolver<'_> {
         let key = |part: &str| format!("{table}.{part}");
         self.refuse_too_many(&key("count"), u128::from(random.count))?;
         let Some(domain) = domain else {
-            return Err(check.error(&key("count"), "a `domain` to place grains in", "none"));
+            let (part, purpose) = match random.region {
+                Some(_) => ("region", "that contains the region"),
+                None => ("count", "to place grains in"),
+            };
+            return Err(check.error(&key(part), &format!("a `domain` with `low` and `high` {purpose}"), "no domain"));
         };
         let radii = self.radii(&table, random, group.shape, &|| self.radius(group))?;
         let part = match &random.region {
@@ -244,7 +248,7 @@ impl Resolver<'_> {
         let check = &self.check;
         let key = format!("grains.{name}.packed.radii");
         let Some(domain) = domain else {
-            return Err(check.error(&key, "a `domain` to pack grains into", "none"));
+            return Err(check.error(&key, "a `domain` with `low` and `high` to pack grains into", "no domain"));
         };
         let total: u64 = packed.radii.iter().map(|&(_, count)| u64::from(count)).sum();
         if !(1..=u64::from(packing::MOST)).contains(&total) {

@@ -6,25 +6,26 @@
 //! - v_p ← keep v_p + Σ N_i(x_p) Δv_i if points keep their velocity (Brackbill & Ruppel 1986), otherwise Σ N_i(x_p)
 //!   v_i; keep is the damping factor ([`Damping`]);
 //! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m). If points move with the velocities of the stress update, this is
-//!   done later with those velocities ([`crate::gradients`]);
+//!   done later with those velocities ([`crate::transfer::gradients`]);
 //! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), if points have an affine part of the
 //!   velocity (1/s) (Jiang et al. 2015);
 //! - for MUSL, momenta from the points back to the nodes: p_i = Σ N_i(x_p) m_p (v_p + A_p (x_i − x_p)) with the new
 //!   values (Sulsky, Zhou & Schreyer 1995).
 
-use crate::basis::{Basis, with_basis};
-use crate::damping::Damping;
-use crate::grid::{Lattice, Node, Stencil};
-use crate::nodes::{Grid, NodePartition};
+use crate::grid::basis::{Basis, with_basis};
+use crate::grid::damping::Damping;
+use crate::grid::lattice::{Lattice, Node, Stencil};
+use crate::grid::nodes::{Grid, NodePartition};
+use crate::grid::patch::{Copies, NodeRows, StencilBlock};
 use crate::options;
-use crate::patch::{Copies, NodeRows, StencilBlock};
-use crate::points::{Points, PointsMut};
-use crate::runs::{Ground, ParticleBatch};
-use crate::scatter::{ExtrapolatedVelocity, weighted};
+use crate::points::arrays::{Points, PointsMut};
+use crate::points::body::Part;
+use crate::points::runs::{Ground, ParticleBatch};
+use crate::points::share::ThreadPartition;
+use crate::points::state::State;
 use crate::scheme::Scheme;
-use crate::share::ThreadPartition;
-use crate::state::State;
-use crate::transfer::{Apic, Flip, Part, Spin, Transfer};
+use crate::transfer::scatter::{ExtrapolatedVelocity, weighted};
+use crate::transfer::schemes::{Apic, Flip, Spin, Transfer};
 use grainbench_lanes::{FourKernel, FourLanes, Number, SimdPack, take_off};
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;

@@ -1,11 +1,13 @@
 //! Deformable body of a simulation.
 
+use crate::grid::basis::Basis;
+use crate::grid::lattice::Window;
 use crate::material::Material;
-use crate::transfer::Part;
 use grainbench_scene::body::Sides;
 use grainbench_scene::manufactured::Medium;
 use grainbench_scene::material::Deformable;
 use grainbench_solver::record::Owner;
+use grainbench_solver::space::Space;
 use nalgebra::Vector3;
 use std::ops::Range;
 
@@ -39,5 +41,38 @@ impl Body {
     pub(crate) fn medium(&self) -> Medium {
         let Self { density, deformable, .. } = self;
         Medium { density: *density, lame: deformable.lame(), shear_modulus: deformable.shear_modulus }
+    }
+}
+
+/// Points of one body and the window of their nodes.
+#[derive(Clone, Debug)]
+pub(crate) struct Part {
+    /// Range of the points in the point arrays.
+    pub(crate) points: Range<usize>,
+    /// Window of the nodes of the velocity field.
+    pub(crate) window: Window,
+    /// Number of batches when the points were last sorted.
+    pub(crate) runs_in_order: usize,
+    /// Half the extent of a point (cells), for GIMP.
+    pub(crate) half: f64,
+    /// Initial mass of a full cell (kg).
+    pub(crate) cell_mass: f64,
+}
+
+impl Part {
+    /// Returns the half extent of a point along each axis (cells).
+    ///
+    /// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if
+    /// the stretch is along the axes, and the extent does not change under rotation.
+    #[inline(always)]
+    pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
+        if !B::EXTENDED {
+            return [self.half; 3];
+        }
+        let f = S::embed_gradient(deformation);
+        [0, 1, 2].map(|axis| {
+            let stretch = (f[(axis, 0)].powi(2) + f[(axis, 1)].powi(2) + f[(axis, 2)].powi(2)).sqrt();
+            (self.half * stretch).clamp(1e-3, 0.5)
+        })
     }
 }

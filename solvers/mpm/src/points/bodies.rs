@@ -1,13 +1,14 @@
 //! Creation of bodies from a scene, with seeding of material points and surface tracers.
 
-use crate::body::Body;
-use crate::grid::Lattice;
+use crate::grid::lattice::Lattice;
 use crate::material::Material;
 use crate::options::Setting;
-use crate::points::Points;
-use crate::seed::{self, Patch, Seed};
-use crate::surface::Tracers;
-use crate::transfer::Part;
+use crate::points::arrays::Points;
+use crate::points::body::Body;
+use crate::points::body::Part;
+use crate::points::seed::{self, Seed};
+use crate::surface::elements::{self, Patch};
+use crate::surface::tracers::Tracers;
 use grainbench_scene::body::{Block, BlockShape, Sides};
 use grainbench_scene::material::Deformable;
 use grainbench_scene::scene::Scene;
@@ -44,9 +45,9 @@ pub(crate) fn seed<S: Space>(
     let grains = scene.grains.iter().enumerate().filter_map(|(at, grain)| {
         let (centre, radius) = (grain.position, grain.radius);
         let (seeds, surface) = if S::DIMENSION == 2 {
-            (seed::rings(centre, 0.0, radius, spacing), seed::circle(centre, radius, between, 1.0))
+            (seed::rings(centre, 0.0, radius, spacing), elements::circle(centre, radius, between, 1.0))
         } else {
-            (seed::shells(centre, radius, spacing), seed::globe(centre, radius, between))
+            (seed::shells(centre, radius, spacing), elements::globe(centre, radius, between))
         };
         let volume: f64 = seeds.iter().map(|seed| seed.volume).sum();
         Some(Blank {
@@ -90,7 +91,7 @@ pub(crate) fn seed<S: Space>(
                 owner: blank.owner,
                 part: Part {
                     points: first.0..points.len(),
-                    window: crate::grid::Window::default(),
+                    window: crate::grid::lattice::Window::default(),
                     runs_in_order: 0,
                     half,
                     cell_mass: blank.density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
@@ -126,12 +127,16 @@ fn block_seeds<S: Space>(
     match block.shape {
         BlockShape::Box { low, high } => {
             let spacing = lattice.cell.map(|cell| cell / f64::from(per_cell));
-            let surface =
-                if S::DIMENSION == 2 { seed::rectangle(low, high, between) } else { seed::faces(low, high, between) };
+            let surface = if S::DIMENSION == 2 {
+                elements::rectangle(low, high, between)
+            } else {
+                elements::faces(low, high, between)
+            };
             (seed::lattice(low, high, spacing, S::DIMENSION), vec![surface])
         }
         BlockShape::Annulus { centre, inner, outer } => {
-            let surfaces = vec![seed::circle(centre, outer, between, 1.0), seed::circle(centre, inner, between, -1.0)];
+            let surfaces =
+                vec![elements::circle(centre, outer, between, 1.0), elements::circle(centre, inner, between, -1.0)];
             (seed::rings(centre, inner, outer, spacing), surfaces)
         }
     }

@@ -1,12 +1,16 @@
 //! Boundaries with prescribed motion: walls, fixed or symmetry boundaries, and driven bodies.
 
-use crate::body::Body;
-use crate::driven::DrivenGroups;
-use crate::grid::Lattice;
-use crate::held::FixedBoundaries;
-use crate::nodes::Grid;
-use crate::state::State;
-use crate::walls::RigidPlane;
+pub(crate) mod driven;
+pub(crate) mod held;
+pub(crate) mod walls;
+
+use crate::boundary::driven::DrivenGroups;
+use crate::boundary::held::FixedBoundaries;
+use crate::boundary::walls::RigidPlane;
+use crate::grid::lattice::Lattice;
+use crate::grid::nodes::Grid;
+use crate::points::body::Body;
+use crate::points::state::State;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::space::Space;
 

@@ -1,10 +1,10 @@
 //! Lattice, windows and node values of the grid.
 
-use crate::body::Body;
-use crate::damping::Damping;
-use crate::grid::{Lattice, Node, Window};
-use crate::share::ThreadPartition;
-use crate::state::State;
+use crate::grid::damping::Damping;
+use crate::grid::lattice::{Lattice, Node, Window};
+use crate::points::body::Body;
+use crate::points::share::ThreadPartition;
+use crate::points::state::State;
 use grainbench_lanes::take_off;
 use grainbench_solver::failure::Cause;
 use grainbench_solver::space::Space;

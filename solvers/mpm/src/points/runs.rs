@@ -1,10 +1,10 @@
 //! Particle batches. A batch consists of consecutive points that influence the same nodes. Points are sorted by cell,
 //! so most batches are long. Loops process the points of a batch four at a time with one set of nodes.
 
-use crate::basis::Basis;
-use crate::grid::{Lattice, Stencil};
-use crate::points::{Points, PointsMut};
-use crate::transfer::Part;
+use crate::grid::basis::Basis;
+use crate::grid::lattice::{Lattice, Stencil};
+use crate::points::arrays::{Points, PointsMut};
+use crate::points::body::Part;
 use grainbench_lanes::{FourLanes, LANES, Number, SimdPack};
 use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
@@ -304,8 +304,8 @@ fn side_by_side<S: Space, L: FourLanes>(lanes: L, [a, b, c, d]: &[Matrix3<f64>; 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::{Linear, Quadratic};
-    use crate::share::{NO_BOX, enclose};
+    use crate::grid::basis::{Linear, Quadratic};
+    use crate::points::share::{NO_BOX, enclose};
     use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 

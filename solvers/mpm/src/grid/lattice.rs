@@ -5,7 +5,7 @@
 //! the points of the field influence. Memory and time therefore grow with the bodies and not with the space between
 //! them. A node shared by three bodies is stored three times, once in each window.
 
-use crate::basis::{Axis, Basis};
+use crate::grid::basis::{Axis, Basis};
 use grainbench_lanes::Number;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
@@ -317,7 +317,7 @@ impl Stencil<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::{Gimp, Linear, Quadratic};
+    use crate::grid::basis::{Gimp, Linear, Quadratic};
     use grainbench_solver::space::Solid;
 
     /// Checks that a field that is linear in position has the same gradient everywhere, with cells of 1, 2 and 3 m. The

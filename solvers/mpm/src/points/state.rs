@@ -1,14 +1,14 @@
 //! State of a simulation: bodies and their material points.
 
-use crate::basis::with_basis;
-use crate::body::Body;
 use crate::failure::Failure;
-use crate::grid::{Lattice, Stencil};
+use crate::grid::basis::with_basis;
+use crate::grid::lattice::{Lattice, Stencil};
 use crate::options::Basis;
-use crate::points::Points;
-use crate::runs::ParticleBatch;
-use crate::share::{self, BodyBatches, LargestDisplacement, NO_BOX, ThreadPartition, enclose};
-use crate::surface::Tracers;
+use crate::points::arrays::Points;
+use crate::points::body::Body;
+use crate::points::runs::ParticleBatch;
+use crate::points::share::{self, BodyBatches, LargestDisplacement, NO_BOX, ThreadPartition, enclose};
+use crate::surface::tracers::Tracers;
 use grainbench_lanes::Team;
 use grainbench_solver::failure::Cause;
 use grainbench_solver::space::Space;
@@ -94,7 +94,7 @@ impl<S: Space> State<S> {
         }
     }
 
-    fn share_points<B: crate::basis::Basis>(&mut self, lattice: &Lattice) {
+    fn share_points<B: crate::grid::basis::Basis>(&mut self, lattice: &Lattice) {
         let Self { bodies, points, shares, team, .. } = self;
         share::cut_points::<S, B>(shares, lattice, bodies, points);
         team.each(shares.iter_mut(), |_, share| share.find_runs::<B>(lattice, bodies, points));

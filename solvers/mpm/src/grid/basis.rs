@@ -9,15 +9,15 @@ macro_rules! with_basis {
     ($basis:expr, $B:ident => $call:expr) => {
         match $basis {
             $crate::options::Basis::Linear => {
-                type $B = $crate::basis::Linear;
+                type $B = $crate::grid::basis::Linear;
                 $call
             }
             $crate::options::Basis::Quadratic => {
-                type $B = $crate::basis::Quadratic;
+                type $B = $crate::grid::basis::Quadratic;
                 $call
             }
             $crate::options::Basis::Gimp => {
-                type $B = $crate::basis::Gimp;
+                type $B = $crate::grid::basis::Gimp;
                 $call
             }
         }

@@ -1,11 +1,11 @@
 //! Transfer of velocities between points and nodes, and separate transfer of forces to nodes.
 
-use crate::basis::Basis;
-use crate::grid::{Lattice, Node, Stencil, Window};
-use crate::points::Points;
+use crate::grid::basis::Basis;
+use crate::grid::lattice::{Lattice, Node, Stencil};
+use crate::points::arrays::Points;
+use crate::points::body::Part;
 use grainbench_lanes::Number;
 use grainbench_solver::space::Space;
-use std::ops::Range;
 
 /// Transfer of velocities between points and nodes.
 pub(crate) trait Transfer: Copy + Send + 'static {
@@ -80,7 +80,7 @@ impl Transfer for Apic {
 /// The velocity changes Δv of the nodes have an angular momentum about the point. The spin changes by the rigid
 /// rotation with this angular momentum: Δω = Σ w r × Δv / Σ w |r|² about each axis. Here r is the vector from the point
 /// to the node, perpendicular to the axis. A yielding point takes the spin of the velocity around it
-/// ([`crate::stress::Update`]).
+/// ([`crate::material::stress::Update`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 
@@ -112,39 +112,6 @@ impl Transfer for Spin {
             }
         }
         after
-    }
-}
-
-/// Points of one body and the window of their nodes.
-#[derive(Clone, Debug)]
-pub(crate) struct Part {
-    /// Range of the points in the point arrays.
-    pub(crate) points: Range<usize>,
-    /// Window of the nodes of the velocity field.
-    pub(crate) window: Window,
-    /// Number of batches when the points were last sorted.
-    pub(crate) runs_in_order: usize,
-    /// Half the extent of a point (cells), for GIMP.
-    pub(crate) half: f64,
-    /// Initial mass of a full cell (kg).
-    pub(crate) cell_mass: f64,
-}
-
-impl Part {
-    /// Returns the half extent of a point along each axis (cells).
-    ///
-    /// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if
-    /// the stretch is along the axes, and the extent does not change under rotation.
-    #[inline(always)]
-    pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
-        if !B::EXTENDED {
-            return [self.half; 3];
-        }
-        let f = S::embed_gradient(deformation);
-        [0, 1, 2].map(|axis| {
-            let stretch = (f[(axis, 0)].powi(2) + f[(axis, 1)].powi(2) + f[(axis, 2)].powi(2)).sqrt();
-            (self.half * stretch).clamp(1e-3, 0.5)
-        })
     }
 }
 
@@ -197,7 +164,8 @@ pub(crate) fn gather_changes<S: Space, B: Basis>(
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::basis::{Gimp, Quadratic};
+    use crate::grid::basis::{Gimp, Quadratic};
+    use crate::grid::lattice::Window;
     use grainbench_solver::space::Plane;
     use nalgebra::{Matrix2, Vector2};
 

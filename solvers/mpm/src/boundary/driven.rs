@@ -3,12 +3,12 @@
 //! If each body has its own velocity field, these nodes belong only to the driven body. If all bodies share one field,
 //! these nodes also move the points of other bodies that they influence.
 
-use crate::basis::with_basis;
-use crate::body::Body;
-use crate::damping::Damping;
-use crate::grid::{Lattice, Node, Stencil};
+use crate::grid::basis::with_basis;
+use crate::grid::damping::Damping;
+use crate::grid::lattice::{Lattice, Node, Stencil};
 use crate::options::Basis;
-use crate::points::Points;
+use crate::points::arrays::Points;
+use crate::points::body::Body;
 use grainbench_scene::scene::{Driven as DrivenGrains, Scene};
 use grainbench_solver::space::Space;
 

@@ -1,8 +1,8 @@
 //! Fixed or symmetry boundaries of boxes. Beyond such a side the body continues as its mirror image, so the side keeps
 //! its position to the order of the basis functions. The side is moved to the nearest nodes.
 
-use crate::body::Body;
-use crate::grid::{Lattice, Node, Window};
+use crate::grid::lattice::{Lattice, Node, Window};
+use crate::points::body::Body;
 use grainbench_scene::body::Hold;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;

@@ -26,14 +26,14 @@
 //! velocities of points, half a step before their positions, and spring energy to the last forces.
 
 use crate::boundary::Boundary;
-use crate::damping::Damping;
-use crate::driven::DrivenGroups;
-use crate::grid::{Lattice, Node};
-use crate::ledger::{Flow, Tally};
-use crate::nodes::Grid;
+use crate::boundary::driven::DrivenGroups;
+use crate::energy::ledger::{Flow, Tally};
+use crate::grid::damping::Damping;
+use crate::grid::lattice::{Lattice, Node};
+use crate::grid::nodes::Grid;
 use crate::options::{Basis, Contact, Setting};
+use crate::points::state::State;
 use crate::scheme::{Scheme, Surroundings};
-use crate::state::State;
 use grainbench_lanes::Team;
 use grainbench_scene::body::Hold;
 use grainbench_scene::scene::Scene;

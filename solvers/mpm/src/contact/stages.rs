@@ -1,7 +1,5 @@
 //! Contact stages of a cycle: spring forces between surfaces, and conditions on node velocities.
 
-use crate::accounts::Accounts;
-use crate::basis::with_basis;
 use crate::boundary::Boundary;
 use crate::contact::friction::Friction;
 use crate::contact::nodal::{self, ReactionReceivers};
@@ -10,13 +8,16 @@ use crate::contact::penalty::{Push, SpringOutputs, Springs};
 use crate::contact::search::{Rules, Search, SearchResults, TracerSurroundings};
 use crate::contact::shared::{ProjectedVelocities, SharedNodes, SteppedVelocities};
 use crate::contact::{ContactPoint, FrictionTable};
-use crate::grid::Node;
-use crate::nodes::{Grid, Velocities};
+use crate::energy::accounts::Accounts;
+use crate::grid::basis::with_basis;
+use crate::grid::lattice::Node;
+use crate::grid::nodes::{Grid, Velocities};
 use crate::off::AbsentEffect;
 use crate::options::{Contact, StressUpdate};
+use crate::points::state::State;
 use crate::scheme::Scheme;
-use crate::state::State;
-use crate::surface::{TracerMotion, Tracers};
+use crate::surface::motion::TracerMotion;
+use crate::surface::tracers::Tracers;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Counts;
 use grainbench_solver::space::Space;

@@ -3,13 +3,13 @@
 //! Each partition gathers velocities for its points. For each of its nodes, it sums over all batches that influence the
 //! node, in the order of the batches. Results are therefore equal to the bit for any number of threads.
 
-use crate::basis::Basis;
-use crate::body::Body;
+use crate::energy::ledger::Flow;
 use crate::failure::Failure;
-use crate::grid::{Lattice, Window};
-use crate::ledger::Flow;
-use crate::points::{Points, PointsMut};
-use crate::runs::{self, LONGEST, ParticleBatch};
+use crate::grid::basis::Basis;
+use crate::grid::lattice::{Lattice, Window};
+use crate::points::arrays::{Points, PointsMut};
+use crate::points::body::Body;
+use crate::points::runs::{self, LONGEST, ParticleBatch};
 use grainbench_solver::space::Space;
 use std::ops::Range;
 

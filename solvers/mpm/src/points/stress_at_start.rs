@@ -1,10 +1,10 @@
 //! Initial stress of bodies: a hydrostatic pressure or a stress given by the scene.
 
-use crate::body::Body;
 use crate::material::{Law, Material, State as Material3, with_law};
-use crate::points::Points;
-use crate::state::State;
-use crate::surface::Tracers;
+use crate::points::arrays::Points;
+use crate::points::body::Body;
+use crate::points::state::State;
+use crate::surface::tracers::Tracers;
 use grainbench_scene::body::BlockShape;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Owner;

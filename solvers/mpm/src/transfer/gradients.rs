@@ -1,9 +1,9 @@
 //! Velocity gradients at points, and the next positions of the points.
 
-use crate::basis::Basis;
-use crate::patch::{Copies, StencilBlock};
-use crate::runs::Ground;
-use crate::scatter::weighted;
+use crate::grid::basis::Basis;
+use crate::grid::patch::{Copies, StencilBlock};
+use crate::points::runs::Ground;
+use crate::transfer::scatter::weighted;
 use grainbench_lanes::{FourKernel, FourLanes, SimdPack};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;

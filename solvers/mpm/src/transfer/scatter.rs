@@ -8,17 +8,17 @@
 //! - f_i = −Σ V_p σ_p ∇N_i(x_p), internal force (N), with volumes V (m³; m² in two dimensions) and Cauchy stresses σ
 //!   (Pa) (Sulsky, Chen & Schreyer 1994).
 
-use crate::basis::{Basis, with_basis};
-use crate::contact::grip;
-use crate::grid::{Node, Stencil};
-use crate::nodes::{Grid, NodePartition};
+use crate::grid::basis::{Basis, with_basis};
+use crate::grid::lattice::{Node, Stencil};
+use crate::grid::nodes::{Grid, NodePartition};
+use crate::grid::patch::{Copies, NodeRows, StencilBlock};
 use crate::options;
-use crate::patch::{Copies, NodeRows, StencilBlock};
-use crate::points::Points;
-use crate::runs::Ground;
+use crate::points::arrays::Points;
+use crate::points::runs::Ground;
+use crate::points::state::State;
 use crate::scheme::Scheme;
-use crate::state::State;
-use crate::transfer::{Apic, Flip, Spin, Transfer};
+use crate::surface::shape_function;
+use crate::transfer::schemes::{Apic, Flip, Spin, Transfer};
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack};
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
@@ -49,7 +49,7 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
                 let window = body.part.window.slots();
                 let here = window.start.max(start) - start..window.end.clamp(start, start + own.len()) - start;
                 if !here.is_empty() {
-                    grip::bear(&own[here.clone()], body.part.cell_mass, &mut most[here]);
+                    shape_function::bear(&own[here.clone()], body.part.cell_mass, &mut most[here]);
                 }
             }
         }

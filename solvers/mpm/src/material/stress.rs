@@ -1,19 +1,19 @@
 //! Deformation and stress from velocity gradients, material by material.
 
-use crate::basis::with_basis;
-use crate::body::Body;
+use crate::energy::ledger::Flow;
 use crate::failure::Failure;
-use crate::gradients::Gradients;
-use crate::grid::Node;
-use crate::ledger::Flow;
+use crate::grid::basis::with_basis;
+use crate::grid::lattice::Node;
+use crate::grid::nodes::{Grid, Velocities};
 use crate::material::{Law, PlasticStrain, VolumeRatio, with_law};
-use crate::nodes::{Grid, Velocities};
 use crate::options::Transfer;
-use crate::points::PointsMut;
-use crate::runs::{self, Ground, LONGEST, ParticleBatch};
+use crate::points::arrays::PointsMut;
+use crate::points::body::Body;
+use crate::points::runs::{self, Ground, LONGEST, ParticleBatch};
+use crate::points::share::{LargestDisplacement, ThreadPartition};
+use crate::points::state::State;
 use crate::scheme::Scheme;
-use crate::share::{LargestDisplacement, ThreadPartition};
-use crate::state::State;
+use crate::transfer::gradients::Gradients;
 use grainbench_lanes::logarithm::ln;
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::failure::Cause;

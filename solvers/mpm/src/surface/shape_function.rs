@@ -6,9 +6,9 @@
 //! this node without bound, and the node would drag the surface along. The weight of a node is therefore limited by its
 //! mass.
 
-use crate::basis::Basis;
-use crate::grid::{Lattice, Node, Stencil};
-use crate::transfer::Part;
+use crate::grid::basis::Basis;
+use crate::grid::lattice::{Lattice, Node, Stencil};
+use crate::points::body::Part;
 use grainbench_solver::space::Space;
 
 /// Upper limit of w² m_cell/m for a node, with weight w, mass m and the mass m_cell of a full cell.
@@ -78,7 +78,7 @@ impl<S: Space> SurfaceShapeFunction<S> {
 #[cfg(test)]
 mod tests {
     use super::{MOST, bear};
-    use crate::grid::Node;
+    use crate::grid::lattice::Node;
     use grainbench_solver::space::Plane;
 
     /// Returns the weight limit of a node with the given mass, in a body with 3 kg per cell.

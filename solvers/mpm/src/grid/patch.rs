@@ -1,8 +1,8 @@
 //! Stencil blocks. A block contains the nodes that influence a particle batch, in rows along x. It is used in place in
 //! the node array, or copied if a periodic boundary cuts through it.
 
-use crate::basis::Basis;
-use crate::grid::Window;
+use crate::grid::basis::Basis;
+use crate::grid::lattice::Window;
 use grainbench_solver::space::Space;
 use std::ops::Range;
 
