@@ -16,19 +16,17 @@ use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
-use grainbench_store::{FolderWriter, WriteError, key, remove_leftovers};
-use std::fs::{self, File};
+use grainbench_store::artifact::{Directory, Kind};
+use grainbench_store::{ReadError, WriteError, key};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Shortest run that is cached (s). Shorter runs are faster than reading a file.
 const LEAST: f64 = 2e-3;
 /// Largest record that is cached (bytes). A larger record would displace too many others.
 const LARGEST: usize = 256 << 20;
-/// File extension of cached runs.
-const ENDING: &str = "run";
 
 /// Function that returns the hash of the sources of a solver, or `None` for another program.
 pub type Edition = fn(&str) -> Option<String>;
@@ -46,17 +44,32 @@ pub fn run_words(solver: &str, scene: &Scene, resolution: &Resolution, read: &st
     [solver.to_owned(), fingerprint(scene).to_hex().to_string(), format!("{resolution:?}"), read.to_owned()]
 }
 
+/// Records of finished runs.
+struct CachedRun;
+
+impl Kind for CachedRun {
+    type Value = Record;
+    const ENDING: &'static str = "run";
+
+    fn encode(key: &str, record: &Record) -> Result<Vec<u8>, String> {
+        let bytes = kept_record::to_bytes(key, record)?;
+        if bytes.len() <= LARGEST { Ok(bytes) } else { Err(format!("a record of {} bytes", bytes.len())) }
+    }
+
+    fn decode(key: &str, path: &Path, bytes: &[u8]) -> Result<Record, ReadError> {
+        let wrong = || ReadError::other(path, format!("the record of run {key}"), "a damaged or other file");
+        kept_record::from_bytes(key, bytes).ok_or_else(wrong)
+    }
+}
+
 /// Folder of finished runs.
 pub struct RunCache {
+    runs: Directory,
     folder: PathBuf,
     /// Maximum size of all files (bytes).
     most: u64,
-    /// True to ignore existing files.
-    fresh: bool,
     edition: Edition,
     taken: AtomicU64,
-    /// Directory for temporary files, created with the first stored run.
-    desk: OnceLock<Option<FolderWriter>>,
 }
 
 impl RunCache {
@@ -66,11 +79,8 @@ impl RunCache {
     /// # Errors
     /// When the folder cannot be created.
     pub fn open(folder: &Path, most: u64, fresh: bool, edition: Edition) -> Result<Self, WriteError> {
-        fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        // Removes temporary files of killed programs.
-        remove_leftovers(folder).map_err(|source| WriteError::new(folder, source))?;
-        let folder = folder.to_owned();
-        Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
+        let runs = Directory::open(folder, fresh)?;
+        Ok(Self { runs, folder: folder.to_owned(), most, edition, taken: AtomicU64::new(0) })
     }
 
     /// Returns the folder of the cache.
@@ -91,60 +101,26 @@ impl RunCache {
         Some(key_of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
     }
 
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(format!("{name}.{ENDING}"))
-    }
-
     /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
     fn take(&self, name: &str) -> Option<Record> {
-        if self.fresh {
-            return None;
-        }
-        let path = self.path(name);
-        let record = kept_record::from_bytes(name, &fs::read(&path).ok()?)?;
+        let record = self.runs.get::<CachedRun>(name).ok()?;
         self.taken.fetch_add(1, Ordering::Relaxed);
-        // The file time is the time of the last use, because the least recently used files are removed first. If it
-        // cannot be set, it stays the time of writing.
-        let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
+        // The least recently used files are removed first.
+        self.runs.touch::<CachedRun>(name);
         Some(record)
     }
 
     /// Stores a record, unless the run is too short or the record too large. Write errors are ignored, because the run
     /// can be repeated.
     fn put(&self, name: &str, record: &Record) {
-        if record.cost.wall_seconds < LEAST {
-            return;
-        }
-        let Ok(bytes) = kept_record::to_bytes(name, record) else { return };
-        if bytes.len() <= LARGEST
-            && let Some(desk) = self.desk.get_or_init(|| FolderWriter::new(&self.folder).ok())
-        {
-            let _ = desk.write(&format!("{name}.{ENDING}"), bytes);
+        if record.cost.wall_seconds >= LEAST {
+            let _ = self.runs.put::<CachedRun>(name, record);
         }
     }
 
     /// Removes the least recently used files until the remaining files do not exceed the maximum size.
     pub fn make_room(&self) {
-        let file_entry = |entry: fs::DirEntry| {
-            let is_one = entry.path().extension().is_some_and(|ending| ending == ENDING);
-            let about = entry.metadata().ok().filter(|_| is_one)?;
-            Some((about.modified().unwrap_or(SystemTime::UNIX_EPOCH), about.len(), entry.path()))
-        };
-        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries.filter_map(file_entry).collect();
-        files.sort();
-        let mut all: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
-        for (_, bytes, path) in files {
-            if all <= self.most {
-                break;
-            }
-            match fs::remove_file(path) {
-                Ok(()) => all -= bytes,
-                // Another process has removed the file.
-                Err(error) if error.kind() == std::io::ErrorKind::NotFound => all -= bytes,
-                Err(_) => {}
-            }
-        }
+        self.runs.make_room::<CachedRun>(self.most);
     }
 }
 
@@ -246,32 +222,5 @@ impl Solver for CachingSolver {
         observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
         self.solver.restart(scene, resolution, from, observer)
-    }
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-    use super::*;
-
-    /// There are three files of 100 bytes and room for 250 bytes. The least recently used run is removed, and other
-    /// files are kept.
-    #[test]
-    fn the_longest_unused_makes_room() {
-        let folder = tempfile::tempdir().unwrap();
-        let cache = RunCache::open(folder.path(), 250, false, |_| None).unwrap();
-        for (age, name) in [(30, "a.run"), (10, "b.run"), (20, "c.run"), (99, "notes.txt")] {
-            let path = folder.path().join(name);
-            fs::write(&path, [0; 100]).unwrap();
-            let then = SystemTime::now() - Duration::from_secs(age);
-            File::options().append(true).open(&path).unwrap().set_modified(then).unwrap();
-        }
-        cache.make_room();
-        let mut left: Vec<String> = fs::read_dir(folder.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        left.sort();
-        assert_eq!(left, ["b.run", "c.run", "notes.txt"]);
     }
 }

@@ -75,7 +75,7 @@ fn crates_depend_in_one_direction() {
         ("reference", solver),
         ("fields", &["scene", "solver", "harness"]),
         ("cases", &["scene", "solver", "harness", "dem", "mpm", "rigid", "reference", "fields"]),
-        ("store", &[]),
+        ("store", &["scene"]),
         ("reports", &["scene", "solver", "harness", "fields", "store"]),
         ("studies", &["lanes", "scene", "solver", "harness", "reports", "store"]),
         ("jobs", &["scene", "solver", "harness", "cases", "reports", "studies", "store"]),
