@@ -1,8 +1,8 @@
 //! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes of
 //! claims.
 //!
-//! The key of a run is a hash of its scene, solver, planted defect, resolution, SIMD backend, and of the sources, compiler and
-//! options with which the solver was built. A changed case or solver therefore repeats only the affected runs. A file that is
+//! The key of a run is a hash of its scene, solver, planted defect, resolution, run options, SIMD backend, and of the sources,
+//! compiler and options with which the solver was built. A changed case or solver therefore repeats only the affected runs. A file that is
 //! damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints
 //! are requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
@@ -12,7 +12,7 @@ use grainbench_scene::scene::Scene;
 use grainbench_solver::checkpoint::{Checkpoint, fingerprint};
 use grainbench_solver::failure::RunError;
 use grainbench_solver::kept_record;
-use grainbench_solver::observer::Observer;
+use grainbench_solver::observer::{Observer, RunOptions};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
@@ -95,10 +95,30 @@ impl RunCache {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// Returns the key of a run, or `None` for other programs, whose runs are not cached.
-    fn name(&self, solver: &str, defect: Option<Defect>, scene: &Scene, resolution: &Resolution) -> Option<String> {
-        let program = (self.edition)(solver)?;
-        Some(key_of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
+    /// Returns the key of a run, or `None` for runs that are not cached: those of other programs, and those whose output
+    /// is more than a record.
+    fn name(
+        &self,
+        (solver, defect): (&str, Option<Defect>),
+        scene: &Scene,
+        resolution: &Resolution,
+        options: RunOptions,
+    ) -> Option<String> {
+        // The number of threads does not change a record.
+        let RunOptions { threads: _, checkpoint_interval, most_rows, allow_unstable, keep_snapshots, end_state } =
+            options;
+        if checkpoint_interval.is_some() || !keep_snapshots || end_state {
+            return None;
+        }
+        let mut read = format!("{defect:?} {}", Processor::new().name());
+        // Default values are omitted, so that the keys of runs stored by earlier versions stay valid.
+        if allow_unstable {
+            read += " unstable";
+        }
+        if most_rows != RunOptions::DEFAULT.most_rows {
+            read += &format!(" at most {most_rows} rows");
+        }
+        Some(key_of_run(&(self.edition)(solver)?, solver, scene, resolution, &read))
     }
 
     /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
@@ -201,9 +221,7 @@ impl Solver for CachingSolver {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let options = observer.options();
-        let wants_more = !options.keep_snapshots || options.end_state || options.checkpoint_interval.is_some();
-        let Some(name) = self.cache.name(&self.name, self.defect, scene, resolution).filter(|_| !wants_more) else {
+        let Some(name) = self.cache.name((&self.name, self.defect), scene, resolution, observer.options()) else {
             return self.solver.run(scene, resolution, observer);
         };
         if let Some(record) = self.cache.take(&name) {
@@ -222,5 +240,65 @@ impl Solver for CachingSolver {
         observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
         self.solver.restart(scene, resolution, from, observer)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use grainbench_scene::source::SceneSource;
+    use grainbench_solver::record::{Cost, Provenance, Series};
+
+    /// Solver whose record states the number of its runs.
+    struct Counting(AtomicU64);
+
+    impl Solver for Counting {
+        fn name(&self) -> String {
+            "dem".to_owned()
+        }
+
+        fn run(&self, scene: &Scene, resolution: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
+            Ok(Record {
+                provenance: Provenance::new(scene, self.name(), resolution, 1.0, Vec::new()),
+                series: Series::default(),
+                snapshots: Vec::new(),
+                cost: Cost::of_program(self.0.fetch_add(1, Ordering::Relaxed), 1, 1.0),
+            })
+        }
+    }
+
+    /// Two runs share an entry if they differ only by the number of threads, and never if they differ by another option.
+    #[test]
+    fn runs_with_other_options_share_no_entry() {
+        let text = "title = 'one'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1000.0\n[grains.ball]\n\
+            material = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n";
+        let source = SceneSource::from_text("one", Path::new(""), text);
+        let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let cache = RunCache::open(folder.path(), u64::MAX, false, |_| Some(String::new())).unwrap();
+        let solver = Arc::new(Counting(AtomicU64::new(0)));
+        let solver = CachingSolver { solver, name: "dem".to_owned(), defect: None, cache: Arc::new(cache) };
+        let options = RunOptions::DEFAULT;
+        let cached = [
+            options,
+            RunOptions { allow_unstable: true, ..options },
+            RunOptions { most_rows: 7, ..options },
+            RunOptions { most_rows: 8, ..options },
+            RunOptions { most_rows: 8, allow_unstable: true, ..options },
+        ];
+        let number =
+            |mut options: RunOptions| solver.run(&scene, &Resolution::TimeStep(1.0), &mut options).unwrap().cost.steps;
+        for _ in 0..2 {
+            assert_eq!(cached.map(number), [0, 1, 2, 3, 4]);
+            assert_eq!(cached.map(|options| number(RunOptions { threads: 2, ..options })), [0, 1, 2, 3, 4]);
+        }
+        let others = [
+            RunOptions { keep_snapshots: false, ..options },
+            RunOptions { end_state: true, ..options },
+            RunOptions { checkpoint_interval: Some(1), ..options },
+        ];
+        assert_eq!(others.map(number), [5, 6, 7]);
+        assert_eq!(others.map(number), [8, 9, 10]);
     }
 }

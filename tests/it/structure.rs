@@ -19,7 +19,7 @@ const BUDGETS: [(&str, usize, usize); 16] = [
     ("cases", 20_760, 0),
     ("fields", 3_230, 0),
     ("reports", 15_710, 0),
-    ("studies", 6_315, 0),
+    ("studies", 6_390, 0),
     ("jobs", 2_910, 0),
     ("src", 11_415, 0),
     ("tests", 11_375, 0),
