@@ -17,6 +17,7 @@ use grainbench::jobs::shard;
 use grainbench::jobs::sweep::Sweep;
 use grainbench::reports::export::{self, Format};
 use grainbench::reports::{SnapshotStore, number};
+use grainbench::harness::wrapper::Start;
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
 use grainbench::scene::method::Method;
@@ -236,10 +237,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         state: None,
         interrupt,
     };
-    let record = match &from {
-        None => solver.run(&scene, &resolution, &mut watcher),
-        Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
-    };
+    let start = Start { scene: &scene, resolution: &resolution, from: from.as_ref() };
+    let record = start.run(&*solver, &mut watcher);
     let Watcher { mut snapshots, remains, state, .. } = watcher;
     let mut record = match record {
         Ok(record) => record,

@@ -7,9 +7,10 @@
 //! are requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
 use grainbench_harness::solvers::{ExternalSolver, References, Solvers};
+use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_lanes::Processor;
 use grainbench_scene::scene::Scene;
-use grainbench_solver::checkpoint::{Checkpoint, fingerprint};
+use grainbench_solver::checkpoint::fingerprint;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::kept_record;
 use grainbench_solver::observer::{Observer, RunOptions};
@@ -95,19 +96,18 @@ impl RunCache {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// Returns the key of a run, or `None` for runs that are not cached: those of other programs, and those whose output
-    /// is more than a record.
+    /// Returns the key of a run, or `None` for runs that are not cached: those of other programs, those that continue
+    /// from a checkpoint, and those whose output is more than a record.
     fn name(
         &self,
         (solver, defect): (&str, Option<Defect>),
-        scene: &Scene,
-        resolution: &Resolution,
+        Start { scene, resolution, from }: Start<'_>,
         options: RunOptions,
     ) -> Option<String> {
         // The number of threads does not change a record.
         let RunOptions { threads: _, checkpoint_interval, most_rows, allow_unstable, keep_snapshots, end_state } =
             options;
-        if checkpoint_interval.is_some() || !keep_snapshots || end_state {
+        if from.is_some() || checkpoint_interval.is_some() || !keep_snapshots || end_state {
             return None;
         }
         let mut read = format!("{defect:?} {}", Processor::new().name());
@@ -161,7 +161,7 @@ impl<S: Solvers> CachingSolvers<S> {
         if self.solvers.is_program(name) {
             return Some(solver);
         }
-        Some(Arc::new(CachingSolver { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) }))
+        Some(Arc::new(Wrapped(CachingSolver { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) })))
     }
 }
 
@@ -203,43 +203,21 @@ struct CachingSolver {
     cache: Arc<RunCache>,
 }
 
-impl Solver for CachingSolver {
-    fn name(&self) -> String {
-        self.solver.name()
+impl Wrapper for CachingSolver {
+    fn inner(&self) -> &dyn Solver {
+        &*self.solver
     }
 
-    fn available(&self) -> Result<(), RunError> {
-        self.solver.available()
-    }
-
-    fn has_springs(&self) -> bool {
-        self.solver.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.solver.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let Some(name) = self.cache.name((&self.name, self.defect), scene, resolution, observer.options()) else {
-            return self.solver.run(scene, resolution, observer);
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let Some(name) = self.cache.name((&self.name, self.defect), start, observer.options()) else {
+            return start.run(&*self.solver, observer);
         };
         if let Some(record) = self.cache.take(&name) {
             return Ok(record);
         }
-        let record = self.solver.run(scene, resolution, observer)?;
+        let record = start.run(&*self.solver, observer)?;
         self.cache.put(&name, &record);
         Ok(record)
-    }
-
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        self.solver.restart(scene, resolution, from, observer)
     }
 }
 
@@ -278,7 +256,7 @@ mod tests {
         let folder = tempfile::tempdir().unwrap();
         let cache = RunCache::open(folder.path(), u64::MAX, false, |_| Some(String::new())).unwrap();
         let solver = Arc::new(Counting(AtomicU64::new(0)));
-        let solver = CachingSolver { solver, name: "dem".to_owned(), defect: None, cache: Arc::new(cache) };
+        let solver = Wrapped(CachingSolver { solver, name: "dem".to_owned(), defect: None, cache: Arc::new(cache) });
         let options = RunOptions::DEFAULT;
         let cached = [
             options,

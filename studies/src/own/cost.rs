@@ -422,7 +422,7 @@ impl<'a> Measurement<'a> {
                 stored.columns = columns(&record);
             }
             Err(error) => {
-                (stored.status, stored.detail) = failure(&error, within.completed(), stored.seconds, resolution);
+                (stored.status, stored.detail) = failure(&error, within.0.completed(), stored.seconds, resolution);
                 if stored.status == LevelStatus::Failed {
                     stored.walls = vec![stored.seconds];
                 }
