@@ -69,8 +69,8 @@ pub struct Head {
     pub date: String,
     /// Directory in which the program was started; relative paths refer to it.
     pub directory: PathBuf,
-    /// Command line arguments.
-    pub arguments: Vec<String>,
+    /// Arguments of the command that wrote the plan; in earlier plans, a list of words.
+    pub arguments: toml::Value,
     /// Hashes of the input files of the tasks, by path.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
@@ -84,7 +84,7 @@ impl Head {
     /// Returns the contents of `plan.toml` for this program. [`Plan::write`] sets the number, the hash and the expected
     /// time of the tasks.
     #[must_use]
-    pub fn new(kind: Kind, arguments: Vec<String>, timed: bool) -> Self {
+    pub fn new(kind: Kind, arguments: toml::Value, timed: bool) -> Self {
         Self {
             format: FORMAT,
             kind,
