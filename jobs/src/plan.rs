@@ -3,8 +3,7 @@
 use crate::fault::Fault;
 use crate::shard;
 use crate::task::{self, Task};
-use grainbench_scene::error::expected_and_found;
-use grainbench_scene::text::line_of;
+use grainbench_store::artifact::{read_text, read_toml};
 use grainbench_store::results::RESULTS;
 use grainbench_store::{StagedDir, WriteError, is_scratch, key};
 use serde::{Deserialize, Serialize};
@@ -157,7 +156,7 @@ impl Plan {
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let head = Self::head(path)?;
         let file = path.join(TASKS);
-        let text = text_of(&file)?;
+        let text = read_text(&file)?;
         if hash(&text) != head.hash {
             return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
         }
@@ -178,12 +177,7 @@ impl Plan {
                 format!("no {HEAD} in it"),
             ));
         }
-        let text = text_of(&file)?;
-        let head: Head = toml::from_str(&text).map_err(|error| {
-            let place = format!("{}:{}", file.display(), line_of(&text, &error).unwrap_or(1));
-            let (expected, found) = expected_and_found(error.message());
-            Fault::expected(place, &expected, found)
-        })?;
+        let head: Head = read_toml(&file)?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
         if head.format != FORMAT {
             return wrong("format = 1", head.format.to_string());
@@ -243,9 +237,4 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
 
 fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
-}
-
-fn text_of(file: &Path) -> Result<String, Fault> {
-    let bytes = fs::read(file).map_err(|error| Fault::in_file(file, "a file that can be read", error))?;
-    String::from_utf8(bytes).map_err(|_| Fault::in_file(file, "UTF-8 text", "other bytes"))
 }

@@ -64,11 +64,7 @@ fn one_line(text: &str) -> String {
     tamed(text, |_| false)
 }
 
-/// Reads a file.
-///
-/// # Errors
-/// When the file is absent or cannot be read.
-pub fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
+fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
     fs::read(path).map_err(|source| ReadError::Unreadable { path: path.to_owned(), source })
 }
 
@@ -108,12 +104,20 @@ pub fn parse_json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, R
     })
 }
 
+/// Reads a text file.
+///
+/// # Errors
+/// When the file cannot be read or is not UTF-8.
+pub fn read_text(path: &Path) -> Result<String, ReadError> {
+    String::from_utf8(read(path)?).map_err(|_| ReadError::other(path, "UTF-8 text", "other bytes"))
+}
+
 /// Reads a TOML file.
 ///
 /// # Errors
 /// When the file cannot be read or contains other keys or values. The error names the line.
 pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
-    let text = String::from_utf8(read(path)?).map_err(|_| ReadError::other(path, "UTF-8 text", "other bytes"))?;
+    let text = read_text(path)?;
     toml::from_str(&text).map_err(|error| {
         let (expected, found) = expected_and_found(error.message());
         let reason = format!("expected {}, found {}", one_line(&expected), one_line(&found));
