@@ -299,14 +299,17 @@ mod tests {
     /// changed in one bit. The error names the file.
     #[test]
     fn a_damaged_result_is_named() {
-        let runs = cases().into_iter().flat_map(all).filter(|run| !run.wrong && run.folder().is_dir());
         let size = |run: &StorableRun| {
             fs::read_dir(run.folder()).map_or(0, |files| {
                 files.flatten().map(|file| file.metadata().map_or(0, |about| about.len())).sum::<u64>()
             })
         };
-        let stored = runs.filter(|run| run.run.reading.is_some()).min_by_key(size).unwrap();
-        let scene = crate::runner(stored.case).given(&stored.claim, &stored.run, false).unwrap();
+        let mut runs: Vec<StorableRun> = cases().into_iter().flat_map(all).collect();
+        runs.retain(|run| !run.wrong && run.run.reading.is_some() && run.folder().is_dir());
+        runs.sort_by_key(size);
+        // The scenes of some runs need third-party data.
+        let scene = |run: &StorableRun| crate::runner(run.case).given(&run.claim, &run.run, false).ok();
+        let (stored, scene) = runs.iter().find_map(|run| Some((run, scene(run)?))).unwrap();
         let copy = tempfile::tempdir().unwrap();
         let mut paths = Vec::new();
         for entry in fs::read_dir(stored.folder()).unwrap().map(|entry| entry.unwrap()) {

@@ -21,8 +21,7 @@ use grainbench_solver::failure::StorageError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
-use grainbench_store::artifact::{Directory, Json};
-use grainbench_store::{WriteError, key};
+use grainbench_store::{WriteError, artifact::Directory, artifact::Json, key};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -468,7 +467,7 @@ impl<'a> Measurement<'a> {
         }
         // A result that cannot be stored is computed again.
         let test = (begin.elapsed().as_secs_f64(), perturbed);
-        let _ = self.study.cache.put::<Json<(f64, Perturbed)>>(&name, &test);
+        let _ = self.study.cache.put::<Json<_>>(&name, &test);
         self.perturbed = Some(test.1);
     }
 
