@@ -10,7 +10,7 @@ use std::sync::OnceLock;
 use std::time::SystemTime;
 
 use grainbench_scene::error::expected_and_found;
-use grainbench_scene::text::{line_of, tamed};
+use grainbench_scene::text::tamed;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use tempfile::TempDir;
@@ -121,7 +121,8 @@ pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
     toml::from_str(&text).map_err(|error| {
         let (expected, found) = expected_and_found(error.message());
         let reason = format!("expected {}, found {}", one_line(&expected), one_line(&found));
-        let place = format!(":{}", line_of(&text, &error).unwrap_or(1));
+        let start = error.span().map_or(0, |span| span.start.min(text.len()));
+        let place = format!(":{}", 1 + text.bytes().take(start).filter(|&byte| byte == b'\n').count());
         ReadError::Damaged { path: path.to_owned(), place, reason }
     })
 }
