@@ -16,6 +16,7 @@ use grainbench_solver::failure::{Failure, RunError};
 use grainbench_solver::record::{Cost, Record, Series};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
+use grainbench_store::ReadError;
 use grainbench_store::artifact::{read_listed, read_toml};
 
 use crate::deck::{Program, Stepping};
@@ -60,7 +61,7 @@ impl StoredRun {
             if provenance.blake3.contains_key(name) {
                 return Ok(directory.join(name));
             }
-            Err(StoredError::Unlisted { provenance: list.clone(), name: name.to_owned() })
+            Err(ReadError::other(&list, format!("the hash of `{name}`"), "none"))
         };
         let (series, half_step) = (read_table(&listed(SERIES)?)?, read_table(&listed(HALF_STEP_SERIES)?)?);
         check_half_step(directory, &series, &half_step)?;
@@ -157,15 +158,15 @@ pub fn probe_series(scene: &Scene, values: impl Fn(&str) -> Option<Vec<f64>>) ->
 }
 
 /// Checks that both series have times, that these times are equal, and that the series of the run has steps.
-fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), StoredError> {
-    let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
-        let path = directory.join(file);
-        let missing = || StoredError::Column { path, name: name.to_owned() };
+fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), ReadError> {
+    let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, ReadError> {
+        let missing = || ReadError::other(&directory.join(file), format!("a column `{name}`"), "none");
         Ok(table.values(table.column(name).ok_or_else(missing)?).collect())
     };
     column(run, SERIES, "step")?;
     let (of_run, of_half) = (column(run, SERIES, "time")?, column(half, HALF_STEP_SERIES, "time")?);
-    let differing = |found: String| StoredError::Twin { path: directory.join(HALF_STEP_SERIES), found };
+    let differing =
+        |found: String| ReadError::other(&directory.join(HALF_STEP_SERIES), format!("the times of `{SERIES}`"), found);
     if of_run.len() != of_half.len() {
         return Err(differing(format!("{} rows instead of {}", of_half.len(), of_run.len())));
     }
