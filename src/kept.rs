@@ -3,7 +3,10 @@
 pub use grainbench_cases::kept::sources;
 use grainbench_reports::measured::{Costs, Effects, Measurements, Stability};
 use grainbench_reports::study::Study;
+use grainbench_store::ReadError;
+use grainbench_store::artifact::parse_json;
 use grainbench_studies::kept::{COST, EFFECTS, STABILITY};
+use std::path::Path;
 
 /// Cost measurements of external solvers, and of our solvers in the same scenes.
 const PEERS: &str = include_str!("../peers/cost.json");
@@ -12,10 +15,8 @@ const PEERS: &str = include_str!("../peers/cost.json");
 ///
 /// # Errors
 /// When a file cannot be read as a study. The error names the file.
-pub fn measured() -> Result<Measurements, String> {
-    let read = |name: &str, text: &str| -> Result<Study, String> {
-        serde_json::from_str(text).map_err(|error| format!("{name}: {error}"))
-    };
+pub fn measured() -> Result<Measurements, ReadError> {
+    let read = |name: &str, text: &str| parse_json::<Study>(Path::new(name), text.as_bytes());
     let mut cost = Costs::from_study(&read("studies/kept/cost.json", COST)?, &sources);
     cost.add(Costs::from_study(&read("peers/cost.json", PEERS)?, &sources));
     let stability = Stability::from_study(&read("studies/kept/stability.json", STABILITY)?, &sources);

@@ -1,6 +1,12 @@
 //! Stored results of the external solvers in `peers/`.
 
 use grainbench_reports::judged::ExternalResults;
+use grainbench_store::ReadError;
+use grainbench_store::artifact::parse_json;
+use std::path::Path;
+
+/// Name of the file with stored results, in the directory of a manifest.
+pub const STORED: &str = "judged.json";
 
 /// Stored results, by the name of the solver's directory in `peers/`.
 pub const KEPT: [(&str, &str); 5] = [
@@ -15,9 +21,7 @@ pub const KEPT: [(&str, &str); 5] = [
 ///
 /// # Errors
 /// When a file cannot be read as stored results. The error names the file.
-pub fn kept() -> Result<Vec<ExternalResults>, String> {
-    let read = |(name, text): (&str, &str)| {
-        ExternalResults::read(text).map_err(|error| format!("peers/{name}/judged.json: {error}"))
-    };
+pub fn kept() -> Result<Vec<ExternalResults>, ReadError> {
+    let read = |(name, text): (&str, &str)| parse_json(&Path::new("peers").join(name).join(STORED), text.as_bytes());
     KEPT.into_iter().map(read).collect()
 }

@@ -1,5 +1,6 @@
 //! Runs that can be interrupted and continued from periodic checkpoints.
 
+use crate::harness::wrapper::Start;
 use crate::scene::end_state::EndState;
 use crate::scene::scene::Scene;
 use crate::solver::Solver;
@@ -39,10 +40,7 @@ pub fn run(
 ) -> Result<Record, RunError> {
     let before = from.map_or(Some(0.0), seconds).unwrap_or(f64::NAN);
     let mut watcher = CheckpointWriter { observer, place, before, begun: std::time::Instant::now() };
-    let mut record = match from {
-        None => solver.run(scene, resolution, &mut watcher)?,
-        Some(checkpoint) => solver.restart(scene, resolution, checkpoint, &mut watcher)?,
-    };
+    let mut record = Start { scene, resolution, from }.run(solver, &mut watcher)?;
     record.cost.wall_seconds += before;
     Ok(record)
 }

@@ -12,14 +12,14 @@ use grainbench_harness::reading::Table;
 use grainbench_harness::run::{FinishedRun, ResultOrigin, Run, Set};
 use grainbench_harness::solvers::StoredResult;
 use grainbench_reference::deck::Stepping;
-use grainbench_reference::stored::{compressed, is_scene_of, scene_hash_by_bits};
+use grainbench_reference::stored::{compressed, csv_of, is_scene_of, probe_series, scene_hash_by_bits};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::{Failure, RunError};
-use grainbench_solver::record::{Cost, Provenance as RecordProvenance, Record, Series};
-use grainbench_solver::recorder::Recorder;
+use grainbench_solver::record::{Cost, Provenance as RecordProvenance, Record};
+use grainbench_store::ReadError;
+use grainbench_store::artifact::{hashes, read_listed, read_toml};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::{Path, PathBuf};
 
 const PROVENANCE: &str = "provenance.toml";
@@ -168,45 +168,36 @@ pub(crate) fn load(
     if !folder.is_dir() {
         return None;
     }
-    let broken = |reason: String| RunError::Program {
-        solver: run.solver.to_owned(),
-        failure: Failure::Output(format!("{}: {reason}", folder.display())),
-        last_lines: Vec::new(),
+    Some(read(&folder, run, scene))
+}
+
+fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, RunError> {
+    let solver = run.solver.to_owned();
+    let broken = |error: ReadError| {
+        let failure = Failure::Output(error.to_string());
+        RunError::Program { solver: solver.clone(), failure, last_lines: Vec::new() }
     };
-    Some(read(&folder, run, scene).map_err(|error| match error {
-        StoredResultError::Stale(reason) => RunError::Stale { solver: run.solver.to_owned(), reason },
-        StoredResultError::Broken(reason) => broken(reason),
-    }))
-}
-
-/// Reason why a stored result cannot be used.
-enum StoredResultError {
-    /// The result belongs to another scene, time step or evaluation of snapshots.
-    Stale(String),
-    /// A file is missing, damaged or changed.
-    Broken(String),
-}
-
-fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, StoredResultError> {
-    let text =
-        fs::read_to_string(folder.join(PROVENANCE)).map_err(|error| StoredResultError::Broken(error.to_string()))?;
-    let provenance: Provenance = toml::from_str(&text).map_err(|error| StoredResultError::Broken(error.to_string()))?;
+    let list = folder.join(PROVENANCE);
+    let provenance: Provenance = read_toml(&list).map_err(broken)?;
     let reading = run.reading.map_or("", |reading| reading.name);
-    let stepping = Stepping::new(scene, &run.resolution).map_err(StoredResultError::Broken)?;
+    let stepping = Stepping::new(scene, &run.resolution)
+        .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
     if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let reason = format!(
             "`{name}` belongs to another scene, time step or evaluation; `grainbench reference keep` computes \
                      it again"
         );
-        return Err(StoredResultError::Stale(reason));
+        return Err(RunError::Stale { solver, reason });
     }
     let mut tables = Vec::new();
     for (file, expected) in &provenance.blake3 {
-        tables.push(table(folder, file, expected).map_err(StoredResultError::Broken)?);
+        tables.push(table(&list, file, expected).map_err(broken)?);
     }
     let place = tables.iter().position(|table| table.name == SERIES);
-    let series = place.map(|place| series(scene, &tables.remove(place))).unwrap_or_default();
+    let series = place.map(|place| tables.remove(place)).unwrap_or_default();
+    // Columns that the record of the scene lacks are dropped.
+    let series = probe_series(scene, |name| series.column(name).map(<[f64]>::to_vec));
     let words = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
     let is_current = is_program(run.solver) || provenance.sources == sources(run.solver);
     Ok(StoredResult {
@@ -216,44 +207,23 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, StoredR
     })
 }
 
-/// Reads a table from a file with the expected hash. An empty field becomes NaN.
-fn table(folder: &Path, file: &str, expected: &str) -> Result<Table, String> {
-    let name = file.strip_suffix(ENDING).filter(|name| name.bytes().all(|byte| byte.is_ascii_alphanumeric()));
-    let name = name.ok_or_else(|| format!("expected the name of a table, found `{file}`"))?;
-    let bytes = fs::read(folder.join(file)).map_err(|error| format!("{file}: {error}"))?;
-    let found = blake3::hash(&bytes).to_hex().to_string();
-    if found != expected {
-        return Err(format!("{file}: expected the hash {expected}, found {found}"));
-    }
+/// Reads a table from a file that `list` lists with this hash. An empty field becomes NaN.
+fn table(list: &Path, file: &str, hash: &str) -> Result<Table, ReadError> {
+    let bytes = read_listed(list, file, hash)?;
+    let wrong = |expected: &str, found: &str| ReadError::other(&list.with_file_name(file), expected, found);
+    let name = file.strip_suffix(ENDING).ok_or_else(|| wrong("the name of a table", file))?;
+    let damaged = |error: csv::Error| wrong("a table", &error.to_string());
     let mut reader = csv::Reader::from_reader(GzDecoder::new(&bytes[..]));
-    let columns: Vec<String> =
-        reader.headers().map_err(|error| format!("{file}: {error}"))?.iter().map(str::to_owned).collect();
+    let columns: Vec<String> = reader.headers().map_err(damaged)?.iter().map(str::to_owned).collect();
     let mut values = vec![Vec::new(); columns.len()];
     let mut row = csv::StringRecord::new();
-    while reader.read_record(&mut row).map_err(|error| format!("{file}: {error}"))? {
+    while reader.read_record(&mut row).map_err(damaged)? {
         for (column, field) in values.iter_mut().zip(&row) {
             let value = if field.is_empty() { Ok(f64::NAN) } else { field.parse() };
-            column.push(value.map_err(|_| format!("{file}: expected a number, found `{field}`"))?);
+            column.push(value.map_err(|_| wrong("a number", &format!("`{field}`")))?);
         }
     }
     Ok(Table { name: name.to_owned(), columns, values })
-}
-
-/// Converts a stored table to a time series. Columns that the record of the scene lacks are dropped.
-fn series(scene: &Scene, table: &Table) -> Series {
-    let values = |name: &str| table.column(name).map(<[f64]>::to_vec).unwrap_or_default();
-    let mut series = Series {
-        step: values("step").iter().map(|step| *step as u64).collect(),
-        time: values("time"),
-        ..Series::default()
-    };
-    for column in Recorder::new(scene, 1.0, 1).finish().0.columns {
-        if let Some(of_column) = table.column(&column.name) {
-            series.values.push(of_column.to_vec());
-            series.columns.push(column);
-        }
-    }
-    series
 }
 
 /// Returns name and bytes of each file that stores a finished run. `made` contains the commit and the date.
@@ -267,7 +237,7 @@ pub fn files(
     made: [&str; 2],
 ) -> Result<Vec<(String, Vec<u8>)>, String> {
     let record = &done.record;
-    let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&text_of_series(&record.series)))];
+    let mut files = vec![(format!("{SERIES}{ENDING}"), compressed(&csv_of(&record.series)))];
     for table in done.tables.iter() {
         files.push((format!("{}{ENDING}", table.name), compressed(&text(&table.columns, &table.values))));
     }
@@ -292,23 +262,12 @@ pub fn files(
         scene: scene_hash_by_bits(given, &Stepping::new(given, &wanted.run.resolution)?),
         sources: sources(wanted.run.solver).filter(|_| !is_program(wanted.run.solver)),
         command: format!("grainbench reference keep {}{paper_size}", wanted.case.name),
-        blake3: files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect(),
+        blake3: hashes(&files),
         run: record.provenance.clone(),
         cost: record.cost,
     };
     files.push((PROVENANCE.to_owned(), toml::to_string(&provenance).map_err(|error| error.to_string())?.into_bytes()));
     Ok(files)
-}
-
-/// Returns a time series as text with all digits.
-fn text_of_series(series: &Series) -> String {
-    let mut lines =
-        format!("step,time{}\n", series.columns.iter().map(|column| format!(",{}", column.name)).collect::<String>());
-    for (at, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
-        let values: String = series.values.iter().map(|values| format!(",{:?}", values[at])).collect();
-        lines.push_str(&format!("{step},{time:?}{values}\n"));
-    }
-    lines
 }
 
 /// Returns a table as text with [`DIGITS`] digits. NaN becomes an empty field.
@@ -328,4 +287,49 @@ fn rounded(value: f64) -> String {
     }
     let short: f64 = format!("{value:.*e}", DIGITS - 1).parse().unwrap_or(value);
     format!("{short}")
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use std::fs;
+
+    /// The smallest stored result with a table is read from a copy. Each of its files is then removed, emptied, truncated, and
+    /// changed in one bit. The error names the file.
+    #[test]
+    fn a_damaged_result_is_named() {
+        let size = |run: &StorableRun| {
+            fs::read_dir(run.folder()).map_or(0, |files| {
+                files.flatten().map(|file| file.metadata().map_or(0, |about| about.len())).sum::<u64>()
+            })
+        };
+        let mut runs: Vec<StorableRun> = cases().into_iter().flat_map(all).collect();
+        runs.retain(|run| !run.wrong && run.run.reading.is_some() && run.folder().is_dir());
+        runs.sort_by_key(size);
+        // The scenes of some runs need third-party data.
+        let scene = |run: &StorableRun| crate::runner(run.case).given(&run.claim, &run.run, false).ok();
+        let (stored, scene) = runs.iter().find_map(|run| Some((run, scene(run)?))).unwrap();
+        let copy = tempfile::tempdir().unwrap();
+        let mut paths = Vec::new();
+        for entry in fs::read_dir(stored.folder()).unwrap().map(|entry| entry.unwrap()) {
+            paths.push(copy.path().join(entry.file_name()));
+            fs::copy(entry.path(), &paths[paths.len() - 1]).unwrap();
+        }
+        let message = || read(copy.path(), &stored.run, &scene).err().map(|error| error.to_string());
+        assert_eq!(message(), None);
+        for path in paths {
+            let bytes = fs::read(&path).unwrap();
+            let mut flipped = bytes.clone();
+            flipped[bytes.len() / 2] ^= 0x80;
+            fs::remove_file(&path).unwrap();
+            let named = format!("{}:", path.display());
+            assert!(message().unwrap().contains(&named), "{:?}", message());
+            for damaged in [&[], &bytes[..bytes.len() / 2], &flipped] {
+                fs::write(&path, damaged).unwrap();
+                assert!(message().unwrap().contains(&named), "{:?}", message());
+            }
+            fs::write(&path, bytes).unwrap();
+        }
+    }
 }

@@ -1,15 +1,13 @@
 //! Material point method with settings in its name, such as `mpm+quadratic+apic`, for claims that need other settings
 //! than the defaults.
 
+use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_mpm::solver::Mpm;
-use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
-use grainbench_solver::checkpoint::Checkpoint;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Record;
-use grainbench_solver::resolution::Resolution;
 
 /// Returns the solver with a name such as `mpm+apic`; `None` if the name or a word after `+` is unknown.
 pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
@@ -18,7 +16,7 @@ pub(crate) fn by_name(name: &str) -> Option<Box<dyn Solver>> {
     for word in words.split('+') {
         change(&mut mpm.setting, word)?;
     }
-    Some(Box::new(VariedMpm { name: name.to_owned(), mpm }))
+    Some(Box::new(Wrapped(VariedMpm { name: name.to_owned(), mpm })))
 }
 
 /// Changes the setting that a word of the solver name selects; `None` if the word is unknown.
@@ -54,38 +52,18 @@ struct VariedMpm {
     mpm: Mpm,
 }
 
-impl VariedMpm {
-    fn named(&self, record: Record) -> Record {
-        let mut record = record;
-        record.provenance.solver.clone_from(&self.name);
-        record
+impl Wrapper for VariedMpm {
+    fn inner(&self) -> &dyn Solver {
+        &self.mpm
     }
-}
 
-impl Solver for VariedMpm {
     fn name(&self) -> String {
         self.name.clone()
     }
 
-    fn has_springs(&self) -> bool {
-        self.mpm.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.mpm.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.run(scene, resolution, observer)?))
-    }
-
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        Ok(self.named(self.mpm.restart(scene, resolution, from, observer)?))
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let mut record = start.run(&self.mpm, observer)?;
+        record.provenance.solver.clone_from(&self.name);
+        Ok(record)
     }
 }

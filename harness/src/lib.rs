@@ -31,3 +31,4 @@ pub mod subject;
 pub mod tolerance;
 pub mod uncertainty;
 pub mod verdict;
+pub mod wrapper;

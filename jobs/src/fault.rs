@@ -1,6 +1,6 @@
 //! Errors when plans are made, run or reported.
 
-use grainbench_store::WriteError;
+use grainbench_store::{ReadError, WriteError};
 use std::fmt::Display;
 use std::path::Path;
 use thiserror::Error;
@@ -11,6 +11,9 @@ pub enum Fault {
     /// Invalid input. The message names the place, the expected and the actual content.
     #[error("{0}")]
     Input(String),
+    /// A stored file is damaged, or is another file than expected.
+    #[error(transparent)]
+    Read(#[from] ReadError),
     /// The disk rejected a write.
     #[error(transparent)]
     Write(#[from] WriteError),

@@ -3,7 +3,7 @@
 use crate::fault::Fault;
 use crate::shard;
 use crate::task::{self, Task};
-use grainbench_scene::toml_error::TomlError;
+use grainbench_store::artifact::{read_text, read_toml};
 use grainbench_store::results::RESULTS;
 use grainbench_store::{StagedDir, WriteError, is_scratch, key};
 use serde::{Deserialize, Serialize};
@@ -68,8 +68,8 @@ pub struct Head {
     pub date: String,
     /// Directory in which the program was started; relative paths refer to it.
     pub directory: PathBuf,
-    /// Command line arguments.
-    pub arguments: Vec<String>,
+    /// Arguments of the command that wrote the plan; in earlier plans, a list of words.
+    pub arguments: toml::Value,
     /// Hashes of the input files of the tasks, by path.
     #[serde(default)]
     pub inputs: BTreeMap<String, String>,
@@ -83,7 +83,7 @@ impl Head {
     /// Returns the contents of `plan.toml` for this program. [`Plan::write`] sets the number, the hash and the expected
     /// time of the tasks.
     #[must_use]
-    pub fn new(kind: Kind, arguments: Vec<String>, timed: bool) -> Self {
+    pub fn new(kind: Kind, arguments: toml::Value, timed: bool) -> Self {
         Self {
             format: FORMAT,
             kind,
@@ -156,7 +156,7 @@ impl Plan {
     pub fn read(path: &Path) -> Result<Self, Fault> {
         let head = Self::head(path)?;
         let file = path.join(TASKS);
-        let text = text_of(&file)?;
+        let text = read_text(&file)?;
         if hash(&text) != head.hash {
             return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
         }
@@ -177,11 +177,7 @@ impl Plan {
                 format!("no {HEAD} in it"),
             ));
         }
-        let text = text_of(&file)?;
-        let head: Head = toml::from_str(&text).map_err(|error| {
-            let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
-            Fault::expected(format!("{}:{line}", file.display()), &expected, found)
-        })?;
+        let head: Head = read_toml(&file)?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
         if head.format != FORMAT {
             return wrong("format = 1", head.format.to_string());
@@ -241,9 +237,4 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
 
 fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
-}
-
-fn text_of(file: &Path) -> Result<String, Fault> {
-    let bytes = fs::read(file).map_err(|error| Fault::in_file(file, "a file that can be read", error))?;
-    String::from_utf8(bytes).map_err(|_| Fault::in_file(file, "UTF-8 text", "other bytes"))
 }

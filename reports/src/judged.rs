@@ -102,22 +102,6 @@ impl ExternalResults {
         now.rows.iter().filter_map(line).collect()
     }
 
-    /// Returns the results as JSON text.
-    ///
-    /// # Errors
-    /// When a value has no JSON form. This does not occur in reports of this project.
-    pub fn text(&self) -> Result<String, serde_json::Error> {
-        serde_json::to_string_pretty(self).map(|text| text + "\n")
-    }
-
-    /// Reads stored results.
-    ///
-    /// # Errors
-    /// When the text is not in the format that [`ExternalResults::text`] writes.
-    pub fn read(text: &str) -> Result<Self, serde_json::Error> {
-        serde_json::from_str(text)
-    }
-
     /// Counts the results of one case, or all results.
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
@@ -165,6 +149,8 @@ pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
 mod tests {
     use super::*;
     use crate::sample;
+    use grainbench_store::artifact::parse_json;
+    use std::path::Path;
 
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
@@ -174,14 +160,16 @@ mod tests {
             &report.provenance,
             &report.sections,
         );
-        assert_eq!(ExternalResults::read(&judged.text().unwrap()).unwrap(), judged);
+        let read = |text: &str| parse_json::<ExternalResults>(Path::new("judged.json"), text.as_bytes());
+        let text = serde_json::to_string(&judged).unwrap();
+        assert_eq!(read(&text).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
         assert_eq!((count.pass, count.red), (counts.pass, counts.red()));
         assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
         assert_eq!(judged.count(Some("no-such-case")), Count::default());
-        assert!(ExternalResults::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
+        assert!(read(&text.replace("\"program\"", "\"programme\"")).is_err());
         // Files of earlier versions lack some keys of a result.
         let mut stored = serde_json::to_value(&judged).unwrap();
         for row in stored["rows"].as_array_mut().unwrap() {
@@ -190,10 +178,10 @@ mod tests {
                 assert!(row.remove(key).is_some(), "{key}");
             }
         }
-        let earlier = ExternalResults::read(&stored.to_string()).unwrap();
+        let earlier = read(&stored.to_string()).unwrap();
         assert_eq!(earlier.count(None), count);
         stored["rows"][0].as_object_mut().unwrap().remove("quantity");
-        assert!(ExternalResults::read(&stored.to_string()).is_err());
+        assert!(read(&stored.to_string()).is_err());
     }
 
     #[test]

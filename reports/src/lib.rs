@@ -38,5 +38,5 @@ pub use headline::Headline;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
-pub use store::{LoadError, SaveError, write_report, write_report_and_parquet};
+pub use store::{SaveError, write_report, write_report_and_parquet};
 pub use terminal::{summary_table, summary_table_within};

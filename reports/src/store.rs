@@ -1,11 +1,9 @@
 //! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
-use std::fs;
 use std::io;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use grainbench_harness::figure::{Drawing, Figure, Graph};
-use grainbench_scene::text::tamed;
 use rayon::prelude::*;
 use thiserror::Error;
 
@@ -18,8 +16,8 @@ use crate::results::{points_csv, results_json};
 use crate::row;
 use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
 use crate::table::{Cell, Column, Table};
-use grainbench_store::StagedDir;
-use grainbench_store::WriteError;
+use grainbench_store::artifact::read_json;
+use grainbench_store::{ReadError, StagedDir, WriteError};
 
 /// File from which all files of a report can be written again.
 pub const REPORT_FILE: &str = "report.json";
@@ -54,39 +52,6 @@ pub enum SaveError {
     NoFont {
         /// Font families of the style.
         families: String,
-    },
-}
-
-/// Error when a report or a record cannot be read.
-#[derive(Debug, Error)]
-pub enum LoadError {
-    /// The file cannot be read.
-    #[error("cannot read {}: {source}", path.display())]
-    Read {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// The directory contains the output of a run that crashed or was interrupted.
-    #[error("{}: expected a complete record, but the run did not finish; the file contains the reason", path.display())]
-    Broken {
-        /// Path of the file with the reason.
-        path: PathBuf,
-    },
-    /// The file is not JSON, or not a valid report or record.
-    #[error("{}, line {line}, column {column}, at `{place}`: {reason}", path.display())]
-    Damaged {
-        /// Path of the file.
-        path: PathBuf,
-        /// Line, from 1.
-        line: usize,
-        /// Column, from 1.
-        column: usize,
-        /// Path of keys to the invalid value.
-        place: String,
-        /// Expected content and content found.
-        reason: String,
     },
 }
 
@@ -201,57 +166,16 @@ impl Report {
     ///
     /// # Errors
     /// When the file is missing or damaged. The message names the position in the file.
-    pub fn load(dir: impl AsRef<Path>) -> Result<Self, LoadError> {
-        let path = dir.as_ref().join(REPORT_FILE);
-        let text = match fs::read_to_string(&path) {
-            Ok(text) => text,
-            Err(source) => return Err(LoadError::Read { path, source }),
-        };
-        parse(&path, &text)
+    pub fn load(dir: impl AsRef<Path>) -> Result<Self, ReadError> {
+        read_json(&dir.as_ref().join(REPORT_FILE))
     }
-}
-
-/// Returns a text from a file on one line, without control characters.
-fn one_line(text: &str) -> String {
-    tamed(text, |_| false)
-}
-
-/// Returns the message of a JSON error, without the position in the file.
-fn reason(error: &serde_json::Error, text: &str) -> String {
-    // The message of the parser ends with line and column, which the error states separately.
-    let words = error.to_string();
-    let words = words.split(" at line ").next().unwrap_or_default();
-    match words.strip_prefix("EOF while parsing ") {
-        Some(_) if text.trim().is_empty() => "expected JSON, found an empty file".to_owned(),
-        Some(what) => format!("expected the rest of {what}, found the end of the file"),
-        None => words.to_owned(),
-    }
-}
-
-/// Reads a JSON file of this project. An error names the position in the file.
-pub(crate) fn parse<T: serde::de::DeserializeOwned>(path: &Path, text: &str) -> Result<T, LoadError> {
-    let mut json = serde_json::Deserializer::from_str(text);
-    let read = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-        let place = error.path().to_string();
-        (place, error.into_inner())
-    });
-    let read = read.and_then(|value| match json.end() {
-        Ok(()) => Ok(value),
-        Err(error) => Err((".".to_owned(), error)),
-    });
-    read.map_err(|(place, error)| LoadError::Damaged {
-        path: path.to_owned(),
-        line: error.line(),
-        column: error.column(),
-        place: one_line(&place),
-        reason: one_line(&reason(&error, text)),
-    })
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sample;
+    use std::fs;
 
     #[test]
     fn redraws_the_same_page_from_the_directory_alone() {
@@ -283,7 +207,7 @@ mod tests {
     fn a_damaged_report_is_an_error_that_names_the_place() {
         let dir = tempfile::tempdir().unwrap();
         let message = Report::load(dir.path()).unwrap_err().to_string();
-        assert!(message.starts_with("cannot read ") && message.contains(REPORT_FILE), "{message}");
+        assert!(message.contains("report.json: expected a readable file, found "), "{message}");
 
         write_report(dir.path(), &sample::report()).unwrap();
         let path = dir.path().join(REPORT_FILE);

@@ -8,7 +8,8 @@ use crate::store::SaveError;
 use crate::table::{Cell, Column as Head, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::{Outcome, Severity};
-use grainbench_store::StagedDir;
+use grainbench_store::artifact::read_json;
+use grainbench_store::{ReadError, StagedDir};
 use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
@@ -68,15 +69,16 @@ fn key(about: &Map<String, Value>) -> String {
 }
 
 impl Column {
-    /// Reads a report from the text of its `results.json`.
+    /// Reads a report from its `results.json`.
     ///
     /// # Errors
-    /// When the text is not a valid `results.json`.
-    pub fn read(name: &str, text: &str) -> Result<Self, serde_json::Error> {
-        let Results { provenance, verdicts, points } = serde_json::from_str(text)?;
+    /// When the file is missing, damaged or not a valid `results.json`.
+    pub fn read(name: &str, path: &Path) -> Result<Self, ReadError> {
+        let Results { provenance, verdicts, points } = read_json(path)?;
         let outcome = |row: &Map<String, Value>| row.get("verdict").map_or(Ok(None), Option::<Outcome>::deserialize);
         let rows = verdicts.iter().map(|row| Ok(outcome(row)?.map(|outcome| (key(row), outcome))));
-        let rows = rows.filter_map(Result::transpose).collect::<Result<_, serde_json::Error>>()?;
+        let rows = rows.filter_map(Result::transpose).collect::<Result<_, serde_json::Error>>();
+        let rows = rows.map_err(|error| ReadError::other(path, "outcomes of results", error.to_string()))?;
         let counts = |point: &Map<String, Value>| {
             // In a study, the counts of a point are in an object of their own.
             let inner = point.get("counts").and_then(Value::as_object).unwrap_or(point);

@@ -5,6 +5,7 @@ use grainbench::harness::claim::Claim;
 use grainbench::harness::verdict::{Control, Verdict};
 use grainbench::reports::terminal::is_red;
 use grainbench::reports::{Report, line, number};
+use grainbench::store::artifact::read_json;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -29,15 +30,7 @@ impl EarlierReport {
     /// Reads an earlier report. `path` is its directory or its `results.json`, and `place` is the option that contains the path.
     pub(crate) fn read(place: &str, path: &Path) -> Result<Self, Fault> {
         let file = if path.is_dir() { path.join("results.json") } else { path.to_owned() };
-        let fault = |found: String| {
-            let expected = "the directory of a report, or its results.json";
-            Fault::input(format!("{place}: {}: expected {expected}, found {found}", file.display()))
-        };
-        let text = std::fs::read_to_string(&file).map_err(|error| fault(error.to_string()))?;
-        if text.trim().is_empty() {
-            return Err(fault("an empty file".to_owned()));
-        }
-        serde_json::from_str(&text).map_err(|error| fault(format!("other text: {error}")))
+        read_json(&file).map_err(|error| Fault::input(format!("{place}: {error}")))
     }
 
     /// Returns the cases that an interrupted run named. The list is empty for a run that was not interrupted, and for a

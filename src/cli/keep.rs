@@ -3,15 +3,14 @@
 
 use super::exit::Fault;
 use super::select::CaseSelection;
+use grainbench::peers::STORED;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::Report;
 use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::study::{Study, kept_text};
-use grainbench::store::write_file;
-use std::fs;
+use grainbench::store::artifact::read_json;
+use grainbench::store::{ReadError, write_file};
 
-/// Name of the file with stored results, in the directory of a manifest.
-const KEEPS: &str = "judged.json";
 /// Version of a program that does not report its version.
 const UNKNOWN: &str = "unknown";
 
@@ -32,12 +31,8 @@ pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fa
 
 /// Reads the stored results of an external solver from the directory of its manifest.
 pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
-    let path = program.folder().join(KEEPS);
-    let wrong = |found: String| {
-        Fault::input(format!("{KEEPS} next to the manifest: expected the output of `--update-stored`, found {found}"))
-    };
-    let text = fs::read_to_string(path).map_err(|error| wrong(error.to_string()))?;
-    ExternalResults::read(&text).map_err(|error| wrong(error.to_string()))
+    let wrong = |found: ReadError| format!("--expect-stored: expected the output of `--update-stored`, found {found}");
+    read_json(&program.folder().join(STORED)).map_err(|found| Fault::input(wrong(found)))
 }
 
 /// Returns the differences between the stored and the present name and version of an external solver, in words.
@@ -60,6 +55,6 @@ pub(crate) fn keep(program: &ExternalProgram, report: &Report) -> Result<(), Fau
     let name = program.manifest().name.clone();
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let results = ExternalResults::new([name, version, adapter], &report.provenance, &report.sections);
-    let text = results.text().map_err(Fault::input)?;
-    write_file(program.folder().join(KEEPS), text.as_bytes()).map_err(Fault::writing)
+    let text = serde_json::to_string_pretty(&results).map_err(Fault::input)? + "\n";
+    write_file(program.folder().join(STORED), text).map_err(Fault::writing)
 }

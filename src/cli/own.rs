@@ -18,12 +18,12 @@ use grainbench::reports::study::stability::Limit;
 use grainbench::reports::study::{Study, write_study};
 use grainbench::scene::scene::{Duration as SceneDuration, Scene};
 use grainbench::solver::recorder::Recorder;
+use grainbench::store::artifact::Directory;
 use grainbench::store::{WriteError, key};
 use grainbench::studies::own::cost::{MATTERS, Measurement, PARTS, SceneStudy, StudyFollower};
 use grainbench::studies::own::effects::Importance;
 use grainbench::studies::own::ladder::DEFAULT;
 use grainbench::studies::own::limit;
-use grainbench::studies::own::storage::RunStore;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
@@ -154,7 +154,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let scene = read(&input.path, input.quantities)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
     let words = input.words("cost", options.budget());
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -191,7 +191,7 @@ fn scene_study<'a>(
     input: &Input<'_>,
     scene: &'a Scene,
     (solvers, named): (&'a NamedSolvers, Vec<String>),
-    cache: &'a RunStore,
+    cache: &'a Directory,
     (options, stop): (&Options, &'a (dyn Fn() -> bool + Sync)),
 ) -> SceneStudy<'a> {
     SceneStudy {
@@ -246,7 +246,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = RunStore::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));

@@ -13,6 +13,7 @@ use super::step::Step;
 use super::value::{path_and_value, positive, whole};
 use grainbench::cases::registry::read_grains;
 use grainbench::dem::stability::stable_fraction;
+use grainbench::harness::wrapper::Start;
 use grainbench::jobs::shard;
 use grainbench::jobs::sweep::Sweep;
 use grainbench::reports::export::{self, Format};
@@ -236,10 +237,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         state: None,
         interrupt,
     };
-    let record = match &from {
-        None => solver.run(&scene, &resolution, &mut watcher),
-        Some(checkpoint) => solver.restart(&scene, &resolution, checkpoint, &mut watcher),
-    };
+    let start = Start { scene: &scene, resolution: &resolution, from: from.as_ref() };
+    let record = start.run(&*solver, &mut watcher);
     let Watcher { mut snapshots, remains, state, .. } = watcher;
     let mut record = match record {
         Ok(record) => record,

@@ -1,6 +1,7 @@
-//! Keys and files of stored results, writing of files and directories completely or not at all, locks of directories, and
+//! Keys and kinds of stored files, writing of files and directories completely or not at all, locks of directories, and
 //! removal of temporary files of ended processes.
 
+pub mod artifact;
 pub mod key;
 pub mod lock;
 pub mod log;
@@ -11,7 +12,8 @@ mod scratch;
 mod staged;
 mod write;
 
+pub use artifact::ReadError;
 pub use manifest::refuse_mixed;
 pub use scratch::{is_scratch, remove_leftovers, temporary_in};
 pub use staged::{StagedDir, refuse_other_programs};
-pub use write::{FolderWriter, WriteError, parent_of, write_file};
+pub use write::{WriteError, parent_of, write_file};

@@ -4,7 +4,6 @@ use std::fs;
 use std::io;
 use std::path::{Path, PathBuf};
 
-use tempfile::TempDir;
 use thiserror::Error;
 
 use crate::scratch::temporary_in;
@@ -44,39 +43,6 @@ pub fn write_file(path: impl AsRef<Path>, bytes: impl AsRef<[u8]>) -> Result<(),
     write().map_err(|source| WriteError::new(path, source))
 }
 
-/// Writer of many files to one folder, each completely or not at all. All files share one temporary directory, so that
-/// temporary files of ended processes are searched only once.
-#[derive(Debug)]
-pub struct FolderWriter {
-    folder: PathBuf,
-    beside: TempDir,
-}
-
-impl FolderWriter {
-    /// Prepares writing to an existing folder.
-    ///
-    /// # Errors
-    /// When the folder cannot be written to.
-    pub fn new(folder: &Path) -> Result<Self, WriteError> {
-        let beside = temporary_in(folder).map_err(|source| WriteError::new(folder, source))?;
-        Ok(Self { folder: folder.to_owned(), beside })
-    }
-
-    /// Writes a file to the folder.
-    ///
-    /// # Errors
-    /// When the file cannot be written.
-    pub fn write(&self, name: &str, bytes: impl AsRef<[u8]>) -> Result<(), WriteError> {
-        let (path, staged) = (self.folder.join(name), self.beside.path().join(name));
-        let written = fs::write(&staged, bytes.as_ref()).and_then(|()| fs::rename(&staged, &path));
-        written.map_err(|source| {
-            // An incomplete file would occupy space that other files need.
-            let _ = fs::remove_file(&staged);
-            WriteError::new(path, source)
-        })
-    }
-}
-
 /// Returns the directory that contains `path`. For a bare file name this is the current directory.
 #[must_use]
 pub fn parent_of(path: &Path) -> &Path {
@@ -98,19 +64,6 @@ mod tests {
         write_file(&path, "two").unwrap();
         assert_eq!(fs::read_to_string(&path).unwrap(), "two");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 1);
-    }
-
-    #[test]
-    fn a_desk_leaves_files_and_nothing_beside_them() {
-        let dir = tempfile::tempdir().unwrap();
-        let desk = FolderWriter::new(dir.path()).unwrap();
-        for (name, text) in [("a.txt", "one"), ("b.txt", "two"), ("a.txt", "three")] {
-            desk.write(name, text).unwrap();
-        }
-        assert!(desk.write("no/such/folder", "").is_err());
-        drop(desk);
-        assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "three");
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 2);
     }
 
     #[test]

@@ -1,34 +1,33 @@
 //! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes of
 //! claims.
 //!
-//! The key of a run is a hash of its scene, solver, planted defect, resolution, SIMD backend, and of the sources, compiler and
-//! options with which the solver was built. A changed case or solver therefore repeats only the affected runs. A file that is
-//! damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or checkpoints
-//! are requested. Runs of external programs are not cached either, because these programs may change unnoticed.
+//! The key of a run is a hash of its scene, solver, planted defect, resolution, run options, SIMD backend, and of the sources,
+//! compiler and options with which the solver was built. A changed case or solver therefore repeats only the affected runs. A
+//! file that is damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or
+//! checkpoints are requested. Runs of external programs are not cached either, because these programs may change unnoticed.
 
 use grainbench_harness::solvers::{ExternalSolver, References, Solvers};
+use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_lanes::Processor;
 use grainbench_scene::scene::Scene;
-use grainbench_solver::checkpoint::{Checkpoint, fingerprint};
+use grainbench_solver::checkpoint::fingerprint;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::kept_record;
-use grainbench_solver::observer::Observer;
+use grainbench_solver::observer::{Observer, RunOptions};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
-use grainbench_store::{FolderWriter, WriteError, key, remove_leftovers};
-use std::fs::{self, File};
+use grainbench_store::artifact::{Directory, Kind};
+use grainbench_store::{ReadError, WriteError, key};
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
-use std::sync::{Arc, OnceLock};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Shortest run that is cached (s). Shorter runs are faster than reading a file.
 const LEAST: f64 = 2e-3;
 /// Largest record that is cached (bytes). A larger record would displace too many others.
 const LARGEST: usize = 256 << 20;
-/// File extension of cached runs.
-const ENDING: &str = "run";
 
 /// Function that returns the hash of the sources of a solver, or `None` for another program.
 pub type Edition = fn(&str) -> Option<String>;
@@ -46,17 +45,32 @@ pub fn run_words(solver: &str, scene: &Scene, resolution: &Resolution, read: &st
     [solver.to_owned(), fingerprint(scene).to_hex().to_string(), format!("{resolution:?}"), read.to_owned()]
 }
 
+/// Records of finished runs.
+struct CachedRun;
+
+impl Kind for CachedRun {
+    type Value = Record;
+    const ENDING: &'static str = "run";
+
+    fn encode(key: &str, record: &Record) -> Result<Vec<u8>, String> {
+        let bytes = kept_record::to_bytes(key, record)?;
+        if bytes.len() <= LARGEST { Ok(bytes) } else { Err(format!("a record of {} bytes", bytes.len())) }
+    }
+
+    fn decode(key: &str, path: &Path, bytes: &[u8]) -> Result<Record, ReadError> {
+        let wrong = || ReadError::other(path, format!("the record of run {key}"), "a damaged or other file");
+        kept_record::from_bytes(key, bytes).ok_or_else(wrong)
+    }
+}
+
 /// Folder of finished runs.
 pub struct RunCache {
+    runs: Directory,
     folder: PathBuf,
     /// Maximum size of all files (bytes).
     most: u64,
-    /// True to ignore existing files.
-    fresh: bool,
     edition: Edition,
     taken: AtomicU64,
-    /// Directory for temporary files, created with the first stored run.
-    desk: OnceLock<Option<FolderWriter>>,
 }
 
 impl RunCache {
@@ -66,11 +80,8 @@ impl RunCache {
     /// # Errors
     /// When the folder cannot be created.
     pub fn open(folder: &Path, most: u64, fresh: bool, edition: Edition) -> Result<Self, WriteError> {
-        fs::create_dir_all(folder).map_err(|source| WriteError::new(folder, source))?;
-        // Removes temporary files of killed programs.
-        remove_leftovers(folder).map_err(|source| WriteError::new(folder, source))?;
-        let folder = folder.to_owned();
-        Ok(Self { folder, most, fresh, edition, taken: AtomicU64::new(0), desk: OnceLock::new() })
+        let runs = Directory::open(folder, fresh)?;
+        Ok(Self { runs, folder: folder.to_owned(), most, edition, taken: AtomicU64::new(0) })
     }
 
     /// Returns the folder of the cache.
@@ -85,66 +96,51 @@ impl RunCache {
         self.taken.load(Ordering::Relaxed)
     }
 
-    /// Returns the key of a run, or `None` for other programs, whose runs are not cached.
-    fn name(&self, solver: &str, defect: Option<Defect>, scene: &Scene, resolution: &Resolution) -> Option<String> {
-        let program = (self.edition)(solver)?;
-        Some(key_of_run(&program, solver, scene, resolution, &format!("{defect:?} {}", Processor::new().name())))
-    }
-
-    fn path(&self, name: &str) -> PathBuf {
-        self.folder.join(format!("{name}.{ENDING}"))
+    /// Returns the key of a run, or `None` for runs that are not cached: those of other programs, those that continue
+    /// from a checkpoint, and those whose output is more than a record.
+    fn name(
+        &self,
+        (solver, defect): (&str, Option<Defect>),
+        Start { scene, resolution, from }: Start<'_>,
+        options: RunOptions,
+    ) -> Option<String> {
+        // The number of threads does not change a record.
+        let RunOptions { threads: _, checkpoint_interval, most_rows, allow_unstable, keep_snapshots, end_state } =
+            options;
+        if from.is_some() || checkpoint_interval.is_some() || !keep_snapshots || end_state {
+            return None;
+        }
+        let mut read = format!("{defect:?} {}", Processor::new().name());
+        // Default values are omitted, so that the keys of runs stored by earlier versions stay valid.
+        if allow_unstable {
+            read += " unstable";
+        }
+        if most_rows != RunOptions::DEFAULT.most_rows {
+            read += &format!(" at most {most_rows} rows");
+        }
+        Some(key_of_run(&(self.edition)(solver)?, solver, scene, resolution, &read))
     }
 
     /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
     fn take(&self, name: &str) -> Option<Record> {
-        if self.fresh {
-            return None;
-        }
-        let path = self.path(name);
-        let record = kept_record::from_bytes(name, &fs::read(&path).ok()?)?;
+        let record = self.runs.get::<CachedRun>(name).ok()?;
         self.taken.fetch_add(1, Ordering::Relaxed);
-        // The file time is the time of the last use, because the least recently used files are removed first. If it
-        // cannot be set, it stays the time of writing.
-        let _ = File::options().append(true).open(&path).and_then(|file| file.set_modified(SystemTime::now()));
+        // The least recently used files are removed first.
+        self.runs.touch::<CachedRun>(name);
         Some(record)
     }
 
     /// Stores a record, unless the run is too short or the record too large. Write errors are ignored, because the run
     /// can be repeated.
     fn put(&self, name: &str, record: &Record) {
-        if record.cost.wall_seconds < LEAST {
-            return;
-        }
-        let Ok(bytes) = kept_record::to_bytes(name, record) else { return };
-        if bytes.len() <= LARGEST
-            && let Some(desk) = self.desk.get_or_init(|| FolderWriter::new(&self.folder).ok())
-        {
-            let _ = desk.write(&format!("{name}.{ENDING}"), bytes);
+        if record.cost.wall_seconds >= LEAST {
+            let _ = self.runs.put::<CachedRun>(name, record);
         }
     }
 
     /// Removes the least recently used files until the remaining files do not exceed the maximum size.
     pub fn make_room(&self) {
-        let file_entry = |entry: fs::DirEntry| {
-            let is_one = entry.path().extension().is_some_and(|ending| ending == ENDING);
-            let about = entry.metadata().ok().filter(|_| is_one)?;
-            Some((about.modified().unwrap_or(SystemTime::UNIX_EPOCH), about.len(), entry.path()))
-        };
-        let entries = fs::read_dir(&self.folder).into_iter().flatten().flatten();
-        let mut files: Vec<(SystemTime, u64, PathBuf)> = entries.filter_map(file_entry).collect();
-        files.sort();
-        let mut all: u64 = files.iter().map(|(_, bytes, _)| bytes).sum();
-        for (_, bytes, path) in files {
-            if all <= self.most {
-                break;
-            }
-            match fs::remove_file(path) {
-                Ok(()) => all -= bytes,
-                // Another process has removed the file.
-                Err(error) if error.kind() == std::io::ErrorKind::NotFound => all -= bytes,
-                Err(_) => {}
-            }
-        }
+        self.runs.make_room::<CachedRun>(self.most);
     }
 }
 
@@ -165,7 +161,7 @@ impl<S: Solvers> CachingSolvers<S> {
         if self.solvers.is_program(name) {
             return Some(solver);
         }
-        Some(Arc::new(CachingSolver { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) }))
+        Some(Arc::new(Wrapped(CachingSolver { solver, name: name.to_owned(), defect, cache: Arc::clone(&self.cache) })))
     }
 }
 
@@ -207,45 +203,21 @@ struct CachingSolver {
     cache: Arc<RunCache>,
 }
 
-impl Solver for CachingSolver {
-    fn name(&self) -> String {
-        self.solver.name()
+impl Wrapper for CachingSolver {
+    fn inner(&self) -> &dyn Solver {
+        &*self.solver
     }
 
-    fn available(&self) -> Result<(), RunError> {
-        self.solver.available()
-    }
-
-    fn has_springs(&self) -> bool {
-        self.solver.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.solver.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let options = observer.options();
-        let wants_more = !options.keep_snapshots || options.end_state || options.checkpoint_interval.is_some();
-        let Some(name) = self.cache.name(&self.name, self.defect, scene, resolution).filter(|_| !wants_more) else {
-            return self.solver.run(scene, resolution, observer);
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let Some(name) = self.cache.name((&self.name, self.defect), start, observer.options()) else {
+            return start.run(&*self.solver, observer);
         };
         if let Some(record) = self.cache.take(&name) {
             return Ok(record);
         }
-        let record = self.solver.run(scene, resolution, observer)?;
+        let record = start.run(&*self.solver, observer)?;
         self.cache.put(&name, &record);
         Ok(record)
-    }
-
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        self.solver.restart(scene, resolution, from, observer)
     }
 }
 
@@ -253,25 +225,58 @@ impl Solver for CachingSolver {
 mod tests {
     #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
+    use grainbench_scene::source::SceneSource;
+    use grainbench_solver::record::{Cost, Provenance, Series};
 
-    /// There are three files of 100 bytes and room for 250 bytes. The least recently used run is removed, and other
-    /// files are kept.
-    #[test]
-    fn the_longest_unused_makes_room() {
-        let folder = tempfile::tempdir().unwrap();
-        let cache = RunCache::open(folder.path(), 250, false, |_| None).unwrap();
-        for (age, name) in [(30, "a.run"), (10, "b.run"), (20, "c.run"), (99, "notes.txt")] {
-            let path = folder.path().join(name);
-            fs::write(&path, [0; 100]).unwrap();
-            let then = SystemTime::now() - Duration::from_secs(age);
-            File::options().append(true).open(&path).unwrap().set_modified(then).unwrap();
+    /// Solver whose record states the number of its runs.
+    struct Counting(AtomicU64);
+
+    impl Solver for Counting {
+        fn name(&self) -> String {
+            "dem".to_owned()
         }
-        cache.make_room();
-        let mut left: Vec<String> = fs::read_dir(folder.path())
-            .unwrap()
-            .map(|entry| entry.unwrap().file_name().into_string().unwrap())
-            .collect();
-        left.sort();
-        assert_eq!(left, ["b.run", "c.run", "notes.txt"]);
+
+        fn run(&self, scene: &Scene, resolution: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
+            Ok(Record {
+                provenance: Provenance::new(scene, self.name(), resolution, 1.0, Vec::new()),
+                series: Series::default(),
+                snapshots: Vec::new(),
+                cost: Cost::of_program(self.0.fetch_add(1, Ordering::Relaxed), 1, 1.0),
+            })
+        }
+    }
+
+    /// Two runs share an entry if they differ only by the number of threads, and never if they differ by another option.
+    #[test]
+    fn runs_with_other_options_share_no_entry() {
+        let text = "title = 'one'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1000.0\n[grains.ball]\n\
+            material = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n";
+        let source = SceneSource::from_text("one", Path::new(""), text);
+        let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let cache = RunCache::open(folder.path(), u64::MAX, false, |_| Some(String::new())).unwrap();
+        let solver = Arc::new(Counting(AtomicU64::new(0)));
+        let solver = Wrapped(CachingSolver { solver, name: "dem".to_owned(), defect: None, cache: Arc::new(cache) });
+        let options = RunOptions::DEFAULT;
+        let cached = [
+            options,
+            RunOptions { allow_unstable: true, ..options },
+            RunOptions { most_rows: 7, ..options },
+            RunOptions { most_rows: 8, ..options },
+            RunOptions { most_rows: 8, allow_unstable: true, ..options },
+        ];
+        let number =
+            |mut options: RunOptions| solver.run(&scene, &Resolution::TimeStep(1.0), &mut options).unwrap().cost.steps;
+        for _ in 0..2 {
+            assert_eq!(cached.map(number), [0, 1, 2, 3, 4]);
+            assert_eq!(cached.map(|options| number(RunOptions { threads: 2, ..options })), [0, 1, 2, 3, 4]);
+        }
+        let others = [
+            RunOptions { keep_snapshots: false, ..options },
+            RunOptions { end_state: true, ..options },
+            RunOptions { checkpoint_interval: Some(1), ..options },
+        ];
+        assert_eq!(others.map(number), [5, 6, 7]);
+        assert_eq!(others.map(number), [8, 9, 10]);
     }
 }

@@ -1,14 +1,13 @@
 //! Deliberate defects of solvers. Most change one quantity by a fraction of about 1e-9. A larger defect is used if a
 //! property cannot detect a smaller one.
 
+use crate::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
-use grainbench_solver::checkpoint::Checkpoint;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Record;
-use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::sync::atomic::{AtomicU64, Ordering};
 
@@ -140,35 +139,36 @@ pub struct FlawedSolver<'a> {
 impl<'a> FlawedSolver<'a> {
     /// Adds a flaw to a solver.
     #[must_use]
-    pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Self {
-        Self { solver, flaw, runs: AtomicU64::new(0) }
+    pub const fn new(solver: &'a dyn Solver, flaw: Flaw) -> Wrapped<Self> {
+        Wrapped(Self { solver, flaw, runs: AtomicU64::new(0) })
     }
 
     /// Adds a flaw to a solver and starts its count of runs at 1000.
     ///
     /// Its runs then differ from all runs of [`FlawedSolver::new`], even if one of the two solvers skipped unsupported scenes.
-    pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Self {
-        Self { solver, flaw, runs: AtomicU64::new(1000) }
+    pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Wrapped<Self> {
+        Wrapped(Self { solver, flaw, runs: AtomicU64::new(1000) })
     }
 }
 
-impl Solver for FlawedSolver<'_> {
-    fn name(&self) -> String {
-        self.solver.name()
+impl Wrapper for FlawedSolver<'_> {
+    fn inner(&self) -> &dyn Solver {
+        self.solver
     }
 
-    fn has_springs(&self) -> bool {
-        self.solver.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.solver.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let mut scene = scene.clone();
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        if start.from.is_some() {
+            let mut record = start.run(self.solver, observer)?;
+            if self.flaw == Flaw::Restarted
+                && let Some(grain) = record.snapshots.last_mut().and_then(|last| last.grains.first_mut())
+            {
+                grain.velocity *= 1.0 + 4.0 * f64::EPSILON;
+            }
+            return Ok(record);
+        }
+        let mut scene = start.scene.clone();
         self.flaw.spoil(&mut scene, self.runs.fetch_add(1, Ordering::Relaxed));
-        let mut record = self.solver.run(&scene, resolution, observer)?;
+        let mut record = self.solver.run(&scene, start.resolution, observer)?;
         if self.flaw == Flaw::FirstOrder
             && let Some(last) = record.snapshots.last_mut()
         {
@@ -183,22 +183,6 @@ impl Solver for FlawedSolver<'_> {
             Flaw::Pumped => pump(&mut record),
             Flaw::SlowerWalls => swell(&mut record),
             _ => {}
-        }
-        Ok(record)
-    }
-
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        let mut record = self.solver.restart(scene, resolution, from, observer)?;
-        if self.flaw == Flaw::Restarted
-            && let Some(grain) = record.snapshots.last_mut().and_then(|last| last.grains.first_mut())
-        {
-            grain.velocity *= 1.0 + 4.0 * f64::EPSILON;
         }
         Ok(record)
     }
@@ -230,7 +214,7 @@ mod tests {
         ];
         for named in super::super::scenes::collisions().into_iter().flatten() {
             let _ = first.run(&named.scene, &Resolution::CriticalFraction(0.1), &mut ());
-            assert_ne!(first.runs.load(Ordering::Relaxed), again.runs.load(Ordering::Relaxed));
+            assert_ne!(first.0.runs.load(Ordering::Relaxed), again.0.runs.load(Ordering::Relaxed));
         }
     }
 }

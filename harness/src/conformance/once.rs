@@ -1,5 +1,6 @@
 //! Solver wrapper that does each run once, because several properties use the same run.
 
+use crate::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
@@ -17,25 +18,18 @@ pub(super) struct CachedRuns<'a> {
 }
 
 impl<'a> CachedRuns<'a> {
-    pub(super) const fn new(solver: &'a dyn Solver) -> Self {
-        Self { solver, known: Mutex::new(Vec::new()) }
+    pub(super) const fn new(solver: &'a dyn Solver) -> Wrapped<Self> {
+        Wrapped(Self { solver, known: Mutex::new(Vec::new()) })
     }
 }
 
-impl Solver for CachedRuns<'_> {
-    fn name(&self) -> String {
-        self.solver.name()
+impl Wrapper for CachedRuns<'_> {
+    fn inner(&self) -> &dyn Solver {
+        self.solver
     }
 
-    fn has_springs(&self) -> bool {
-        self.solver.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.solver.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let Start { scene, resolution, from: None } = start else { return start.run(self.solver, observer) };
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
         if let Some((.., record)) = known.iter().find(|(known_scene, at, _)| known_scene == scene && at == resolution) {
             return record.clone();

@@ -1,6 +1,5 @@
 //! Creation of stored runs with an installed program.
 
-use std::collections::BTreeMap;
 use std::io::Write as _;
 
 use flate2::{Compression, GzBuilder};
@@ -11,6 +10,7 @@ use grainbench_solver::perturbed::{PARTED, move_one};
 use grainbench_solver::record::{Record, Series};
 use grainbench_solver::refined::refined;
 use grainbench_solver::resolution::Resolution;
+use grainbench_store::artifact::hashes;
 
 use super::drift::drift;
 use super::scene_hash::scene_hash;
@@ -71,8 +71,6 @@ pub fn make(
     for name in packed {
         commands.insert(0, format!("gzip -dk {name}.gz"));
     }
-    let blake3: BTreeMap<String, String> =
-        files.iter().map(|(name, bytes)| (name.clone(), blake3::hash(bytes).to_hex().to_string())).collect();
     let provenance = Provenance {
         program: program.to_string(),
         version: run.provenance.options.first().cloned().unwrap_or_default(),
@@ -81,7 +79,7 @@ pub fn make(
         scene: scene_hash(scene, &stepping),
         predictable_steps: predictable_steps(&thinned(&run.series), &moved.series),
         commands,
-        blake3,
+        blake3: hashes(&files),
     };
     let text = toml::to_string(&provenance).map_err(|error| fail(error.to_string()))?;
     files.push((PROVENANCE.to_owned(), text.into_bytes()));
@@ -91,24 +89,25 @@ pub fn make(
 /// Returns about 100 samples of a run as CSV in full precision.
 fn table(record: &Record, program: Program) -> Result<String, RunError> {
     let series = thinned(&record.series);
-    let mut text = "step,time".to_owned();
-    for column in &series.columns {
-        text.push(',');
-        text.push_str(&column.name);
-    }
-    text.push('\n');
-    for (at, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
-        text.push_str(&format!("{step},{time:?}"));
-        for (column, values) in series.columns.iter().zip(&series.values) {
-            if !values[at].is_finite() {
-                let failure = Failure::Output(format!("`{}` is {} at step {step}", column.name, values[at]));
-                return Err(RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() });
-            }
-            text.push_str(&format!(",{:?}", values[at]));
+    for (column, values) in series.columns.iter().zip(&series.values) {
+        if let Some(at) = values.iter().position(|value| !value.is_finite()) {
+            let failure = Failure::Output(format!("`{}` is {} at step {}", column.name, values[at], series.step[at]));
+            return Err(RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() });
         }
-        text.push('\n');
     }
-    Ok(text)
+    Ok(csv_of(&series))
+}
+
+/// Returns a time series as CSV in full precision.
+#[must_use]
+pub fn csv_of(series: &Series) -> String {
+    let names: String = series.columns.iter().map(|column| format!(",{}", column.name)).collect();
+    let mut lines = format!("step,time{names}\n");
+    for (at, (step, time)) in series.step.iter().zip(&series.time).enumerate() {
+        let values: String = series.values.iter().map(|values| format!(",{:?}", values[at])).collect();
+        lines.push_str(&format!("{step},{time:?}{values}\n"));
+    }
+    lines
 }
 
 /// Returns the last stored step up to which the perturbed run differs from `run` by at most [`PARTED`] of the scale of

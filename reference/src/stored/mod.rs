@@ -5,12 +5,10 @@
 
 mod drift;
 mod error;
-mod file_hash;
 mod making;
 mod provenance;
 mod scene_hash;
 
-use std::fs;
 use std::path::{Path, PathBuf};
 
 use grainbench_scene::scene::Scene;
@@ -18,13 +16,14 @@ use grainbench_solver::failure::{Failure, RunError};
 use grainbench_solver::record::{Cost, Record, Series};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
+use grainbench_store::ReadError;
+use grainbench_store::artifact::{read_listed, read_toml};
 
 use crate::deck::{Program, Stepping};
 use crate::read::table::{Table, read_table};
 pub use drift::{Drift, drift};
 pub use error::StoredError;
-pub use file_hash::hash_file;
-pub use making::{StoredRunFiles, compressed, make};
+pub use making::{StoredRunFiles, compressed, csv_of, make};
 pub use provenance::Provenance;
 pub use scene_hash::{is_scene_of, scene_hash, scene_hash_by_bits};
 
@@ -53,15 +52,16 @@ impl StoredRun {
     /// # Errors
     /// If a file is missing, changed or damaged. See [`StoredError`].
     pub fn load(directory: &Path) -> Result<Self, StoredError> {
-        let provenance = read_provenance(&directory.join(PROVENANCE))?;
-        for (name, expected) in &provenance.blake3 {
-            verify(directory, name, expected)?;
+        let list = directory.join(PROVENANCE);
+        let provenance: Provenance = read_toml(&list)?;
+        for (name, hash) in &provenance.blake3 {
+            read_listed(&list, name, hash)?;
         }
         let listed = |name: &str| {
             if provenance.blake3.contains_key(name) {
                 return Ok(directory.join(name));
             }
-            Err(StoredError::Unlisted { provenance: directory.join(PROVENANCE), name: name.to_owned() })
+            Err(ReadError::other(&list, format!("the hash of `{name}`"), "none"))
         };
         let (series, half_step) = (read_table(&listed(SERIES)?)?, read_table(&listed(HALF_STEP_SERIES)?)?);
         check_half_step(directory, &series, &half_step)?;
@@ -139,42 +139,34 @@ pub fn unusable(program: Program, error: &StoredError) -> RunError {
     RunError::Program { solver: program.name().to_owned(), failure, last_lines: Vec::new() }
 }
 
-/// Returns the columns of a table that belong to the scene's probes, with the steps and times.
+/// Returns the probes of a scene in a table of a stored run.
 fn series(scene: &Scene, table: &Table) -> Series {
-    let values =
-        |name: &str| -> Vec<f64> { table.column(name).map(|at| table.values(at).collect()).unwrap_or_default() };
-    let mut series = Series { step: values("step").iter().map(|step| *step as u64).collect(), ..Series::default() };
-    series.time = values("time");
+    probe_series(scene, |name| Some(table.values(table.column(name)?).collect()))
+}
+
+/// Returns the columns of a table that belong to the scene's probes, with the steps and times. `values` returns a column.
+pub fn probe_series(scene: &Scene, values: impl Fn(&str) -> Option<Vec<f64>>) -> Series {
+    let step = values("step").unwrap_or_default().iter().map(|step| *step as u64).collect();
+    let mut series = Series { step, time: values("time").unwrap_or_default(), ..Series::default() };
     for column in Recorder::new(scene, 1.0, 1).finish().0.columns {
-        if let Some(at) = table.column(&column.name) {
-            series.values.push(table.values(at).collect());
+        if let Some(of_column) = values(&column.name) {
+            series.values.push(of_column);
             series.columns.push(column);
         }
     }
     series
 }
 
-/// Checks that a file has the hash in the provenance.
-fn verify(directory: &Path, name: &str, expected: &str) -> Result<(), StoredError> {
-    check_name(name, &directory.join(PROVENANCE).to_string_lossy())?;
-    let path = directory.join(name);
-    match hash_file(&path) {
-        Ok(found) if found == expected => Ok(()),
-        Ok(found) => Err(StoredError::Changed { path, expected: expected.to_owned(), found }),
-        Err(source) => Err(StoredError::Unreadable { path, source }),
-    }
-}
-
 /// Checks that both series have times, that these times are equal, and that the series of the run has steps.
-fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), StoredError> {
-    let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, StoredError> {
-        let path = directory.join(file);
-        let missing = || StoredError::Column { path, name: name.to_owned() };
+fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), ReadError> {
+    let column = |table: &Table, file: &str, name: &str| -> Result<Vec<f64>, ReadError> {
+        let missing = || ReadError::other(&directory.join(file), format!("a column `{name}`"), "none");
         Ok(table.values(table.column(name).ok_or_else(missing)?).collect())
     };
     column(run, SERIES, "step")?;
     let (of_run, of_half) = (column(run, SERIES, "time")?, column(half, HALF_STEP_SERIES, "time")?);
-    let differing = |found: String| StoredError::Twin { path: directory.join(HALF_STEP_SERIES), found };
+    let differing =
+        |found: String| ReadError::other(&directory.join(HALF_STEP_SERIES), format!("the times of `{SERIES}`"), found);
     if of_run.len() != of_half.len() {
         return Err(differing(format!("{} rows instead of {}", of_half.len(), of_run.len())));
     }
@@ -183,26 +175,4 @@ fn check_half_step(directory: &Path, run: &Table, half: &Table) -> Result<(), St
         Some((run, half)) => Err(differing(format!("{half:?} instead of {run:?}"))),
         None => Ok(()),
     }
-}
-
-fn read_provenance(path: &Path) -> Result<Provenance, StoredError> {
-    let text = fs::read_to_string(path).map_err(|source| StoredError::Unreadable { path: path.to_owned(), source })?;
-    toml::from_str(&text).map_err(|source: toml::de::Error| {
-        let place = source.span().map_or(0, |span| span.start);
-        let before = text.as_bytes().get(..place).unwrap_or_default();
-        StoredError::Provenance {
-            path: path.to_owned(),
-            line: 1 + before.iter().filter(|byte| **byte == b'\n').count(),
-            source: Box::new(source),
-        }
-    })
-}
-
-/// Checks that a name is not a path, because a stored run must not read files outside its folder.
-fn check_name(name: &str, place: &str) -> Result<(), StoredError> {
-    let plain = |byte: u8| byte.is_ascii_alphanumeric() || b"._-".contains(&byte);
-    if !name.is_empty() && !name.starts_with('.') && name.bytes().all(plain) {
-        return Ok(());
-    }
-    Err(StoredError::Name { place: place.to_owned(), name: name.to_owned() })
 }

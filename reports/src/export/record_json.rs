@@ -1,16 +1,16 @@
 //! Complete record of a run as JSON.
 
-use std::fs;
 use std::io::{self, Write};
 use std::path::Path;
 
 use grainbench_solver::record::{Cost, Provenance, Record, Series};
+use grainbench_store::ReadError;
+use grainbench_store::artifact::read_json;
 use serde::ser::{Error, SerializeSeq};
 use serde::{Serialize, Serializer};
 
 use crate::export::BROKEN_FILE;
 use crate::parts::{READABLE, SnapshotStore};
-use crate::store::{LoadError, parse};
 
 /// Name of the file of a record.
 pub const RECORD_FILE: &str = "record.json";
@@ -55,15 +55,13 @@ impl Serialize for StoredRecord<'_> {
 ///
 /// # Errors
 /// When the file is missing or damaged, or when the run crashed. The message names the file.
-pub fn load(dir: &Path) -> Result<Record, LoadError> {
+pub fn load(dir: &Path) -> Result<Record, ReadError> {
     let (path, broken) = (dir.join(RECORD_FILE), dir.join(BROKEN_FILE));
     if broken.is_file() {
-        return Err(LoadError::Broken { path: broken });
+        let found = "the reason why the run did not finish";
+        return Err(ReadError::other(&broken, "a complete record", found));
     }
-    match fs::read_to_string(&path) {
-        Ok(text) => parse(&path, &text),
-        Err(source) => Err(LoadError::Read { path, source }),
-    }
+    read_json(&path)
 }
 
 #[cfg(test)]

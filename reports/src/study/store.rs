@@ -8,15 +8,14 @@ use super::stability::{HardCaseResult, Limit};
 use super::step::Model;
 use super::{Study, cost, effects, load, page, stability};
 use crate::report::Provenance;
-use crate::store::{LoadError, SaveError};
+use crate::store::SaveError;
 use crate::{page as shared, plot};
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Control, Verdict};
-use grainbench_store::StagedDir;
-use serde::de::DeserializeOwned;
+use grainbench_store::artifact::read_json;
+use grainbench_store::{ReadError, StagedDir};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use std::fs;
 use std::path::Path;
 
 /// File from which all files of a study can be written again.
@@ -135,23 +134,18 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
 ///
 /// # Errors
 /// When the file is missing or damaged. The message names the position in the file.
-pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, LoadError> {
-    read(&dir.as_ref().join(STUDY_FILE))
+pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, ReadError> {
+    read_json(&dir.as_ref().join(STUDY_FILE))
 }
 
 /// Returns the points in a `results.json` of a study.
 ///
 /// # Errors
 /// When the file is missing or damaged. The message names the position in the file.
-pub fn points_of(path: &Path) -> Result<Vec<Point>, LoadError> {
+pub fn points_of(path: &Path) -> Result<Vec<Point>, ReadError> {
     #[derive(Deserialize)]
     struct Session {
         points: Vec<Point>,
     }
-    read::<Session>(path).map(|session| session.points)
-}
-
-fn read<T: DeserializeOwned>(path: &Path) -> Result<T, LoadError> {
-    let text = fs::read_to_string(path).map_err(|source| LoadError::Read { path: path.to_owned(), source })?;
-    crate::store::parse(path, &text)
+    read_json::<Session>(path).map(|session| session.points)
 }

@@ -15,7 +15,7 @@ use grainbench::reports::{Provenance, Report, Section};
 use std::path::PathBuf;
 
 /// Options of `run` and `judge`.
-#[derive(clap::Args)]
+#[derive(Default, clap::Args)]
 pub(crate) struct ClaimOptions {
     /// Solvers of `run --solver` or of `judge`, by name or manifest.
     #[arg(skip)]

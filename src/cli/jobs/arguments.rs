@@ -4,36 +4,31 @@ use crate::cli::exit::Fault;
 use crate::cli::value::whole;
 use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard;
+use serde::{Deserialize, Serialize};
 use std::path::{Path, PathBuf};
 
 /// Arguments of `run`, `cost`, `stability` and `effects`, and the file of a sweep, which determine the tasks.
-#[derive(Clone, Default, clap::Args)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(default, deny_unknown_fields)]
 pub(crate) struct Arguments {
     /// Command, or path of a sweep file.
     pub(crate) what: String,
     pub(crate) cases: Vec<String>,
-    #[arg(long)]
     pub(crate) solver: Vec<String>,
-    #[arg(long, value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
-    #[arg(long)]
     pub(crate) filter: Vec<String>,
-    #[arg(long)]
     pub(crate) no_controls: bool,
-    #[arg(long)]
     pub(crate) live: bool,
-    #[arg(long)]
     pub(crate) prices: bool,
-    #[arg(long)]
     pub(crate) counts: bool,
     /// Number of shards of a plan.
-    #[arg(skip)]
+    #[serde(skip)]
     pub(crate) shards: Option<u32>,
     /// Directory of the plan or of the report.
-    #[arg(skip)]
+    #[serde(skip)]
     pub(crate) out: PathBuf,
     /// True to print results as JSON.
-    #[arg(skip)]
+    #[serde(skip)]
     pub(crate) json: bool,
 }
 
@@ -72,30 +67,7 @@ pub(crate) struct StudyOptions<'a> {
     pub(crate) update_stored: bool,
 }
 
-/// Parser for the arguments of a stored plan.
-#[derive(clap::Parser)]
-struct PlanParser {
-    #[command(flatten)]
-    arguments: Arguments,
-}
-
 impl Arguments {
-    /// Returns the words of a command line that gives these arguments.
-    pub(super) fn words(&self) -> Vec<String> {
-        let mut words = vec![self.what.clone()];
-        words.extend(self.cases.iter().cloned());
-        let options = |name: &str, values: &[String]| -> Vec<String> {
-            values.iter().map(|value| format!("--{name}={value}")).collect()
-        };
-        words.extend(options("solver", &self.solver));
-        words.extend(options("levels", &self.levels));
-        words.extend(options("filter", &self.filter));
-        let flags =
-            [("no-controls", self.no_controls), ("live", self.live), ("prices", self.prices), ("counts", self.counts)];
-        words.extend(flags.iter().filter(|(_, is_set)| *is_set).map(|(name, _)| format!("--{name}")));
-        words
-    }
-
     /// Returns the command, the cases and the solvers for the provenance of the report.
     pub(super) fn command_words(&self, command: &str) -> Vec<String> {
         let words = std::iter::once(command.to_owned()).chain(self.cases.iter().cloned());
@@ -104,11 +76,9 @@ impl Arguments {
 
     /// Reads the arguments from a stored plan.
     pub(crate) fn read(plan: &Plan) -> Result<Self, Fault> {
-        let words = std::iter::once("plan").chain(plan.head.arguments.iter().map(String::as_str));
-        let again = <PlanParser as clap::Parser>::try_parse_from(words).map_err(|error| {
-            let found = error.to_string().lines().next().unwrap_or_default().to_owned();
-            Fault::input(format!("{}: expected arguments of a plan, found {found}", plan.path.display()))
-        })?;
-        Ok(again.arguments)
+        plan.head.arguments.clone().try_into().map_err(|error: toml::de::Error| {
+            let path = plan.path.display();
+            Fault::input(format!("{path}: expected arguments of a plan, found {}", error.message()))
+        })
     }
 }

@@ -52,21 +52,10 @@ pub(crate) struct ClaimStudy {
     words: Vec<String>,
 }
 
-/// Parser for the arguments of `run` that a plan accepts.
-#[derive(clap::Parser)]
-struct RunParser {
-    cases: Vec<String>,
-    #[arg(long)]
-    solver: Vec<String>,
-    #[command(flatten)]
-    options: ClaimOptions,
-}
-
 impl ClaimStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
-        let RunParser { cases, solver, options } =
-            clap::Parser::try_parse_from(arguments.words()).map_err(Fault::input)?;
-        let options = ClaimOptions { solver, ..options };
+        let Arguments { cases, solver, levels, filter, no_controls, live, .. } = arguments.clone();
+        let options = ClaimOptions { solver, levels, filter, no_controls, live, threads: 1, ..ClaimOptions::default() };
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
             return Err(Fault::input(

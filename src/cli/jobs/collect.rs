@@ -137,12 +137,5 @@ fn read_column(path: &Path) -> Result<Column, Fault> {
     let file = results_of(path);
     let name = if path.is_dir() { path } else { path.parent().unwrap_or(path) };
     let name = name.file_name().map_or_else(|| "report".to_owned(), |name| name.to_string_lossy().into_owned());
-    let expected = "the directory of a report, or its results.json";
-    let fault =
-        |found: String| Fault::input(format!("--against: {}: expected {expected}, found {found}", file.display()));
-    let text = std::fs::read_to_string(&file).map_err(|error| fault(error.to_string()))?;
-    if text.trim().is_empty() {
-        return Err(fault("an empty file".to_owned()));
-    }
-    Column::read(&name, &text).map_err(|error| fault(format!("other text: {error}")))
+    Column::read(&name, &file).map_err(|error| Fault::input(format!("--against: {error}")))
 }

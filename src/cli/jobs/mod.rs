@@ -25,6 +25,7 @@ impl From<jobs::Fault> for Fault {
     fn from(fault: jobs::Fault) -> Self {
         match fault {
             jobs::Fault::Input(words) => Self::input(words),
+            jobs::Fault::Read(error) => Self::input(error),
             jobs::Fault::Write(error) => Self::writing(error),
             // A failure of the batch system is not an input error.
             jobs::Fault::Batch(words) => Self::Broken(words),

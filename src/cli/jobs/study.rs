@@ -69,7 +69,8 @@ impl<S: Study> AnyStudy for S {
 
 /// Returns the plan of a study in a directory, without writing it.
 pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Plan, Fault> {
-    let mut head = Head::new(study.kind(), arguments.words(), study.is_timed());
+    let words = toml::Value::try_from(arguments).map_err(Fault::input)?;
+    let mut head = Head::new(study.kind(), words, study.is_timed());
     head.shards = arguments.shards.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
     head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();

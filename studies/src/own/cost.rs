@@ -3,7 +3,6 @@
 use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, scatter};
 use super::ladder::Ladder;
 use super::schedule::{self, Finished};
-use super::storage::RunStore;
 use super::stored_run::{StoredColumn, StoredRun, columns, failure, wall_seconds};
 use super::within::Within;
 use crate::chaos::perturbed_runs;
@@ -22,7 +21,7 @@ use grainbench_solver::failure::StorageError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
-use grainbench_store::{WriteError, key};
+use grainbench_store::{WriteError, artifact::Directory, artifact::Json, key};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -66,7 +65,7 @@ pub struct SceneStudy<'a> {
     /// Time budget.
     pub budget: Duration,
     /// Storage of finished runs.
-    pub cache: &'a RunStore,
+    pub cache: &'a Directory,
     /// Hash of this program.
     pub program: String,
     /// Returns true if the user stops the study. The current run then ends and is not stored.
@@ -330,7 +329,7 @@ impl<'a> Measurement<'a> {
             let wall = wall_seconds(&record, begin.elapsed().as_secs_f64());
             let run = &mut self.runs[at];
             run.stored.walls.push(wall);
-            self.study.cache.put(&run.name, &run.stored)?;
+            self.study.cache.put::<Json<_>>(&run.name, &run.stored)?;
         }
         Ok(())
     }
@@ -364,13 +363,13 @@ impl<'a> Measurement<'a> {
         let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
         let name = key_of_run(&program, solver_name, scene, &resolution, "scene without claims");
         follower.now(&format!("{solver_name} {setting}"), self.spent());
-        let stored = match self.study.cache.take::<StoredRun>(&name) {
-            Some(stored) => {
+        let stored = match self.study.cache.get::<Json<StoredRun>>(&name) {
+            Ok(stored) => {
                 self.stored += stored.seconds;
                 self.repeated += stored.walls.iter().skip(1).sum::<f64>();
                 stored
             }
-            None => {
+            Err(_) => {
                 let stored = self.measure(at, scene, &resolution);
                 self.is_reused &= stored.status == LevelStatus::OverBudget;
                 // An external program fails when it is stopped.
@@ -378,7 +377,7 @@ impl<'a> Measurement<'a> {
                     return Ok(None);
                 }
                 if stored.status != LevelStatus::OverBudget {
-                    self.study.cache.put(&name, &stored)?;
+                    self.study.cache.put::<Json<_>>(&name, &stored)?;
                 }
                 stored
             }
@@ -422,7 +421,7 @@ impl<'a> Measurement<'a> {
                 stored.columns = columns(&record);
             }
             Err(error) => {
-                (stored.status, stored.detail) = failure(&error, within.completed(), stored.seconds, resolution);
+                (stored.status, stored.detail) = failure(&error, within.0.completed(), stored.seconds, resolution);
                 if stored.status == LevelStatus::Failed {
                     stored.walls = vec![stored.seconds];
                 }
@@ -435,7 +434,7 @@ impl<'a> Measurement<'a> {
     fn test_for_chaos(&mut self, at: usize, follower: &mut dyn StudyFollower) {
         let Some(run) = self.measured(at, Purpose::Level).first().copied() else { return };
         let (resolution, name) = (run.resolution, key::of_words(&run.name, &["perturbed"]));
-        if let Some((seconds, perturbed)) = self.study.cache.take::<(f64, Perturbed)>(&name) {
+        if let Ok((seconds, perturbed)) = self.study.cache.get::<Json<(f64, Perturbed)>>(&name) {
             self.stored += seconds;
             self.perturbed = Some(perturbed);
             return;
@@ -467,8 +466,9 @@ impl<'a> Measurement<'a> {
             }
         }
         // A result that cannot be stored is computed again.
-        let _ = self.study.cache.put(&name, &(begin.elapsed().as_secs_f64(), &perturbed));
-        self.perturbed = Some(perturbed);
+        let test = (begin.elapsed().as_secs_f64(), perturbed);
+        let _ = self.study.cache.put::<Json<_>>(&name, &test);
+        self.perturbed = Some(test.1);
     }
 
     /// Returns true if no further level of a solver can improve the result.

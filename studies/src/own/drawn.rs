@@ -168,7 +168,7 @@ fn with_study(
 ) -> SceneCost {
     let source = SceneSource::from_text("scene", Path::new(""), text);
     let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
-    let cache = RunStore::none();
+    let cache = Directory::none();
     let study = SceneStudy {
         name: "drawn".to_owned(),
         scene: &scene,

@@ -10,6 +10,7 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
 use grainbench_store::WriteError;
+use grainbench_store::artifact::Json;
 use std::time::Instant;
 
 /// Test of the effects that a scene uses.
@@ -53,7 +54,7 @@ impl Importance<'_> {
             return Ok((Vec::new(), Some(reason)));
         }
         let id = key_of_run(&self.study.program, name, self.study.scene, &resolution, "effects of a scene");
-        if let Some(entries) = self.study.cache.take(&id) {
+        if let Ok(entries) = self.study.cache.get::<Json<_>>(&id) {
             return Ok((entries, None));
         }
         let Some(solver) = self.study.solvers.find(name) else { return Ok((Vec::new(), None)) };
@@ -79,7 +80,7 @@ impl Importance<'_> {
             }
             entries.extend(entry);
         }
-        self.study.cache.put(&id, &entries)?;
+        self.study.cache.put::<Json<_>>(&id, &entries)?;
         Ok((entries, None))
     }
 }

@@ -1,7 +1,6 @@
 //! Largest stable time step of a solver in a scene, by bisection on failed runs.
 
 use super::network::largest_stable_step;
-use super::storage::RunStore;
 use super::within::Within;
 use crate::run_cache::key_of_run;
 use crate::stability::bisection::largest;
@@ -17,6 +16,7 @@ use grainbench_solver::observer::RunOptions;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::WriteError;
+use grainbench_store::artifact::{Directory, Json};
 use std::time::Instant;
 
 /// Relative precision of a limit.
@@ -96,10 +96,10 @@ pub fn of_scene(
     (name, scene): (&str, &Scene),
     (solvers, solver): (&dyn Solvers, &str),
     (deadline, stop): (Instant, &(dyn Fn() -> bool + Sync)),
-    (program, cache): (&str, &RunStore),
+    (program, cache): (&str, &Directory),
 ) -> Result<(Limit, bool), WriteError> {
     let id = key_of_run(program, solver, scene, &Resolution::TimeStep(0.0), "largest stable step");
-    if let Some(limit) = cache.take(&id) {
+    if let Ok(limit) = cache.get::<Json<_>>(&id) {
         return Ok((limit, true));
     }
     let stranger = solvers.strangers().into_iter().find(|stranger| stranger.name == solver);
@@ -136,7 +136,7 @@ pub fn of_scene(
     };
     // An external program fails when it is stopped.
     if is_whole && !stop() {
-        cache.put(&id, &limit)?;
+        cache.put::<Json<_>>(&id, &limit)?;
     }
     Ok((limit, false))
 }

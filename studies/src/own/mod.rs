@@ -8,6 +8,5 @@ pub mod ladder;
 pub mod limit;
 pub mod network;
 pub mod schedule;
-pub mod storage;
 mod stored_run;
 pub mod within;

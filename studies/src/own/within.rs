@@ -1,14 +1,13 @@
 //! Solver whose runs end at a deadline.
 
+use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
 use grainbench_scene::end_state::EndState;
-use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::brief::Brief;
 use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_solver::failure::{RunError, StorageError};
 use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
 use grainbench_solver::record::{PartialOutput, Record, Snapshot};
-use grainbench_solver::resolution::Resolution;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Instant;
 
@@ -30,8 +29,8 @@ pub struct Within<'a> {
 impl<'a> Within<'a> {
     /// Returns the solver with a deadline. `stop` returns true if the user stops the study.
     #[must_use]
-    pub const fn new(solver: &'a dyn Solver, deadline: Instant, stop: &'a (dyn Fn() -> bool + Sync)) -> Self {
-        Self { solver, deadline, stop, progress: [AtomicU64::new(0), AtomicU64::new(0)] }
+    pub const fn new(solver: &'a dyn Solver, deadline: Instant, stop: &'a (dyn Fn() -> bool + Sync)) -> Wrapped<Self> {
+        Wrapped(Self { solver, deadline, stop, progress: [AtomicU64::new(0), AtomicU64::new(0)] })
     }
 
     /// Returns the completed fraction of the last run; none if it has not begun.
@@ -42,26 +41,14 @@ impl<'a> Within<'a> {
     }
 }
 
-impl Solver for Within<'_> {
-    fn name(&self) -> String {
-        self.solver.name()
+impl Wrapper for Within<'_> {
+    fn inner(&self) -> &dyn Solver {
+        self.solver
     }
 
-    fn available(&self) -> Result<(), RunError> {
-        self.solver.available()
-    }
-
-    fn has_springs(&self) -> bool {
-        self.solver.has_springs()
-    }
-
-    fn deforms(&self) -> bool {
-        self.solver.deforms()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+    fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
         self.progress.iter().for_each(|count| count.store(0, Ordering::Relaxed));
-        self.solver.run(scene, resolution, &mut Watch { solver: self, observer, begin: Instant::now() })
+        start.run(self.solver, &mut Watch { solver: self, observer, begin: Instant::now() })
     }
 }
 
