@@ -13,7 +13,7 @@ use grainbench_cases::solvers::{self, Registry};
 use grainbench_harness::conformance;
 use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
 use grainbench_reports::line;
 use grainbench_solver::Solver;
 use grainbench_solver::terms::Terms;
@@ -28,7 +28,7 @@ pub struct Judgement {
     pub verdicts: Vec<Verdict>,
     /// Negative controls of the results. A control that does not fail means that the result does not depend on the
     /// physics in question. For example, the solver ignores a parameter of the scene.
-    pub controls: Vec<Control>,
+    pub controls: Vec<ControlResult>,
 }
 
 /// Reasons why a case cannot test a solver.

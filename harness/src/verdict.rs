@@ -296,7 +296,7 @@ impl Verdict {
 
 /// Result of a negative control, under whose wrong physics the claim must fail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Control {
+pub struct ControlResult {
     /// Case of the claim.
     pub case: String,
     /// Variant of the claim.
@@ -321,7 +321,7 @@ pub struct Control {
     pub seconds: f64,
 }
 
-impl Control {
+impl ControlResult {
     /// Returns a control from a result under wrong physics. `how` is the required way of failing.
     #[must_use]
     pub fn new(row: Verdict, wrong_physics: &str, how: FailureMode, seconds: f64) -> Self {

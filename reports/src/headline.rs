@@ -2,7 +2,7 @@
 
 use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 
 use crate::report::{Report, Section};
 
@@ -55,7 +55,7 @@ impl Headline {
     #[must_use]
     pub fn from_results<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
-        controls: impl IntoIterator<Item = &'a Control>,
+        controls: impl IntoIterator<Item = &'a ControlResult>,
     ) -> Self {
         let mut counts = Self::default();
         for verdict in verdicts {

@@ -1,6 +1,6 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
 use crate::provenance::Provenance;
@@ -58,7 +58,7 @@ impl ExternalResults {
     pub fn new(names: [String; 3], provenance: &Provenance, sections: &[Section]) -> Self {
         let controls = || sections.iter().flat_map(|section| &section.controls);
         let row = |row: &Verdict| {
-            let is_of = |control: &&Control| {
+            let is_of = |control: &&ControlResult| {
                 (&control.case, &control.variant, &control.quantity) == (&row.case, &row.variant, &row.quantity)
             };
             ExternalResult {

@@ -1,6 +1,6 @@
 //! Result files for other programs.
 
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::Serialize;
 use std::io;
 
@@ -13,7 +13,7 @@ use crate::table::{Column, Format, Table};
 struct Results<'a> {
     provenance: &'a Provenance,
     verdicts: Vec<&'a Verdict>,
-    controls: Vec<&'a Control>,
+    controls: Vec<&'a ControlResult>,
     points: Vec<Point<'a>>,
     /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],

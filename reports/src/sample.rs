@@ -9,7 +9,7 @@ use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use grainbench_harness::tolerance::ToleranceOrigin;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
 
 use crate::judged::ExternalResults;
 use crate::measured::{Costs, Effects, Measurements, Stability};
@@ -40,8 +40,8 @@ pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expe
     }
 }
 
-fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> Control {
-    Control {
+fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> ControlResult {
+    ControlResult {
         case: case.into(),
         variant: String::new(),
         solver: "dem".into(),

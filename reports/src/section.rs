@@ -3,7 +3,7 @@
 use crate::stored_figure;
 use grainbench_harness::case::Physics;
 use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Results of one case.
@@ -28,7 +28,7 @@ pub struct Section {
     /// Results in the order of the claims.
     pub verdicts: Vec<Verdict>,
     /// Negative controls.
-    pub controls: Vec<Control>,
+    pub controls: Vec<ControlResult>,
     /// Computing cost of every run.
     pub runs: Vec<RunCost>,
 }

@@ -2,7 +2,7 @@
 
 use super::exit::Fault;
 use grainbench::harness::claim::Claim;
-use grainbench::harness::verdict::{Control, Verdict};
+use grainbench::harness::verdict::{ControlResult, Verdict};
 use grainbench::reports::terminal::is_red;
 use grainbench::reports::{Report, line, number};
 use serde::Deserialize;
@@ -15,7 +15,7 @@ pub(crate) struct EarlierReport {
     #[serde(default)]
     provenance: Options,
     verdicts: Vec<Verdict>,
-    controls: Vec<Control>,
+    controls: Vec<ControlResult>,
 }
 
 /// Options of the earlier run, in words.
@@ -65,13 +65,13 @@ impl EarlierReport {
     }
 
     /// Returns the results and the controls of a claim.
-    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&Control>) {
+    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&ControlResult>) {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
         let resolution = claim.resolution();
         let rows =
             self.verdicts.iter().filter(|row| row.key() == [case, variant, solver, &resolution, &claim.quantity]);
-        let is_its = |control: &&Control| {
+        let is_its = |control: &&ControlResult| {
             [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
         };
         (rows.collect(), self.controls.iter().filter(is_its).collect())
@@ -104,7 +104,7 @@ impl EarlierReport {
         }
         for section in &report.sections {
             for control in section.controls.iter().filter(|control| !control.turned_red) {
-                let same = |was: &&Control| {
+                let same = |was: &&ControlResult| {
                     (&was.case, &was.variant, &was.solver, &was.quantity)
                         == (&control.case, &control.variant, &control.solver, &control.quantity)
                 };

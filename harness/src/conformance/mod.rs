@@ -30,7 +30,7 @@ pub use flaw::{Flaw, FlawedSolver};
 
 use crate::control::FailureMode;
 use crate::evidence::Evidence;
-use crate::verdict::{Control, Outcome, Verdict};
+use crate::verdict::{ControlResult, Outcome, Verdict};
 use grainbench_solver::Solver;
 use grainbench_solver::terms::Terms;
 use std::time::Instant;
@@ -93,7 +93,7 @@ pub const ALL: [Property; 11] = [
 ///
 /// A control checks that the property detects its flaw. A result that fails because of a stated exception has no control.
 #[must_use]
-pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
+pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
     judge_kept(solver, solver, terms)
 }
 
@@ -101,7 +101,7 @@ pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>)
 ///
 /// `itself` does the runs that are repeated or observed.
 #[must_use]
-pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
+pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
     let once = CachedRuns::new(kept);
     for property in ALL {
@@ -119,7 +119,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
-            controls.extend(tried.map(|row| Control::new(row, flaw.words(), FailureMode::Value, seconds)));
+            controls.extend(tried.map(|row| ControlResult::new(row, flaw.words(), FailureMode::Value, seconds)));
         }
         rows.extend(found);
     }
