@@ -190,10 +190,11 @@ impl Runner {
     /// panic gives the outcome `broken`, so that all other results are still reported.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
-        unless_panicked(|| self.judged(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
+        unless_panicked(|| self.judge_or_panic(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
     }
 
-    fn judged(&self, claim: &Claim) -> Verdict {
+    /// Judges a claim. A panic of its evaluation is not caught.
+    fn judge_or_panic(&self, claim: &Claim) -> Verdict {
         let row = self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect());
         if row.outcome != Outcome::Pass {
             return row;

@@ -94,18 +94,18 @@ pub const ALL: [Property; 11] = [
 /// A control checks that the property detects its flaw. A result that fails because of a stated exception has no control.
 #[must_use]
 pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
-    judge_kept(solver, solver, terms)
+    judge_with_cache(solver, solver, terms)
 }
 
-/// Returns the results and the controls of all properties. `kept` may return finished runs from a cache.
+/// Returns the results and the controls of all properties. `cached` is the solver with a cache of finished runs.
 ///
-/// `itself` does the runs that are repeated or observed.
+/// `solver` does the runs that are repeated or observed.
 #[must_use]
-pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
+pub fn judge_with_cache(solver: &dyn Solver, cached: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
-    let once = CachedRuns::new(kept);
+    let once = CachedRuns::new(cached);
     for property in ALL {
-        let found = property.check_again(&once, itself, terms);
+        let found = property.check_again(&once, solver, terms);
         let passed = |row: &Verdict| {
             let same = |other: &&Verdict| other.variant == row.variant && other.quantity == row.quantity;
             found.iter().find(same).is_some_and(|other| other.outcome == Outcome::Pass)
@@ -114,7 +114,7 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let start = Instant::now();
             let flaw = property.flaw(terms);
             // Runs with a flaw may also come from the cache, because only the flaw must be detected.
-            let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(kept, flaw)];
+            let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(cached, flaw)];
             // The stated exceptions of the solver do not apply to flawed runs.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;

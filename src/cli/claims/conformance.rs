@@ -37,7 +37,7 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
 /// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache.
 pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<ControlResult>) {
     let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
-    conformance::judge_kept(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
+    conformance::judge_with_cache(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
 }
 
 /// Returns a report section with results of conformance properties.
