@@ -63,17 +63,17 @@ impl Outcome {
         matches!(self.severity(), Severity::Red)
     }
 
-    /// Returns true if a value was compared with its expected value, or could not be because the run broke.
+    /// Returns true if a value was compared with its expected value, or could not be because the run broke. A report without
+    /// a judged result does not pass.
     #[must_use]
     pub const fn is_judged(self) -> bool {
-        matches!(self, Self::Pass | Self::Known | Self::Fail | Self::Broken | Self::Stale)
+        !matches!(self, Self::NoReference | Self::Unsupported | Self::NotAvailable)
     }
 
-    /// Returns true if the outcome counts as judged for the exit code. Unlike [`Self::is_judged`], this includes outdated
-    /// results and scenes that a solver does not support.
+    /// Returns [`Self::is_judged`], for `check`.
     #[must_use]
     pub const fn counts_for_exit(self) -> bool {
-        !matches!(self, Self::NoReference | Self::NotAvailable)
+        self.is_judged()
     }
 
     /// Returns the name used in result files and tables.
@@ -342,10 +342,41 @@ impl ControlResult {
     }
 }
 
+/// Returns true if results and controls pass: at least one result is judged, none is red, and each control failed as required.
+/// Exit codes, `results.json` and the tests of solvers follow this rule.
+#[must_use]
+pub fn passes<'a>(
+    verdicts: impl IntoIterator<Item = &'a Verdict>,
+    controls: impl IntoIterator<Item = &'a ControlResult>,
+) -> bool {
+    let (mut is_judged, mut is_red) = (false, false);
+    for row in verdicts {
+        is_judged |= row.outcome.is_judged();
+        is_red |= row.outcome.is_red();
+    }
+    is_judged && !is_red && controls.into_iter().all(|control| control.turned_red)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::expect::Bound;
+
+    /// One judged result is enough, also if it is a documented error. Negative controls of the rule: no judged result, a red
+    /// result, and a control that did not fail.
+    #[test]
+    fn results_pass_if_one_is_judged_and_nothing_is_red() {
+        let row = |outcome| Verdict { outcome, ..Verdict::open("case", "quantity", "1") };
+        let rows = |outcomes: &[Outcome]| outcomes.iter().map(|outcome| row(*outcome)).collect::<Vec<_>>();
+        let passing = [&[Outcome::Pass, Outcome::Unsupported][..], &[Outcome::Known], &[Outcome::Outdated]];
+        let unjudged = [&[][..], &[Outcome::Unsupported], &[Outcome::NoReference, Outcome::NotAvailable]];
+        let red = [&[Outcome::Pass, Outcome::Fail][..], &[Outcome::Broken], &[Outcome::Pass, Outcome::Stale]];
+        assert!(passing.iter().all(|outcomes| passes(&rows(outcomes), [])));
+        assert!(!unjudged.iter().chain(&red).any(|outcomes| passes(&rows(outcomes), [])));
+        let green = ControlResult::new(row(Outcome::Pass), "half the friction", FailureMode::Value, 0.0);
+        assert!(!passes(&rows(passing[0]), [&green]));
+        assert!(passes(&rows(passing[0]), [&ControlResult { turned_red: true, ..green }]));
+    }
 
     #[test]
     fn a_tolerance_as_large_as_the_scale_shows_nothing() {

@@ -108,10 +108,16 @@ impl Headline {
     /// would read as a failure. Amber results have a count of their own.
     #[must_use]
     pub fn passed(self) -> String {
-        match self.rows() - self.amber() {
+        match self.conclusive() {
             0 => "not judged".to_owned(),
-            judged => format!("{}/{judged}", self.pass),
+            conclusive => format!("{}/{conclusive}", self.pass),
         }
+    }
+
+    /// Returns the number of results that are not amber.
+    #[must_use]
+    pub fn conclusive(self) -> usize {
+        self.rows() - self.amber()
     }
 
     /// Returns the number of amber results: those that are inconclusive or have a documented error.
@@ -179,15 +185,13 @@ pub fn used_tolerance(verdict: &Verdict) -> f64 {
     }
 }
 
-/// Returns the result with the largest |error|/allowed among those that pass, fail, have a known error, or are
-/// outdated.
+/// Returns the judged result with the largest |error|/allowed. Crashed runs and results with a reference of another scene have
+/// no error, and are left out.
 #[must_use]
-pub fn worst(section: &Section) -> Option<&Verdict> {
-    section
-        .verdicts
-        .iter()
-        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail | Outcome::Known | Outcome::Outdated))
-        .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
+pub fn worst<'a>(rows: impl IntoIterator<Item = &'a Verdict>) -> Option<&'a Verdict> {
+    let has_error = |outcome: Outcome| outcome.is_judged() && !matches!(outcome, Outcome::Broken | Outcome::Stale);
+    let rows = rows.into_iter().filter(|row| has_error(row.outcome));
+    rows.max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 
 /// Returns the solvers of a case, each once: first in the order of the results, then solvers that have only runs.

@@ -1,8 +1,9 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Severity, Verdict};
 use serde::{Deserialize, Serialize};
 
+use crate::headline;
 use crate::provenance::Provenance;
 use crate::section::Section;
 
@@ -48,7 +49,7 @@ pub struct Count {
     pub controls: usize,
     /// Number of negative controls that failed as required.
     pub controls_red: usize,
-    /// Largest |error|/allowed of the results that pass or fail.
+    /// Largest |error|/allowed of the judged results.
     pub worst: Option<f64>,
 }
 
@@ -121,11 +122,10 @@ impl ExternalResults {
     /// Counts the results of one case, or all results.
     #[must_use]
     pub fn count(&self, case: Option<&str>) -> Count {
-        let mut count = Count::default();
-        for ExternalResult { result: row, control_red } in &self.rows {
-            if case.is_some_and(|case| case != row.case) {
-                continue;
-            }
+        let rows = || self.rows.iter().filter(|row| case.is_none_or(|case| case == row.result.case));
+        let worst = headline::worst(rows().map(|row| &row.result)).map(headline::used_tolerance);
+        let mut count = Count { worst, ..Count::default() };
+        for ExternalResult { result: row, control_red } in rows() {
             match row.outcome.severity() {
                 Severity::Green => count.pass += 1,
                 Severity::Red => count.red += 1,
@@ -133,11 +133,6 @@ impl ExternalResults {
             }
             count.controls += usize::from(control_red.is_some());
             count.controls_red += usize::from(*control_red == Some(true));
-            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.outcome, row.error) {
-                // An error of zero uses no tolerance, even if none is allowed.
-                let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
-                count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
-            }
         }
         count
     }
@@ -165,6 +160,7 @@ pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
 mod tests {
     use super::*;
     use crate::sample;
+    use grainbench_harness::verdict::Outcome;
 
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {

@@ -1,6 +1,6 @@
 //! Data of a report. With them, all output files can be written again without a solver.
 
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{Outcome, passes};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -36,6 +36,13 @@ impl Report {
     pub fn new(provenance: Provenance, sections: Vec<Section>) -> Self {
         let measured = Measurements::default();
         Self { provenance, sections, judged: Vec::new(), shown: Vec::new(), measured, red_because: Vec::new() }
+    }
+
+    /// Returns true if the results and controls pass, and no other reason makes the report red.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        let rows = self.sections.iter().flat_map(|section| &section.verdicts);
+        self.red_because.is_empty() && passes(rows, self.sections.iter().flat_map(|section| &section.controls))
     }
 
     /// Returns a report that contains only the results to be shown, and their controls.

@@ -15,6 +15,8 @@ struct Results<'a> {
     verdicts: Vec<&'a Verdict>,
     controls: Vec<&'a ControlResult>,
     points: Vec<Point<'a>>,
+    /// True if the report passes, as the exit code states.
+    passed: bool,
     /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],
 }
@@ -61,6 +63,7 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
         verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
         controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
         points: points(report).collect(),
+        passed: report.passes(),
         red_because: &report.red_because,
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
@@ -116,6 +119,8 @@ mod tests {
             assert!(!results["provenance"][key].is_null(), "{key}");
         }
         assert!(results["controls"].is_array() && results["points"].is_array());
+        // The sample has red results.
+        assert_eq!(results["passed"], false);
     }
 
     #[test]

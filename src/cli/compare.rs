@@ -74,7 +74,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let words = vec!["compare".to_owned(), a, b];
     let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
-    let is_mute = !columns.any(|row| row.outcome.counts_for_exit() && !is_label(row));
+    let is_mute = !columns.any(|row| row.outcome.is_judged() && !is_label(row));
     add_reasons(&mut report, is_mute, arguments.strict);
     let text = Some(format!("{}{}\n", rows(&report), counts(&comparison)));
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })

@@ -3,7 +3,6 @@
 use super::exit::Fault;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::verdict::{ControlResult, Verdict};
-use grainbench::reports::terminal::is_red;
 use grainbench::reports::{Report, line, number};
 use serde::Deserialize;
 use std::collections::BTreeMap;
@@ -55,7 +54,7 @@ impl EarlierReport {
     /// Returns true if a result of the claim with this solver was red, or if its control did not fail.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
-        rows.into_iter().any(is_red) || controls.iter().any(|control| !control.turned_red)
+        rows.iter().any(|row| row.outcome.is_red()) || controls.iter().any(|control| !control.turned_red)
     }
 
     /// Returns true if an interrupted run omitted the claim or its control.
@@ -96,7 +95,7 @@ impl EarlierReport {
                 continue;
             }
             let words = format!("was {}, is {}: {}", was.outcome.word(), row.outcome.word(), line::verdict(row));
-            if is_red(row) { red.push(words) } else { other.push(words) }
+            if row.outcome.is_red() { red.push(words) } else { other.push(words) }
         }
         let is_asked = |row: &&Verdict| is_whole || report.sections.iter().any(|section| section.name == row.case);
         for row in self.verdicts.iter().filter(is_asked).filter(|row| !now.contains_key(&row.key())) {

@@ -1,6 +1,6 @@
 //! Results of external solvers beside ours, from the last stored run of each solver.
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::Verdict;
 use maud::{Markup, html};
 
 use crate::headline;
@@ -85,12 +85,10 @@ fn ours(report: &Report, case: &str) -> Option<f64> {
     let asked = report.judged.iter().flat_map(|results| &results.rows).map(|row| &row.result);
     let asked = asked.filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {
-        let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
-        let is_it = |theirs: &Verdict| {
+        asked.clone().any(|theirs| {
             (&theirs.variant, &theirs.quantity, &theirs.resolution) == (&row.variant, &row.quantity, &row.resolution)
-        };
-        is_judged && asked.clone().any(is_it)
+        })
     };
     let section = report.sections.iter().find(|section| section.name == case)?;
-    section.verdicts.iter().filter(is_asked).map(headline::used_tolerance).reduce(f64::max)
+    headline::worst(section.verdicts.iter().filter(is_asked)).map(headline::used_tolerance)
 }

@@ -143,11 +143,6 @@ impl ClaimTasks {
         order
     }
 
-    /// Returns true if the results of an external solver are judged.
-    pub(crate) fn has_stranger(&self) -> bool {
-        self.selected.iter().any(|selected| selected.stranger.is_some())
-    }
-
     /// Returns the name of the case or solver to which a task belongs.
     pub(crate) fn name(&self, task: ClaimTask) -> String {
         match task {

@@ -136,7 +136,7 @@ impl Study for SweepStudy {
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
-        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.counts_for_exit());
+        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.is_judged());
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
         Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }
