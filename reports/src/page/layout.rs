@@ -65,10 +65,20 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
 /// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
 /// colour.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
-    match outcome.severity() {
-        Severity::Green => ("✓", "pass"),
-        Severity::Red => ("✗", "fail"),
-        Severity::Amber => ("▲", "amber"),
+    let symbol = match outcome.severity() {
+        Severity::Green => "✓",
+        Severity::Red => "✗",
+        Severity::Amber => "▲",
+    };
+    (symbol, class(outcome.severity()))
+}
+
+/// Returns the CSS class of a colour.
+pub(crate) const fn class(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Green => "pass",
+        Severity::Red => "fail",
+        Severity::Amber => "amber",
     }
 }
 

@@ -12,7 +12,7 @@ use grainbench::jobs::plan::{Kind, Plan};
 use grainbench::jobs::sweep::Sweep;
 use grainbench::jobs::task::Task;
 use grainbench::reports::number;
-use grainbench::reports::sweep::{PointOutput, QuantityResult, sweep_json, write_sweep};
+use grainbench::reports::sweep::{PointOutput, QuantityResult, counts, sweep_json, write_sweep};
 use grainbench::solver::Solver;
 use grainbench::store::key;
 use grainbench::store::log::State;
@@ -119,14 +119,14 @@ impl Study for SweepStudy {
             TaskResult::Nothing => None,
             TaskResult::Out(left) => Some(left),
             TaskResult::Crash(detail) => {
-                let looked = QuantityResult { verdict: Some(verdict::Outcome::Broken), ..QuantityResult::default() };
+                let looked = QuantityResult::without_value(verdict::Outcome::Broken, None);
                 Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
             }
         };
         let left = results.into_iter().map(left).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
         write_sweep(how.out, &report).map_err(Fault::writing)?;
-        let [within, outside, amber, unjudged] = report.counts();
+        let [within, outside, amber, unjudged] = counts(&report.points);
         if how.json {
             print(&sweep_json(&report).map_err(Fault::input)?)?;
         } else {
