@@ -23,7 +23,6 @@ mod section;
 mod series_figures;
 mod solid_figures;
 pub mod store;
-mod stored_figure;
 pub mod study;
 pub mod sweep;
 pub mod table;
