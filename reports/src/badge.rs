@@ -22,9 +22,9 @@ pub fn badge(report: &Report) -> String {
     } else if red > 0 {
         format!("{red} red of {}", counts.rows())
     } else {
-        format!("{} of {} pass", counts.pass, counts.rows())
+        format!("{} of {} pass", counts.pass(), counts.rows())
     };
-    let colour = match counts.pass {
+    let colour = match counts.pass() {
         _ if !report.passes() => "#b3261e",
         // Nothing failed, and the judged results are amber: grey.
         0 => "#666",

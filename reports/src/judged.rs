@@ -1,9 +1,10 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::verdict::{ControlResult, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::{Deserialize, Serialize};
 
-use crate::headline;
+use crate::distinct;
+use crate::headline::{self, Headline};
 use crate::provenance::Provenance;
 use crate::section::Section;
 
@@ -35,23 +36,6 @@ pub struct ExternalResult {
 
 /// Relative difference of two errors up to which the difference counts as rounding.
 const ROUNDING: f64 = 1e-6;
-
-/// Numbers of results and controls of an external solver.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Count {
-    /// Number of results within the allowed error.
-    pub pass: usize,
-    /// Number of results that fail, crashed, or have a reference of another scene.
-    pub red: usize,
-    /// Number of results that are inconclusive or have a documented error.
-    pub amber: usize,
-    /// Number of negative controls that were run.
-    pub controls: usize,
-    /// Number of negative controls that failed as required.
-    pub controls_red: usize,
-    /// Largest |error|/allowed of the judged results.
-    pub worst: Option<f64>,
-}
 
 impl ExternalResults {
     /// Returns the results of all cases, which contain only this solver. `names` are program, version and adapter.
@@ -119,22 +103,24 @@ impl ExternalResults {
         serde_json::from_str(text)
     }
 
+    fn of_case(&self, case: Option<&str>) -> impl Iterator<Item = &ExternalResult> {
+        self.rows.iter().filter(move |row| case.is_none_or(|case| case == row.result.case))
+    }
+
     /// Counts the results of one case, or all results.
     #[must_use]
-    pub fn count(&self, case: Option<&str>) -> Count {
-        let rows = || self.rows.iter().filter(|row| case.is_none_or(|case| case == row.result.case));
-        let worst = headline::worst(rows().map(|row| &row.result)).map(headline::used_tolerance);
-        let mut count = Count { worst, ..Count::default() };
-        for ExternalResult { result: row, control_red } in rows() {
-            match row.outcome.severity() {
-                Severity::Green => count.pass += 1,
-                Severity::Red => count.red += 1,
-                Severity::Amber => count.amber += 1,
-            }
-            count.controls += usize::from(control_red.is_some());
-            count.controls_red += usize::from(*control_red == Some(true));
-        }
-        count
+    pub fn count(&self, case: Option<&str>) -> Headline {
+        let controls = || self.of_case(case).filter_map(|row| row.control_red);
+        let (all, red) = (controls().count(), controls().filter(|is_red| *is_red).count());
+        let mut results = Headline::from_results(self.of_case(case).map(|row| &row.result), []);
+        (results.controls, results.controls_red) = (all, red);
+        results
+    }
+
+    /// Returns the largest |error|/allowed of the judged results of one case.
+    #[must_use]
+    pub fn worst(&self, case: &str) -> Option<f64> {
+        headline::worst(self.of_case(Some(case)).map(|row| &row.result)).map(headline::used_tolerance)
     }
 
     /// Returns the date of the run, without the time.
@@ -147,13 +133,7 @@ impl ExternalResults {
 /// Returns the cases with results of any external solver, in order of appearance.
 #[must_use]
 pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
-    let mut cases = Vec::new();
-    for row in judged.iter().flat_map(|results| &results.rows) {
-        if !cases.contains(&row.result.case.as_str()) {
-            cases.push(&row.result.case);
-        }
-    }
-    cases
+    distinct(judged.iter().flat_map(|results| &results.rows).map(|row| row.result.case.as_str()))
 }
 
 #[cfg(test)]
@@ -173,10 +153,10 @@ mod tests {
         assert_eq!(ExternalResults::read(&judged.text().unwrap()).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
-        assert_eq!((count.pass, count.red), (counts.pass, counts.red()));
-        assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
+        assert_eq!((count.pass(), count.red()), (counts.pass(), counts.red()));
+        assert_eq!(count.rows(), judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
-        assert_eq!(judged.count(Some("no-such-case")), Count::default());
+        assert_eq!(judged.count(Some("no-such-case")), Headline::default());
         assert!(ExternalResults::read(&judged.text().unwrap().replace("\"program\"", "\"programme\"")).is_err());
         // Files of earlier versions lack some keys of a result.
         let mut stored = serde_json::to_value(&judged).unwrap();

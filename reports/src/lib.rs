@@ -38,3 +38,14 @@ pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use store::{LoadError, SaveError, write_figures, write_report, write_report_and_parquet};
 pub use terminal::{summary_table, summary_table_within};
+
+/// Returns the values in the order of their first occurrence, each once.
+pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for value in values {
+        if !seen.contains(&value) {
+            seen.push(value);
+        }
+    }
+    seen
+}

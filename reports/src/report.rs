@@ -1,6 +1,6 @@
 //! Data of a report. With them, all output files can be written again without a solver.
 
-use grainbench_harness::verdict::{Outcome, passes};
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict, passes};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
@@ -41,8 +41,17 @@ impl Report {
     /// Returns true if the results and controls pass, and no other reason makes the report red.
     #[must_use]
     pub fn passes(&self) -> bool {
-        let rows = self.sections.iter().flat_map(|section| &section.verdicts);
-        self.red_because.is_empty() && passes(rows, self.sections.iter().flat_map(|section| &section.controls))
+        self.red_because.is_empty() && passes(self.verdicts(), self.controls())
+    }
+
+    /// Returns the results of all sections.
+    pub fn verdicts(&self) -> impl Iterator<Item = &Verdict> + Clone {
+        self.sections.iter().flat_map(|section| &section.verdicts)
+    }
+
+    /// Returns the negative controls of all sections.
+    pub fn controls(&self) -> impl Iterator<Item = &ControlResult> {
+        self.sections.iter().flat_map(|section| &section.controls)
     }
 
     /// Returns a report that contains only the results to be shown, and their controls.

@@ -60,8 +60,8 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
-        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
-        controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
+        verdicts: report.verdicts().collect(),
+        controls: report.controls().collect(),
         points: points(report).collect(),
         passed: report.passes(),
         red_because: &report.red_because,

@@ -81,7 +81,7 @@ impl EarlierReport {
     ///
     /// If `is_whole` is false, earlier results of cases that are not in the report are ignored.
     pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
-        let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
+        let rows = || report.verdicts();
         let before: BTreeMap<[&str; 5], &Verdict> = self.verdicts.iter().map(|row| (row.key(), row)).collect();
         let now: BTreeMap<[&str; 5], &Verdict> = rows().map(|row| (row.key(), row)).collect();
         let (mut red, mut other, mut moved) = (Vec::new(), Vec::new(), 0_usize);

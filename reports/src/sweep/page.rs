@@ -1,6 +1,6 @@
 //! Page of a sweep.
 
-use super::figures::levels;
+use super::figures::{levels, quantile};
 use super::{KINDS, Sweep, counts};
 use crate::number;
 use crate::page::{class, provenance, shell};
@@ -53,16 +53,13 @@ fn table(sweep: &Sweep) -> Markup {
     let rows = levels(sweep).into_iter().map(|(solver, level)| {
         let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
         let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
-        errors.sort_by(f64::total_cmp);
-        let at = |part: f64| {
-            errors.get(((errors.len() as f64 * part) as usize).min(errors.len().saturating_sub(1))).copied()
-        };
+        let [half, most, worst] = [0.5, 0.9, 1.0].map(|part| quantile(&mut errors, part));
         let mut steps: Vec<u64> =
             level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
         steps.sort_unstable();
         let [within, outside, amber, unjudged] = counts(level_points());
-        let (worst, steps) = (errors.last().copied(), steps.get(steps.len() / 2).copied());
-        row![&solver, &level, within, outside, amber, unjudged, at(0.5), at(0.9), worst, steps]
+        let steps = steps.get(steps.len() / 2).copied();
+        row![&solver, &level, within, outside, amber, unjudged, half, most, worst, steps]
     });
     let counts = ["Within", "Outside or broken", "Amber", "Not judged"].map(|name| Column::new(name, Format::Count));
     let errors = ["Median |error|", "90 % below", "Worst"].map(|name| Column::new(name, Format::Fraction));
