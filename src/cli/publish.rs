@@ -49,22 +49,26 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
 }
 
 /// Writes and prints a study, and returns the exit code.
-pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> Outcome {
+pub(crate) fn publish_study(study: &Study, output: Output<'_>) -> Outcome {
     write_study(output.out, study).map_err(Fault::writing)?;
     if output.json {
         print(&study_json(study).map_err(Fault::input)?)?;
     } else {
-        print_text(&output.text.unwrap_or_default())?;
+        print_text(&output.text.unwrap_or_else(|| study.text()))?;
         print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
-    Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    Ok(study_code(study))
+}
+
+/// Returns the exit code of a study.
+pub(crate) fn study_code(study: &Study) -> ExitCode {
+    if study.is_red() { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
 /// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
 pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
-    let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    if is_mute || !rows.clone().any(|row| row.outcome.is_judged()) {
-        let reason = rows.find_map(|row| row.detail.clone());
+    if is_mute || !report.verdicts().any(|row| row.outcome.is_judged()) {
+        let reason = report.verdicts().find_map(|row| row.detail.clone());
         let reason = reason.unwrap_or_else(|| "no result describes its quantity".to_owned());
         report.red_because.push(format!("nothing judged: {reason}"));
     }

@@ -81,6 +81,6 @@ impl Study for EffectStudy {
         study.ledger.extend(results.into_iter().flatten().flatten());
         let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
         study.sources = sources(&solvers.collect::<Vec<_>>());
-        how.publish(&study, effects::text(&study), has_crash || effects::is_red(&study))
+        how.publish(&study, has_crash)
     }
 }
