@@ -8,7 +8,7 @@ use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::expect::{Bound, ExpectedValue, Measurement};
-use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::ReadError;
@@ -237,14 +237,16 @@ fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
             .map(|sample| (sample.at, sample.off / difference.scale))
             .collect();
         if !points.is_empty() && curves.len() < MOST {
-            curves.push(Curve { label: difference.name.clone(), stroke: Stroke::Line, points });
+            curves.push(Curve::new(&difference.name, Stroke::Line, points));
         }
     }
-    let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };
-    (!curves.is_empty()).then(|| Figure {
-        name: "differences".to_owned(),
-        title: "Growth of the differences".to_owned(),
-        caption: "The largest difference of each column at each step, in units of its scale.".to_owned(),
-        drawing: Drawing::Graph(Graph { x: axis(key.word(), false), y: axis("difference / scale", true), curves }),
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            "differences",
+            "Growth of the differences",
+            "The largest difference of each column at each step, in units of its scale.",
+            [Axis::linear(key.word()), Axis::log("difference / scale")],
+            curves,
+        )
     })
 }
