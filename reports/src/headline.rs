@@ -5,7 +5,7 @@ use grainbench_harness::evidence::Evidence;
 use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 
 use crate::distinct;
-use crate::report::{Report, Section};
+use crate::section::Section;
 
 /// All outcomes in the order of the headline.
 pub const OUTCOMES: [Outcome; 9] = [
@@ -55,12 +55,6 @@ impl Headline {
             counts.controls_broken += usize::from(control.turned_red && control.how == FailureMode::Breaking);
         }
         counts
-    }
-
-    /// Counts the results and controls of a report.
-    #[must_use]
-    pub fn of_report(report: &Report) -> Self {
-        Self::from_results(report.verdicts(), report.controls())
     }
 
     /// Counts the results and controls of a case.

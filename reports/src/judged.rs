@@ -167,7 +167,9 @@ mod tests {
             }
         }
         let earlier = ExternalResults::read(&stored.to_string()).unwrap();
-        assert_eq!(earlier.count(None), count);
+        // Without its evidence, a result counts as a regression.
+        let totals = |count: Headline| (count.pass(), count.red(), count.amber(), count.controls, count.controls_red);
+        assert_eq!(totals(earlier.count(None)), totals(count));
         stored["rows"][0].as_object_mut().unwrap().remove("quantity");
         assert!(ExternalResults::read(&stored.to_string()).is_err());
     }

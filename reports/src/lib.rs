@@ -32,12 +32,22 @@ pub mod trend;
 #[cfg(test)]
 mod sample;
 
+use grainbench_harness::verdict::Severity;
 pub use headline::Headline;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use store::{LoadError, SaveError, write_figures, write_report, write_report_and_parquet};
 pub use terminal::{summary_table, summary_table_within};
+
+/// Returns the CSS class of a colour.
+pub(crate) const fn class(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Green => "pass",
+        Severity::Red => "fail",
+        Severity::Amber => "amber",
+    }
+}
 
 /// Returns the values in the order of their first occurrence, each once.
 pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {

@@ -4,6 +4,7 @@ use grainbench_harness::verdict::{ControlResult, Outcome, Verdict, passes};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+use crate::headline::Headline;
 use crate::judged::ExternalResults;
 use crate::measured::Measurements;
 pub use crate::provenance::Provenance;
@@ -28,6 +29,14 @@ pub struct Report {
     /// Further reasons why the run is red, such as `interrupted: 3 checks left out`.
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub red_because: Vec<String>,
+}
+
+impl Headline {
+    /// Counts the results and controls of a report.
+    #[must_use]
+    pub fn of_report(report: &Report) -> Self {
+        Self::from_results(report.verdicts(), report.controls())
+    }
 }
 
 impl Report {

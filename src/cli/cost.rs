@@ -10,7 +10,6 @@ use grainbench::harness::subject::{TargetQuantity, of_each_variant};
 use grainbench::reports::study::Study;
 use grainbench::reports::study::point::Point;
 use grainbench::studies::cost::against::{compare, shared};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -142,9 +141,4 @@ fn of_variant(case: &'static Case, variant: &str) -> Result<TargetQuantity, Faul
         "{}/{variant}: expected a variant with an exact solution for a single run ({known}), found one without",
         case.name
     )))
-}
-
-/// Returns hashes of the solvers' sources, by solver name.
-pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
-    names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }

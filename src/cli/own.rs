@@ -1,6 +1,5 @@
 //! Cost, stability and effects of a scene of the user's, which has no exact solution.
 
-use super::cost::sources;
 use super::exit::{Fault, Outcome, check_writable};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
@@ -24,6 +23,7 @@ use grainbench::studies::own::effects::Importance;
 use grainbench::studies::own::ladder::DEFAULT;
 use grainbench::studies::own::limit;
 use grainbench::studies::own::storage::RunStore;
+use std::collections::BTreeMap;
 use std::path::Path;
 use std::time::{Duration, Instant};
 
@@ -259,6 +259,11 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     written.limits = limits;
     written.sources = sources(&study.names);
     publish_study(&written, Output::new(input.out, input.json, false))
+}
+
+/// Returns hashes of the solvers' sources, by solver name.
+pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
+    names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
 /// Progress bar over the time budget.

@@ -1,9 +1,8 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
-use super::cost::sources;
 use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
-use super::own;
+use super::own::{self, sources};
 use grainbench::reports::study::Study;
 use grainbench::studies::stability::assembly::Assembly;
 use grainbench::studies::stability::hard::HardCase;

@@ -1,5 +1,6 @@
 //! Frame of every page, and the names and signs that all pages share.
 
+use crate::class;
 use crate::plot::{self, DrawError, markup};
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Outcome, Severity};
@@ -71,15 +72,6 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
         Severity::Amber => "▲",
     };
     (symbol, class(outcome.severity()))
-}
-
-/// Returns the CSS class of a colour.
-pub(crate) const fn class(severity: Severity) -> &'static str {
-    match severity {
-        Severity::Green => "pass",
-        Severity::Red => "fail",
-        Severity::Amber => "amber",
-    }
 }
 
 /// Renders a figure with its caption.

@@ -20,7 +20,7 @@ mod tables;
 pub use cards::meaning;
 pub use layout::slug;
 use layout::{CSS, SCRIPT};
-pub(crate) use layout::{captioned, class, rows_of, shell, sign, unique};
+pub(crate) use layout::{captioned, rows_of, shell, sign, unique};
 pub use provenance::{AUTHOR, TITLE};
 
 use std::collections::BTreeSet;

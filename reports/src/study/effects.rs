@@ -1,10 +1,9 @@
 //! Study of effects: the effects that each scene contains, and the error and cost if an effect is left out.
 
-use crate::distinct;
 use crate::number;
-use crate::page::class;
 use crate::row;
 use crate::table::{Cell, Column, Row, Table};
+use crate::{class, distinct};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
@@ -206,7 +205,7 @@ pub(super) fn results_table(ledger: &[Entry]) -> Table<'_> {
         let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
         row![scene_name(&entry.case, &entry.variant), &entry.effect, entry.worth.word(), key]
     };
-    let columns = ["scene", "effect", "result", "enabled by, or tried with"].map(Column::text);
+    let columns = ["Scene", "Effect", "Result", "Enabled by, or tried with"].map(Column::text);
     Table::new("", columns, ledger.iter().map(row))
 }
 

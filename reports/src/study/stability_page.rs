@@ -2,13 +2,13 @@
 
 use super::Study;
 use super::stability::{HardCaseResult, Hardness, Limit, figures};
-use crate::distinct;
 use crate::measured::{Hold, Stability};
 use crate::number;
-use crate::page::{captioned, class};
+use crate::page::captioned;
 use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
+use crate::{class, distinct};
 use maud::{Markup, html};
 
 /// Renders a table with one row per solver: its largest stable time steps, and its outcomes in hard cases.
@@ -138,7 +138,7 @@ fn details_of(rows: &[HardCaseResult]) -> Markup {
 
 /// Returns the table of hard cases for the terminal.
 pub(super) fn hard_table(rows: &[HardCaseResult]) -> Table<'_> {
-    let columns = ["hard case", "solver", "result", "resolution", "detail"].map(Column::text);
+    let columns = ["Hard case", "Solver", "Result", "Resolution", "Detail"].map(Column::text);
     let row = |row: &HardCaseResult| {
         let HardCaseResult { case, solver, standing, resolution, detail, .. } = row;
         row![case, solver, standing.word(), resolution, detail]
@@ -149,7 +149,7 @@ pub(super) fn hard_table(rows: &[HardCaseResult]) -> Table<'_> {
 /// Returns the table of largest stable steps for the terminal.
 pub(super) fn limits_table(rows: &[Limit]) -> Table<'_> {
     let scene = |row: &Limit| parameter(row).map_or_else(|| row.scene.clone(), |at| format!("{}, {at}", row.scene));
-    limits(rows, "scene", move |row| scene(row).into())
+    limits(rows, "Scene", move |row| scene(row).into())
 }
 
 /// Returns the name and the value of a parameter; none if there is no parameter.

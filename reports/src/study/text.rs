@@ -49,11 +49,11 @@ impl Study {
         for quantity in &cost.quantities {
             let digits = |name: &str, digits| Column::new(name, Format::Digits(digits)).unit(&quantity.unit);
             let columns = [
-                Column::text("solver"),
+                Column::text("Solver"),
                 digits(&quantity.name, 6),
-                digits("uncertainty", 2),
-                Column::new("order", Format::Digits(2)),
-                Column::text("basis"),
+                digits("Uncertainty", 2),
+                Column::new("Order", Format::Digits(2)),
+                Column::text("Basis"),
             ];
             let rows = quantity.estimates.iter();
             let rows = rows.map(|row| row![&row.solver, row.value, row.uncertainty, row.order, row.basis.word()]);

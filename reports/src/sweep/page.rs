@@ -2,8 +2,9 @@
 
 use super::figures::{levels, quantile};
 use super::{KINDS, Sweep, counts};
+use crate::class;
 use crate::number;
-use crate::page::{class, provenance, shell};
+use crate::page::{provenance, shell};
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::verdict::Severity;

@@ -2,10 +2,10 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::cost::sources;
 use crate::cli::effects;
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
+use crate::cli::own::sources;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
