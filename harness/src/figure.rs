@@ -35,12 +35,17 @@ fn points<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(f64, f64)>, D::Erro
     Ok(Vec::deserialize(from)?.into_iter().map(|point| pair(point).into()).collect())
 }
 
-fn discs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<([f64; 2], f64, f64)>, D::Error> {
+/// Centre, radius and angle of a disc.
+type Disc = ([f64; 2], f64, f64);
+/// End points of a wall.
+type Segment = ([f64; 2], [f64; 2]);
+
+fn discs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Disc>, D::Error> {
     let discs: Vec<([Number; 2], Number, Number)> = Vec::deserialize(from)?;
     Ok(discs.into_iter().map(|(centre, radius, angle)| (pair(centre), radius.0, angle.0)).collect())
 }
 
-fn walls<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<([f64; 2], [f64; 2])>, D::Error> {
+fn walls<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Segment>, D::Error> {
     Ok(Vec::deserialize(from)?.into_iter().map(|(a, b)| (pair(a), pair(b))).collect())
 }
 
