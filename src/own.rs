@@ -13,7 +13,7 @@ use grainbench_cases::solvers::{self, Registry};
 use grainbench_harness::conformance;
 use grainbench_harness::mistake;
 use grainbench_harness::solvers::Solvers;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict, passes};
 use grainbench_reports::line;
 use grainbench_solver::Solver;
 use grainbench_solver::terms::Terms;
@@ -28,7 +28,7 @@ pub struct Judgement {
     pub verdicts: Vec<Verdict>,
     /// Negative controls of the results. A control that does not fail means that the result does not depend on the
     /// physics in question. For example, the solver ignores a parameter of the scene.
-    pub controls: Vec<Control>,
+    pub controls: Vec<ControlResult>,
 }
 
 /// Reasons why a case cannot test a solver.
@@ -114,17 +114,20 @@ impl Judgement {
         rows.chain(self.controls.iter().filter(|control| !control.turned_red).map(line::control)).collect()
     }
 
-    /// Returns the judgement if [`Judgement::failures`] is empty and at least one result passed.
+    /// Returns the judgement if it passes: at least one result is judged, none is red, and each control failed as required.
     ///
     /// # Errors
-    /// When there are failures, or when no result passed. The error contains the lines of the failures or of all results.
+    /// When it does not pass. The error contains the lines of the failures, or of all results if nothing was judged.
     pub fn require(self) -> Result<Self, SolverRejection> {
-        let mut lines = self.failures();
-        if lines.is_empty() && self.verdicts.iter().all(|row| row.outcome != Outcome::Pass) {
-            lines = self.verdicts.iter().map(line::verdict).collect();
-            lines.push("no result passed".to_owned());
+        if passes(&self.verdicts, &self.controls) {
+            return Ok(self);
         }
-        if lines.is_empty() { Ok(self) } else { Err(SolverRejection { lines }) }
+        let mut lines = self.failures();
+        if lines.is_empty() {
+            lines = self.verdicts.iter().map(line::verdict).collect();
+            lines.push("nothing was judged".to_owned());
+        }
+        Err(SolverRejection { lines })
     }
 }
 

@@ -1,7 +1,53 @@
 //! Figures of cases as data. Reports plot them without using any solver.
 
 use crate::raster::Raster;
-use serde::{Deserialize, Serialize};
+use serde::{Deserialize, Deserializer, Serialize};
+
+/// Number of a stored figure. JSON stores numbers that are not finite as `null`, which is read as NaN; plots leave such points
+/// out and state their number.
+#[derive(Deserialize)]
+#[serde(from = "Option<f64>")]
+struct Number(f64);
+
+impl From<Option<f64>> for Number {
+    fn from(number: Option<f64>) -> Self {
+        Self(number.unwrap_or(f64::NAN))
+    }
+}
+
+/// Reads a number; `null` is read as NaN.
+///
+/// # Errors
+/// When the value is neither a number nor `null`.
+pub fn number<'de, D: Deserializer<'de>>(from: D) -> Result<f64, D::Error> {
+    Number::deserialize(from).map(|number| number.0)
+}
+
+fn pair([x, y]: [Number; 2]) -> [f64; 2] {
+    [x.0, y.0]
+}
+
+fn point<'de, D: Deserializer<'de>>(from: D) -> Result<[f64; 2], D::Error> {
+    Deserialize::deserialize(from).map(pair)
+}
+
+fn points<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<(f64, f64)>, D::Error> {
+    Ok(Vec::deserialize(from)?.into_iter().map(|point| pair(point).into()).collect())
+}
+
+/// Centre, radius and angle of a disc.
+type Disc = ([f64; 2], f64, f64);
+/// End points of a wall.
+type Segment = ([f64; 2], [f64; 2]);
+
+fn discs<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Disc>, D::Error> {
+    let discs: Vec<([Number; 2], Number, Number)> = Vec::deserialize(from)?;
+    Ok(discs.into_iter().map(|(centre, radius, angle)| (pair(centre), radius.0, angle.0)).collect())
+}
+
+fn walls<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Segment>, D::Error> {
+    Ok(Vec::deserialize(from)?.into_iter().map(|(a, b)| (pair(a), pair(b))).collect())
+}
 
 /// One axis of a graph.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -53,6 +99,7 @@ pub struct Curve {
     /// Line style.
     pub stroke: Stroke,
     /// Points (x, y) in the units of the axes.
+    #[serde(deserialize_with = "points")]
     pub points: Vec<(f64, f64)>,
 }
 
@@ -79,10 +126,13 @@ pub struct Graph {
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForceBar {
     /// First end of the bar (m).
+    #[serde(deserialize_with = "point")]
     pub from: [f64; 2],
     /// Second end of the bar (m).
+    #[serde(deserialize_with = "point")]
     pub to: [f64; 2],
     /// Magnitude of the contact force (N). The width of the bar is proportional to it.
+    #[serde(deserialize_with = "number")]
     pub force: f64,
     /// True if the contact slips.
     pub slipping: bool,
@@ -93,8 +143,10 @@ pub struct ForceBar {
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct ForcePlot {
     /// Centre (m), radius (m) and angle of rotation (rad; NaN if unknown) of every disc.
+    #[serde(deserialize_with = "discs")]
     pub discs: Vec<([f64; 2], f64, f64)>,
     /// Pairs of end points of the walls (m), clipped to the drawing.
+    #[serde(deserialize_with = "walls")]
     pub walls: Vec<([f64; 2], [f64; 2])>,
     /// Force bars, one for each contact.
     pub bars: Vec<ForceBar>,
@@ -211,46 +263,31 @@ pub struct Figure {
 }
 
 impl Figure {
+    fn new(name: &str, title: &str, caption: &str, drawing: Drawing) -> Self {
+        Self { name: name.to_owned(), title: title.to_owned(), caption: caption.to_owned(), drawing }
+    }
+
     /// Returns a figure with a graph.
     #[must_use]
     pub fn graph(name: &str, title: &str, caption: &str, [x, y]: [Axis; 2], curves: Vec<Curve>) -> Self {
-        Self {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            caption: caption.to_owned(),
-            drawing: Drawing::Graph(Graph { x, y, curves }),
-        }
+        Self::new(name, title, caption, Drawing::Graph(Graph { x, y, curves }))
     }
+
     /// Returns a figure with a field.
     #[must_use]
     pub fn field(name: &str, title: &str, caption: &str, field: Field) -> Self {
-        Self {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            caption: caption.to_owned(),
-            drawing: Drawing::Field(field),
-        }
+        Self::new(name, title, caption, Drawing::Field(field))
     }
 
     /// Returns a figure with lines in the plane.
     #[must_use]
     pub fn lines(name: &str, title: &str, caption: &str, plot: LinePlot) -> Self {
-        Self {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            caption: caption.to_owned(),
-            drawing: Drawing::Lines(plot),
-        }
+        Self::new(name, title, caption, Drawing::Lines(plot))
     }
 
     /// Returns a figure with a force plot of Cundall and Strack.
     #[must_use]
     pub fn forces(name: &str, title: &str, caption: &str, plot: ForcePlot) -> Self {
-        Self {
-            name: name.to_owned(),
-            title: title.to_owned(),
-            caption: caption.to_owned(),
-            drawing: Drawing::Forces(plot),
-        }
+        Self::new(name, title, caption, Drawing::Forces(plot))
     }
 }

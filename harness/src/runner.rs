@@ -10,7 +10,7 @@ use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, Set};
 use crate::solvers::{Solvers, StoredResult};
 use crate::tolerance;
 use crate::uncertainty::{Estimate, of_finest};
-use crate::verdict::{Control, Outcome, Verdict};
+use crate::verdict::{ControlResult, Outcome, Verdict};
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::RunError;
@@ -190,10 +190,11 @@ impl Runner {
     /// panic gives the outcome `broken`, so that all other results are still reported.
     #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
-        unless_panicked(|| self.judged(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
+        unless_panicked(|| self.judge_or_panic(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
     }
 
-    fn judged(&self, claim: &Claim) -> Verdict {
+    /// Judges a claim. A panic of its evaluation is not caught.
+    fn judge_or_panic(&self, claim: &Claim) -> Verdict {
         let row = self.conclude(claim, claim.runs.iter().map(|run| self.run(run)).collect());
         if row.outcome != Outcome::Pass {
             return row;
@@ -212,7 +213,7 @@ impl Runner {
 
     /// Judges a claim and, if `with_control` is true and the control can be run, its negative control.
     #[must_use]
-    pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<Control>) {
+    pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<ControlResult>) {
         let row = self.judge(claim);
         let control = (with_control && self.tries_control(claim, &row)).then(|| self.control(claim));
         (row, control)
@@ -242,15 +243,15 @@ impl Runner {
     /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs, and
     /// the claim must pass. After a panic, the claim counts as failed by error.
     #[must_use]
-    pub fn control(&self, claim: &Claim) -> Control {
+    pub fn control(&self, claim: &Claim) -> ControlResult {
         let start = Instant::now();
         let under = || self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
         let row = unless_panicked(under).unwrap_or_else(|reason| self.crashed(claim, reason));
         let (standing, outcome) = (claim.standing(), row.outcome);
-        let control = Control::new(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
+        let control = ControlResult::new(row, claim.control.name, claim.control.red, start.elapsed().as_secs_f64());
         match standing {
             ExpectedOutcome::Known(_) => {
-                Control { turned_red: matches!(outcome, Outcome::Pass | Outcome::Outdated), ..control }
+                ControlResult { turned_red: matches!(outcome, Outcome::Pass | Outcome::Outdated), ..control }
             }
             ExpectedOutcome::Passes | ExpectedOutcome::Refused => control,
         }

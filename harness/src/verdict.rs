@@ -63,17 +63,11 @@ impl Outcome {
         matches!(self.severity(), Severity::Red)
     }
 
-    /// Returns true if a value was compared with its expected value, or could not be because the run broke.
+    /// Returns true if a value was compared with its expected value, or could not be because the run broke. A report without
+    /// a judged result does not pass.
     #[must_use]
     pub const fn is_judged(self) -> bool {
-        matches!(self, Self::Pass | Self::Known | Self::Fail | Self::Broken | Self::Stale)
-    }
-
-    /// Returns true if the outcome counts as judged for the exit code. Unlike [`Self::is_judged`], this includes outdated
-    /// results and scenes that a solver does not support.
-    #[must_use]
-    pub const fn counts_for_exit(self) -> bool {
-        !matches!(self, Self::NoReference | Self::NotAvailable)
+        !matches!(self, Self::NoReference | Self::Unsupported | Self::NotAvailable)
     }
 
     /// Returns the name used in result files and tables.
@@ -296,7 +290,7 @@ impl Verdict {
 
 /// Result of a negative control, under whose wrong physics the claim must fail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-pub struct Control {
+pub struct ControlResult {
     /// Case of the claim.
     pub case: String,
     /// Variant of the claim.
@@ -321,7 +315,7 @@ pub struct Control {
     pub seconds: f64,
 }
 
-impl Control {
+impl ControlResult {
     /// Returns a control from a result under wrong physics. `how` is the required way of failing.
     #[must_use]
     pub fn new(row: Verdict, wrong_physics: &str, how: FailureMode, seconds: f64) -> Self {
@@ -342,10 +336,41 @@ impl Control {
     }
 }
 
+/// Returns true if results and controls pass: at least one result is judged, none is red, and each control failed as required.
+/// Exit codes, `results.json` and the tests of solvers follow this rule.
+#[must_use]
+pub fn passes<'a>(
+    verdicts: impl IntoIterator<Item = &'a Verdict>,
+    controls: impl IntoIterator<Item = &'a ControlResult>,
+) -> bool {
+    let (mut is_judged, mut is_red) = (false, false);
+    for row in verdicts {
+        is_judged |= row.outcome.is_judged();
+        is_red |= row.outcome.is_red();
+    }
+    is_judged && !is_red && controls.into_iter().all(|control| control.turned_red)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::expect::Bound;
+
+    /// One judged result is enough, also if it is a documented error. Negative controls of the rule: no judged result, a red
+    /// result, and a control that did not fail.
+    #[test]
+    fn results_pass_if_one_is_judged_and_nothing_is_red() {
+        let row = |outcome| Verdict { outcome, ..Verdict::open("case", "quantity", "1") };
+        let rows = |outcomes: &[Outcome]| outcomes.iter().map(|outcome| row(*outcome)).collect::<Vec<_>>();
+        let passing = [&[Outcome::Pass, Outcome::Unsupported][..], &[Outcome::Known], &[Outcome::Outdated]];
+        let unjudged = [&[][..], &[Outcome::Unsupported], &[Outcome::NoReference, Outcome::NotAvailable]];
+        let red = [&[Outcome::Pass, Outcome::Fail][..], &[Outcome::Broken], &[Outcome::Pass, Outcome::Stale]];
+        assert!(passing.iter().all(|outcomes| passes(&rows(outcomes), [])));
+        assert!(!unjudged.iter().chain(&red).any(|outcomes| passes(&rows(outcomes), [])));
+        let green = ControlResult::new(row(Outcome::Pass), "half the friction", FailureMode::Value, 0.0);
+        assert!(!passes(&rows(passing[0]), [&green]));
+        assert!(passes(&rows(passing[0]), [&ControlResult { turned_red: true, ..green }]));
+    }
 
     #[test]
     fn a_tolerance_as_large_as_the_scale_shows_nothing() {

@@ -26,10 +26,8 @@ class Judgement(Results):
 
     @property
     def passed(self) -> bool:
-        """True if at least one result is green, none is red, each control failed as required, and the run was not interrupted."""
-        severities = {row["severity"] for row in self.verdicts}
-        controls = all(control["turned_red"] for control in self.of_controls)
-        return "green" in severities and "red" not in severities and controls and not self.raw.get("red_because")
+        """True if the program ends with exit code 0: something was judged, nothing is red, and each control failed as required."""
+        return bool(self.raw["passed"])
 
     def require(self) -> Judgement:
         """Returns the judgement if it passed; otherwise raises an AssertionError with the red results."""

@@ -22,15 +22,13 @@ pub fn badge(report: &Report) -> String {
     } else if red > 0 {
         format!("{red} red of {}", counts.rows())
     } else {
-        format!("{} of {} pass", counts.pass, counts.rows())
+        format!("{} of {} pass", counts.pass(), counts.rows())
     };
-    let colour = match (red, counts.pass) {
-        (1.., _) => "#b3261e",
-        _ if reason.is_some() => "#b3261e",
-        _ if counts.rows() == 0 => "#b3261e",
-        // Nothing failed and nothing passed: grey.
-        (0, 0) => "#666",
-        (0, _) => "#2e7d32",
+    let colour = match counts.pass() {
+        _ if !report.passes() => "#b3261e",
+        // Nothing failed, and the judged results are amber: grey.
+        0 => "#666",
+        _ => "#2e7d32",
     };
     let (name, left) = ("grainbench", "grainbench".len() * LETTER + 10);
     let right = words.len() * LETTER + 10;

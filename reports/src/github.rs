@@ -9,7 +9,7 @@ use crate::line;
 use crate::report::{Report, Section};
 use crate::row;
 use crate::table::{Column, Table, escaped};
-use crate::terminal::{failing_lines, is_red};
+use crate::terminal::failing_lines;
 
 /// Largest number of results in a summary. GitHub limits a job summary to 1 MB.
 const MOST: usize = 100;
@@ -45,7 +45,7 @@ pub fn annotations(report: &Report) -> Vec<String> {
     let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));
     let mut lines: Vec<String> = report.red_because.iter().map(|reason| error("grainbench", reason)).collect();
     for section in &report.sections {
-        let red = |row: &&Verdict| is_red(row);
+        let red = |row: &&Verdict| row.outcome.is_red();
         lines.extend(section.verdicts.iter().filter(red).map(|row| error(&row.quantity, &line::verdict(row))));
         let green = section.controls.iter().filter(|control| !control.turned_red);
         lines.extend(green.map(|control| error(&control.quantity, &line::control(control))));

@@ -2,9 +2,10 @@
 
 use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 
-use crate::report::{Report, Section};
+use crate::distinct;
+use crate::section::Section;
 
 /// All outcomes in the order of the headline.
 pub const OUTCOMES: [Outcome; 9] = [
@@ -22,24 +23,8 @@ pub const OUTCOMES: [Outcome; 9] = [
 /// Counts of results by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Headline {
-    /// Number of results within the allowed error.
-    pub pass: usize,
-    /// Number of results outside the allowed error.
-    pub fail: usize,
-    /// Number of results with a documented error of the method or program.
-    pub known: usize,
-    /// Number of results whose reference belongs to another scene.
-    pub stale: usize,
-    /// Number of results that pass, but use a stored result of older solver sources.
-    pub outdated: usize,
-    /// Number of results without a reference, or with a tolerance that is too large for a conclusion.
-    pub no_reference: usize,
-    /// Number of results whose scene the solver cannot represent.
-    pub unsupported: usize,
-    /// Number of results whose program is not installed or whose third-party data are missing.
-    pub not_available: usize,
-    /// Number of results whose run ended with an error.
-    pub broken: usize,
+    /// Numbers of results in the order of [`OUTCOMES`].
+    outcomes: [usize; OUTCOMES.len()],
     /// Number of negative controls that were run.
     pub controls: usize,
     /// Number of negative controls that failed as required.
@@ -55,11 +40,12 @@ impl Headline {
     #[must_use]
     pub fn from_results<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
-        controls: impl IntoIterator<Item = &'a Control>,
+        controls: impl IntoIterator<Item = &'a ControlResult>,
     ) -> Self {
         let mut counts = Self::default();
         for verdict in verdicts {
-            *counts.slot(verdict.outcome) += 1;
+            let is_it = |outcome: Outcome| usize::from(outcome == verdict.outcome);
+            counts.outcomes.iter_mut().zip(OUTCOMES).for_each(|(count, outcome)| *count += is_it(outcome));
             counts.regression +=
                 usize::from(verdict.evidence == Evidence::Regression && verdict.outcome == Outcome::Pass);
         }
@@ -71,15 +57,6 @@ impl Headline {
         counts
     }
 
-    /// Counts the results and controls of a report.
-    #[must_use]
-    pub fn of_report(report: &Report) -> Self {
-        Self::from_results(
-            report.sections.iter().flat_map(|section| &section.verdicts),
-            report.sections.iter().flat_map(|section| &section.controls),
-        )
-    }
-
     /// Counts the results and controls of a case.
     #[must_use]
     pub fn of_section(section: &Section) -> Self {
@@ -88,14 +65,20 @@ impl Headline {
 
     /// Returns the number of results with an outcome.
     #[must_use]
-    pub fn count(mut self, outcome: Outcome) -> usize {
-        *self.slot(outcome)
+    pub fn count(self, outcome: Outcome) -> usize {
+        OUTCOMES.iter().zip(self.outcomes).filter(|(known, _)| **known == outcome).map(|(_, count)| count).sum()
+    }
+
+    /// Returns the number of passed results.
+    #[must_use]
+    pub fn pass(self) -> usize {
+        self.count(Outcome::Pass)
     }
 
     /// Returns the number of all results.
     #[must_use]
     pub fn rows(self) -> usize {
-        OUTCOMES.into_iter().map(|outcome| self.count(outcome)).sum()
+        self.outcomes.iter().sum()
     }
 
     /// Returns the number of results with this colour.
@@ -108,10 +91,16 @@ impl Headline {
     /// would read as a failure. Amber results have a count of their own.
     #[must_use]
     pub fn passed(self) -> String {
-        match self.rows() - self.amber() {
+        match self.conclusive() {
             0 => "not judged".to_owned(),
-            judged => format!("{}/{judged}", self.pass),
+            conclusive => format!("{}/{conclusive}", self.pass()),
         }
+    }
+
+    /// Returns the number of results that are not amber.
+    #[must_use]
+    pub fn conclusive(self) -> usize {
+        self.rows() - self.amber()
     }
 
     /// Returns the number of amber results: those that are inconclusive or have a documented error.
@@ -153,20 +142,6 @@ impl Headline {
         };
         format!("{}{controls}", parts.join(", "))
     }
-
-    fn slot(&mut self, outcome: Outcome) -> &mut usize {
-        match outcome {
-            Outcome::Pass => &mut self.pass,
-            Outcome::Fail => &mut self.fail,
-            Outcome::Known => &mut self.known,
-            Outcome::Stale => &mut self.stale,
-            Outcome::Outdated => &mut self.outdated,
-            Outcome::NoReference => &mut self.no_reference,
-            Outcome::Unsupported => &mut self.unsupported,
-            Outcome::NotAvailable => &mut self.not_available,
-            Outcome::Broken => &mut self.broken,
-        }
-    }
 }
 
 /// Returns |error|/allowed. It is infinite if a non-zero error has no tolerance, or if there is no finite error.
@@ -179,26 +154,18 @@ pub fn used_tolerance(verdict: &Verdict) -> f64 {
     }
 }
 
-/// Returns the result with the largest |error|/allowed among those that pass, fail, have a known error, or are
-/// outdated.
+/// Returns the judged result with the largest |error|/allowed. Crashed runs and results with a reference of another scene have
+/// no error, and are left out.
 #[must_use]
-pub fn worst(section: &Section) -> Option<&Verdict> {
-    section
-        .verdicts
-        .iter()
-        .filter(|verdict| matches!(verdict.outcome, Outcome::Pass | Outcome::Fail | Outcome::Known | Outcome::Outdated))
-        .max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
+pub fn worst<'a>(rows: impl IntoIterator<Item = &'a Verdict>) -> Option<&'a Verdict> {
+    let has_error = |outcome: Outcome| outcome.is_judged() && !matches!(outcome, Outcome::Broken | Outcome::Stale);
+    let rows = rows.into_iter().filter(|row| has_error(row.outcome));
+    rows.max_by(|a, b| used_tolerance(a).total_cmp(&used_tolerance(b)))
 }
 
 /// Returns the solvers of a case, each once: first in the order of the results, then solvers that have only runs.
 #[must_use]
 pub fn solvers(section: &Section) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
     let rows = section.verdicts.iter().map(|verdict| verdict.solver.as_str());
-    for name in rows.chain(section.runs.iter().map(|run| run.solver.as_str())) {
-        if !names.contains(&name) {
-            names.push(name);
-        }
-    }
-    names
+    distinct(rows.chain(section.runs.iter().map(|run| run.solver.as_str())))
 }

@@ -1,8 +1,10 @@
 //! Stored results of an external solver, with its version, the hash of its adapter, date and machine.
 
-use grainbench_harness::verdict::{Control, Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::{Deserialize, Serialize};
 
+use crate::distinct;
+use crate::headline::{self, Headline};
 use crate::provenance::Provenance;
 use crate::section::Section;
 
@@ -35,30 +37,13 @@ pub struct ExternalResult {
 /// Relative difference of two errors up to which the difference counts as rounding.
 const ROUNDING: f64 = 1e-6;
 
-/// Numbers of results and controls of an external solver.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
-pub struct Count {
-    /// Number of results within the allowed error.
-    pub pass: usize,
-    /// Number of results that fail, crashed, or have a reference of another scene.
-    pub red: usize,
-    /// Number of results that are inconclusive or have a documented error.
-    pub amber: usize,
-    /// Number of negative controls that were run.
-    pub controls: usize,
-    /// Number of negative controls that failed as required.
-    pub controls_red: usize,
-    /// Largest |error|/allowed of the results that pass or fail.
-    pub worst: Option<f64>,
-}
-
 impl ExternalResults {
     /// Returns the results of all cases, which contain only this solver. `names` are program, version and adapter.
     #[must_use]
     pub fn new(names: [String; 3], provenance: &Provenance, sections: &[Section]) -> Self {
         let controls = || sections.iter().flat_map(|section| &section.controls);
         let row = |row: &Verdict| {
-            let is_of = |control: &&Control| {
+            let is_of = |control: &&ControlResult| {
                 (&control.case, &control.variant, &control.quantity) == (&row.case, &row.variant, &row.quantity)
             };
             ExternalResult {
@@ -102,28 +87,24 @@ impl ExternalResults {
         now.rows.iter().filter_map(line).collect()
     }
 
+    fn of_case(&self, case: Option<&str>) -> impl Iterator<Item = &ExternalResult> {
+        self.rows.iter().filter(move |row| case.is_none_or(|case| case == row.result.case))
+    }
+
     /// Counts the results of one case, or all results.
     #[must_use]
-    pub fn count(&self, case: Option<&str>) -> Count {
-        let mut count = Count::default();
-        for ExternalResult { result: row, control_red } in &self.rows {
-            if case.is_some_and(|case| case != row.case) {
-                continue;
-            }
-            match row.outcome.severity() {
-                Severity::Green => count.pass += 1,
-                Severity::Red => count.red += 1,
-                Severity::Amber => count.amber += 1,
-            }
-            count.controls += usize::from(control_red.is_some());
-            count.controls_red += usize::from(*control_red == Some(true));
-            if let (Outcome::Pass | Outcome::Fail, Some(error)) = (row.outcome, row.error) {
-                // An error of zero uses no tolerance, even if none is allowed.
-                let of_allowed = if error == 0.0 { 0.0 } else { error.abs() / row.allowed };
-                count.worst = Some(count.worst.map_or(of_allowed, |worst: f64| worst.max(of_allowed)));
-            }
-        }
-        count
+    pub fn count(&self, case: Option<&str>) -> Headline {
+        let controls = || self.of_case(case).filter_map(|row| row.control_red);
+        let (all, red) = (controls().count(), controls().filter(|is_red| *is_red).count());
+        let mut results = Headline::from_results(self.of_case(case).map(|row| &row.result), []);
+        (results.controls, results.controls_red) = (all, red);
+        results
+    }
+
+    /// Returns the largest |error|/allowed of the judged results of one case.
+    #[must_use]
+    pub fn worst(&self, case: &str) -> Option<f64> {
+        headline::worst(self.of_case(Some(case)).map(|row| &row.result)).map(headline::used_tolerance)
     }
 
     /// Returns the date of the run, without the time.
@@ -136,19 +117,14 @@ impl ExternalResults {
 /// Returns the cases with results of any external solver, in order of appearance.
 #[must_use]
 pub fn cases(judged: &[ExternalResults]) -> Vec<&str> {
-    let mut cases = Vec::new();
-    for row in judged.iter().flat_map(|results| &results.rows) {
-        if !cases.contains(&row.result.case.as_str()) {
-            cases.push(&row.result.case);
-        }
-    }
-    cases
+    distinct(judged.iter().flat_map(|results| &results.rows).map(|row| row.result.case.as_str()))
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sample;
+    use grainbench_harness::verdict::Outcome;
     use grainbench_store::artifact::parse_json;
     use std::path::Path;
 
@@ -165,10 +141,10 @@ mod tests {
         assert_eq!(read(&text).unwrap(), judged);
         let counts = crate::Headline::of_report(&report);
         let count = judged.count(None);
-        assert_eq!((count.pass, count.red), (counts.pass, counts.red()));
-        assert_eq!(count.pass + count.red + count.amber, judged.rows.len());
+        assert_eq!((count.pass(), count.red()), (counts.pass(), counts.red()));
+        assert_eq!(count.rows(), judged.rows.len());
         assert!(count.controls > 0 && count.controls_red <= count.controls);
-        assert_eq!(judged.count(Some("no-such-case")), Count::default());
+        assert_eq!(judged.count(Some("no-such-case")), Headline::default());
         assert!(read(&text.replace("\"program\"", "\"programme\"")).is_err());
         // Files of earlier versions lack some keys of a result.
         let mut stored = serde_json::to_value(&judged).unwrap();
@@ -179,7 +155,9 @@ mod tests {
             }
         }
         let earlier = read(&stored.to_string()).unwrap();
-        assert_eq!(earlier.count(None), count);
+        // Without its evidence, a result counts as a regression.
+        let totals = |count: Headline| (count.pass(), count.red(), count.amber(), count.controls, count.controls_red);
+        assert_eq!(totals(earlier.count(None)), totals(count));
         stored["rows"][0].as_object_mut().unwrap().remove("quantity");
         assert!(read(&stored.to_string()).is_err());
     }

@@ -24,7 +24,6 @@ mod section;
 mod series_figures;
 mod solid_figures;
 pub mod store;
-mod stored_figure;
 pub mod study;
 pub mod sweep;
 pub mod table;
@@ -34,9 +33,30 @@ pub mod trend;
 #[cfg(test)]
 mod sample;
 
+use grainbench_harness::verdict::Severity;
 pub use headline::Headline;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use store::{SaveError, write_report, write_report_and_parquet};
 pub use terminal::{summary_table, summary_table_within};
+
+/// Returns the CSS class of a colour.
+pub(crate) const fn class(severity: Severity) -> &'static str {
+    match severity {
+        Severity::Green => "pass",
+        Severity::Red => "fail",
+        Severity::Amber => "amber",
+    }
+}
+
+/// Returns the values in the order of their first occurrence, each once.
+pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec<T> {
+    let mut seen = Vec::new();
+    for value in values {
+        if !seen.contains(&value) {
+            seen.push(value);
+        }
+    }
+    seen
+}

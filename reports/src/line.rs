@@ -2,7 +2,7 @@
 
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
 
 use crate::number;
 
@@ -25,17 +25,17 @@ pub fn verdict_in_section(verdict: &Verdict) -> String {
 /// Returns the line of a negative control: `case · solver · quantity: …`, with wrong physics, error, tolerance, required way
 /// of failing and outcome.
 #[must_use]
-pub fn control(control: &Control) -> String {
+pub fn control(control: &ControlResult) -> String {
     format!("{} · {}", place(&control.case, &control.variant), tried(control))
 }
 
 /// Returns the line of a negative control without the case.
 #[must_use]
-pub fn control_in_section(control: &Control) -> String {
+pub fn control_in_section(control: &ControlResult) -> String {
     if control.variant.is_empty() { tried(control) } else { format!("{} · {}", control.variant, tried(control)) }
 }
 
-fn tried(control: &Control) -> String {
+fn tried(control: &ControlResult) -> String {
     let error = control
         .error
         .map_or_else(|| "no error value".to_owned(), |error| format!("off {}", number::fraction(error.abs())));

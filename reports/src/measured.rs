@@ -1,12 +1,12 @@
 //! Summaries of stored studies of cost, stability and effects, for the first screen of a page.
 
+use crate::distinct;
 use crate::provenance::Provenance;
 use crate::study::effects::Entry;
 use crate::study::point::{Diagram, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
 use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
-use std::collections::BTreeMap;
 
 /// Errors for which costs are reported, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = cost::TARGETS;
@@ -254,14 +254,8 @@ impl Stability {
     /// Summarises a stored study. `today` returns the hash of the present sources of a solver.
     #[must_use]
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
-        let mut names: Vec<&str> = Vec::new();
-        let solvers_with_results =
-            study.limits.iter().map(|row| &row.solver).chain(study.hard.iter().map(|row| &row.solver));
-        for name in solvers_with_results {
-            if !names.contains(&name.as_str()) {
-                names.push(name);
-            }
-        }
+        let limits = study.limits.iter().map(|row| row.solver.as_str());
+        let names = distinct(limits.chain(study.hard.iter().map(|row| row.solver.as_str())));
         let lines = names.iter().map(|name| hold(study, name)).collect();
         let stamp = Stamp::new(study, &names, today);
         Self { stamp, lines, limits: study.limits.clone(), hard: study.hard.clone() }
@@ -283,11 +277,8 @@ fn hold(study: &Study, solver: &str) -> Hold {
     let over: Vec<f64> = limits().filter_map(|row| Some(row.found? / row.exact?)).collect();
     let free: Vec<(f64, &str)> =
         limits().filter(|row| row.exact.is_none()).filter_map(|row| Some((row.found?, row.unit.as_str()))).collect();
-    let mut counts: BTreeMap<&'static str, usize> = BTreeMap::new();
-    for row in study.hard.iter().filter(|row| row.solver == solver) {
-        *counts.entry(row.standing.word()).or_default() += 1;
-    }
-    let count = |standing: Hardness| counts.get(standing.word()).copied().unwrap_or(0);
+    let hard = || study.hard.iter().filter(|row| row.solver == solver);
+    let count = |standing: Hardness| hard().filter(|row| row.standing == standing).count();
     Hold {
         solver: solver.to_owned(),
         limit: (!over.is_empty()).then(|| (ends(&over), over.len())),
@@ -305,6 +296,7 @@ fn hold(study: &Study, solver: &str) -> Hold {
 mod tests {
     use super::*;
     use crate::sample;
+    use std::collections::BTreeMap;
 
     #[test]
     fn factors_are_over_the_cheapest_of_the_same_quantity() {

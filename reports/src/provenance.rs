@@ -1,6 +1,6 @@
 //! Origin of results: version, machine, date and options of a run.
 
-use crate::stored_figure;
+use grainbench_harness::figure::number;
 use serde::{Deserialize, Serialize};
 
 /// Provenance of a run: version, machine, date and options.
@@ -19,6 +19,6 @@ pub struct Provenance {
     /// Options of the run in words.
     pub options: Vec<String>,
     /// Wall-clock time of the run (s).
-    #[serde(deserialize_with = "stored_figure::number")]
+    #[serde(deserialize_with = "number")]
     pub wall_seconds: f64,
 }

@@ -1,9 +1,10 @@
 //! Data of a report. With them, all output files can be written again without a solver.
 
-use grainbench_harness::verdict::Outcome;
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict, passes};
 use serde::{Deserialize, Serialize};
 use std::borrow::Cow;
 
+use crate::headline::Headline;
 use crate::judged::ExternalResults;
 use crate::measured::Measurements;
 pub use crate::provenance::Provenance;
@@ -30,12 +31,36 @@ pub struct Report {
     pub red_because: Vec<String>,
 }
 
+impl Headline {
+    /// Counts the results and controls of a report.
+    #[must_use]
+    pub fn of_report(report: &Report) -> Self {
+        Self::from_results(report.verdicts(), report.controls())
+    }
+}
+
 impl Report {
     /// Returns a report with the given sections. It has no stored results of external solvers and no measurements.
     #[must_use]
     pub fn new(provenance: Provenance, sections: Vec<Section>) -> Self {
         let measured = Measurements::default();
         Self { provenance, sections, judged: Vec::new(), shown: Vec::new(), measured, red_because: Vec::new() }
+    }
+
+    /// Returns true if the results and controls pass, and no other reason makes the report red.
+    #[must_use]
+    pub fn passes(&self) -> bool {
+        self.red_because.is_empty() && passes(self.verdicts(), self.controls())
+    }
+
+    /// Returns the results of all sections.
+    pub fn verdicts(&self) -> impl Iterator<Item = &Verdict> + Clone {
+        self.sections.iter().flat_map(|section| &section.verdicts)
+    }
+
+    /// Returns the negative controls of all sections.
+    pub fn controls(&self) -> impl Iterator<Item = &ControlResult> {
+        self.sections.iter().flat_map(|section| &section.controls)
     }
 
     /// Returns a report that contains only the results to be shown, and their controls.

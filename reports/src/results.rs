@@ -1,6 +1,6 @@
 //! Result files for other programs.
 
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::Serialize;
 use std::io;
 
@@ -13,8 +13,10 @@ use crate::table::{Column, Format, Table};
 struct Results<'a> {
     provenance: &'a Provenance,
     verdicts: Vec<&'a Verdict>,
-    controls: Vec<&'a Control>,
+    controls: Vec<&'a ControlResult>,
     points: Vec<Point<'a>>,
+    /// True if the report passes, as the exit code states.
+    passed: bool,
     /// Further reasons why the report is red, such as an interrupted run.
     red_because: &'a [String],
 }
@@ -58,9 +60,10 @@ fn points(report: &Report) -> impl Iterator<Item = Point<'_>> {
 pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &report.provenance,
-        verdicts: report.sections.iter().flat_map(|section| &section.verdicts).collect(),
-        controls: report.sections.iter().flat_map(|section| &section.controls).collect(),
+        verdicts: report.verdicts().collect(),
+        controls: report.controls().collect(),
         points: points(report).collect(),
+        passed: report.passes(),
         red_because: &report.red_because,
     };
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
@@ -116,6 +119,8 @@ mod tests {
             assert!(!results["provenance"][key].is_null(), "{key}");
         }
         assert!(results["controls"].is_array() && results["points"].is_array());
+        // The sample has red results.
+        assert_eq!(results["passed"], false);
     }
 
     #[test]

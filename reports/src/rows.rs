@@ -35,7 +35,7 @@ fn table(report: &Report) -> Table<'_> {
             tolerance, because, evidence, source, outcome, detail
         ]
     };
-    Table::new("rows", columns, report.sections.iter().flat_map(|section| &section.verdicts).map(row))
+    Table::new("rows", columns, report.verdicts().map(row))
 }
 
 /// Returns `rows.csv` with a header and one line per result. Each number is the shortest text that reads back to the
@@ -69,7 +69,7 @@ mod tests {
     #[test]
     fn a_table_has_every_row() {
         let report = sample::report();
-        let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
+        let rows: Vec<&Verdict> = report.verdicts().collect();
         let text = rows_csv(&report).unwrap();
         let mut table = csv::Reader::from_reader(&*text);
         let lines: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();

@@ -9,7 +9,7 @@ use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
 use grainbench_harness::tolerance::ToleranceOrigin;
-use grainbench_harness::verdict::{Control, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
 
 use crate::judged::ExternalResults;
 use crate::measured::{Costs, Effects, Measurements, Stability};
@@ -40,8 +40,8 @@ pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expe
     }
 }
 
-fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> Control {
-    Control {
+fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> ControlResult {
+    ControlResult {
         case: case.into(),
         variant: String::new(),
         solver: "dem".into(),
@@ -54,14 +54,6 @@ fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) ->
         detail: None,
         seconds: 0.01,
     }
-}
-
-fn axis(label: &str, logarithmic: bool) -> Axis {
-    Axis { label: label.into(), logarithmic }
-}
-
-fn curve(label: &str, stroke: Stroke, points: Vec<(f64, f64)>) -> Curve {
-    Curve { label: label.into(), stroke, points }
 }
 
 fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {
@@ -111,32 +103,32 @@ fn backspin() -> Section {
     momentum.outcome = Outcome::Pass;
     let levels = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125];
     let convergence = Graph {
-        x: axis("Δt / critical (1)", true),
-        y: axis("|error| of v(t = 0.5 s) (1)", true),
+        x: Axis::log("Δt / critical (1)"),
+        y: Axis::log("|error| of v(t = 0.5 s) (1)"),
         curves: vec![
-            curve("dem", Stroke::MarkedLine, levels.map(|x| (x, 0.03 * x)).to_vec()),
-            curve("dem:lammps", Stroke::MarkedLine, levels.map(|x| (x, 0.19 * x * x)).to_vec()),
-            curve(
+            Curve::new("dem", Stroke::MarkedLine, levels.map(|x| (x, 0.03 * x)).to_vec()),
+            Curve::new("dem:lammps", Stroke::MarkedLine, levels.map(|x| (x, 0.19 * x * x)).to_vec()),
+            Curve::new(
                 "rigid, 8 substeps",
                 Stroke::MarkedLine,
                 levels.map(|x| (x, if x < 0.02 { 0.0 } else { 4e-4 + 0.01 * x })).to_vec(),
             ),
-            curve("allowed", Stroke::Dashed, vec![(0.0125, 0.02), (0.4, 0.02)]),
-            curve("first order", Stroke::Dashed, vec![(0.0125, 1.25e-3), (0.1, 1e-2)]),
+            Curve::new("allowed", Stroke::Dashed, vec![(0.0125, 0.02), (0.4, 0.02)]),
+            Curve::new("first order", Stroke::Dashed, vec![(0.0125, 1.25e-3), (0.1, 1e-2)]),
         ],
     };
     let series = Graph {
-        x: axis("time t (s)", false),
-        y: axis("velocity v (m/s)", false),
+        x: Axis::linear("time t (s)"),
+        y: Axis::linear("velocity v (m/s)"),
         curves: vec![
-            curve("dem", Stroke::Line, times().map(|t| (t, exact(t) + 0.004 * (60.0 * t).sin())).collect()),
-            curve("dem:liggghts", Stroke::Line, times().map(|t| (t, exact(t) * (1.0 - 0.05 * t))).collect()),
-            curve(
+            Curve::new("dem", Stroke::Line, times().map(|t| (t, exact(t) + 0.004 * (60.0 * t).sin())).collect()),
+            Curve::new("dem:liggghts", Stroke::Line, times().map(|t| (t, exact(t) * (1.0 - 0.05 * t))).collect()),
+            Curve::new(
                 "rigid, 8 substeps",
                 Stroke::Line,
                 times().map(|t| (t, exact(t) + 0.03 * (1.0 - (-9.0 * t).exp()))).collect(),
             ),
-            curve("exact", Stroke::Dashed, times().map(|t| (t, exact(t))).collect()),
+            Curve::new("exact", Stroke::Dashed, times().map(|t| (t, exact(t))).collect()),
         ],
     };
     Section {

@@ -1,9 +1,8 @@
 //! Results of one case: claims, controls, figures and costs.
 
-use crate::stored_figure;
 use grainbench_harness::case::Physics;
-use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::figure::{Figure, number};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::{Deserialize, Serialize};
 
 /// Results of one case.
@@ -23,12 +22,11 @@ pub struct Section {
     /// Limitations of this test, in Markdown.
     pub weak: String,
     /// Figures in the order in which they are shown.
-    #[serde(deserialize_with = "stored_figure::figures")]
     pub figures: Vec<Figure>,
     /// Results in the order of the claims.
     pub verdicts: Vec<Verdict>,
     /// Negative controls.
-    pub controls: Vec<Control>,
+    pub controls: Vec<ControlResult>,
     /// Computing cost of every run.
     pub runs: Vec<RunCost>,
 }
@@ -49,10 +47,10 @@ pub struct RunCost {
     /// Number of evaluations of contact laws; absent if the program does not report it.
     pub contact_evaluations: Option<u64>,
     /// Wall-clock time of the stepping loop (s).
-    #[serde(deserialize_with = "stored_figure::number")]
+    #[serde(deserialize_with = "number")]
     pub wall_seconds: f64,
     /// Time step (s).
-    #[serde(deserialize_with = "stored_figure::number")]
+    #[serde(deserialize_with = "number")]
     pub time_step: f64,
     /// Time step as a fraction of the critical time step; absent if the method has none.
     pub fraction_of_critical: Option<f64>,

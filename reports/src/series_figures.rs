@@ -1,5 +1,6 @@
 //! Time series of probes: one graph per quantity, such as velocity, position or force.
 
+use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_solver::record::{Record, Series, Snapshot};
 
@@ -30,13 +31,8 @@ fn parts(name: &str) -> (&str, &str) {
 /// Returns one graph for each quantity of the probes of all records, within a time window (s). Values that are missing
 /// or not finite are not plotted.
 pub(crate) fn figures(records: &[NamedRecord<'_>], window: (f64, f64)) -> Vec<Figure> {
-    let mut quantities: Vec<(&str, &str)> = Vec::new();
-    for column in records.iter().flat_map(|named| &named.record.series.columns) {
-        let quantity = (parts(&column.name).1, column.unit.as_str());
-        if !quantities.contains(&quantity) {
-            quantities.push(quantity);
-        }
-    }
+    let columns = records.iter().flat_map(|named| &named.record.series.columns);
+    let quantities = distinct(columns.map(|column| (parts(&column.name).1, column.unit.as_str())));
     quantities.into_iter().filter_map(|quantity| figure(records, quantity, window)).collect()
 }
 

@@ -344,7 +344,12 @@ impl<'a> Table<'a> {
             let spare = widths[column].saturating_sub(least.unwrap_or(usize::MAX));
             widths[column] -= line.saturating_sub(most).min(spare);
         }
-        rows.insert(1, widths.iter().map(|width| "─".repeat(*width)).collect());
+        // The line below the last heading is not longer than the heading, because texts in the last column may be long.
+        let mut lines = widths.clone();
+        if let (Some(line), Some(head), Some(false)) = (lines.last_mut(), rows[0].last(), is_number.last()) {
+            *line = head.chars().count().min(*line);
+        }
+        rows.insert(1, lines.iter().map(|width| "─".repeat(*width)).collect());
         let mut text = String::new();
         for row in rows {
             let cells = row.iter().zip(&widths).zip(&is_number).map(|((cell, &width), is_number)| {
@@ -530,6 +535,8 @@ mod tests {
         let lines: Vec<&str> = text.lines().collect();
         assert_eq!([lines[0], lines[2]], ["solver    time   steps  mass (kg)", "dem|a   250 ms  12 000      0.333"]);
         assert!(lines[1].starts_with("──────  ") && lines[3].ends_with("—"), "{text}");
+        let text = Table::new("", [Column::text("why")], [row!["a long reason"]]).text();
+        assert_eq!(text, "why\n───\na long reason\n");
         let text = plain(table().markdown());
         assert!(text.starts_with("| solver | time | steps | mass (kg) |\n| --- | --- | --- | --- |\n"), "{text}");
         assert!(text.contains("\n| dem\\|a | 250 ms | 12 000 | 0.333 |\n"), "{text}");

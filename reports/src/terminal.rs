@@ -2,7 +2,7 @@
 
 use std::collections::BTreeMap;
 
-use grainbench_harness::verdict::{Severity, Verdict};
+use grainbench_harness::verdict::Severity;
 
 use crate::headline::{self, Headline};
 use crate::line;
@@ -49,7 +49,7 @@ pub fn summary_table_within(report: &Report, width: usize) -> String {
 #[must_use]
 pub fn amber_lines(report: &Report) -> Vec<String> {
     let mut groups: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
-    let rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    let rows = report.verdicts();
     for row in rows.filter(|row| row.outcome.severity() == Severity::Amber) {
         let reason = row.detail.as_deref().unwrap_or("no reason is stated");
         groups.entry((row.outcome.word(), reason)).or_default().push(&row.solver);
@@ -75,7 +75,7 @@ pub fn amber_lines(report: &Report) -> Vec<String> {
 #[must_use]
 pub fn conclusion(report: &Report) -> Option<String> {
     let counts = Headline::of_report(report);
-    let (red, amber, judged) = (counts.red(), counts.amber(), counts.rows() - counts.amber());
+    let (red, amber, judged) = (counts.red(), counts.amber(), counts.conclusive());
     let missed = counts.controls - counts.controls_red;
     let (mark, mut text) = match judged {
         _ if counts.rows() == 0 => return None,
@@ -93,19 +93,12 @@ pub fn conclusion(report: &Report) -> Option<String> {
         1 => " The negative control failed, as it must.".to_owned(),
         all => format!(" All {all} negative controls failed, as they must."),
     };
-    let is_red = red > 0 || missed > 0 || !report.red_because.is_empty();
-    Some(format!("{} {text}", if is_red { "✗" } else { mark }))
+    Some(format!("{} {text}", if report.passes() { mark } else { "✗" }))
 }
 
 /// Returns the form of a verb for a number.
 const fn verb(count: usize, singular: &'static str, plural: &'static str) -> &'static str {
     if count == 1 { singular } else { plural }
-}
-
-/// Returns true if a result is red: it fails, its run crashed, or its reference was made from another scene.
-#[must_use]
-pub fn is_red(verdict: &Verdict) -> bool {
-    verdict.outcome.is_red()
 }
 
 /// Returns one line for each red result, for each negative control that did not fail as required, and for each further
@@ -115,7 +108,7 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
     let mut lines: Vec<String> = report.red_because.iter().map(|reason| format!("✗ {reason}")).collect();
     for section in &report.sections {
         for verdict in &section.verdicts {
-            if is_red(verdict) {
+            if verdict.outcome.is_red() {
                 lines.push(format!("✗ {}", line::verdict(verdict)));
             }
         }
@@ -130,7 +123,7 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
 
 fn row(section: &Section) -> Row {
     let counts = Headline::of_section(section);
-    let worst = headline::worst(section).map_or_else(
+    let worst = headline::worst(&section.verdicts).map_or_else(
         || "—".to_owned(),
         |verdict| {
             let used = headline::used_tolerance(verdict);
@@ -154,7 +147,7 @@ fn row(section: &Section) -> Row {
 mod tests {
     use super::*;
     use crate::sample;
-    use grainbench_harness::verdict::Outcome;
+    use grainbench_harness::verdict::{Outcome, Verdict};
 
     /// A section without any judged result does not read as a failure.
     #[test]

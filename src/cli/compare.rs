@@ -8,7 +8,7 @@ use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::expect::{Bound, ExpectedValue, Measurement};
-use grainbench::harness::figure::{Axis, Curve, Drawing, Figure, Graph, Stroke};
+use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::ReadError;
@@ -74,7 +74,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let words = vec!["compare".to_owned(), a, b];
     let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
-    let is_mute = !columns.any(|row| row.outcome.counts_for_exit() && !is_label(row));
+    let is_mute = !columns.any(|row| row.outcome.is_judged() && !is_label(row));
     add_reasons(&mut report, is_mute, arguments.strict);
     let text = Some(format!("{}{}\n", rows(&report), counts(&comparison)));
     publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
@@ -237,14 +237,16 @@ fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
             .map(|sample| (sample.at, sample.off / difference.scale))
             .collect();
         if !points.is_empty() && curves.len() < MOST {
-            curves.push(Curve { label: difference.name.clone(), stroke: Stroke::Line, points });
+            curves.push(Curve::new(&difference.name, Stroke::Line, points));
         }
     }
-    let axis = |label: &str, logarithmic| Axis { label: label.to_owned(), logarithmic };
-    (!curves.is_empty()).then(|| Figure {
-        name: "differences".to_owned(),
-        title: "Growth of the differences".to_owned(),
-        caption: "The largest difference of each column at each step, in units of its scale.".to_owned(),
-        drawing: Drawing::Graph(Graph { x: axis(key.word(), false), y: axis("difference / scale", true), curves }),
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            "differences",
+            "Growth of the differences",
+            "The largest difference of each column at each step, in units of its scale.",
+            [Axis::linear(key.word()), Axis::log("difference / scale")],
+            curves,
+        )
     })
 }

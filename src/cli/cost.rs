@@ -3,14 +3,13 @@
 use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use super::own;
-use super::subject::Variant;
-use grainbench::cases::registry::{self, CASES};
+use super::subject::selected;
+use grainbench::cases::registry;
 use grainbench::harness::case::Case;
 use grainbench::harness::subject::{TargetQuantity, of_each_variant};
+use grainbench::reports::study::Study;
 use grainbench::reports::study::point::Point;
-use grainbench::reports::study::{Study, cost as drawn};
 use grainbench::studies::cost::against::{compare, shared};
-use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -99,12 +98,6 @@ impl Arguments {
     }
 }
 
-/// Returns true if a study measures no error, or if a value has become worse since an earlier study.
-pub(crate) fn is_red(study: &Study) -> bool {
-    let measures = study.diagrams.iter().flat_map(|diagram| &diagram.points).any(|point| point.error.is_some());
-    !measures || study.changes.iter().any(|change| change.worse)
-}
-
 /// Compares a study with the points of an earlier study, and names the file `path` of that study in the report.
 pub(crate) fn set_against(study: &mut Study, old: &[Point], path: &Path) {
     let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
@@ -118,20 +111,12 @@ pub(crate) fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     if let Some(case) = own::folder(names)? {
         return Ok(registry::subjects(case));
     }
-    let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
     let mut found = Vec::new();
-    for case in CASES {
-        let mine: Vec<_> = named.iter().filter(|named| named.case.name == case.name).collect();
-        if mine.is_empty() && !named.is_empty() {
-            continue;
-        }
-        let wanted = |variant: &str| {
-            mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
-        };
-        found.extend(registry::subjects(case).into_iter().filter(|subject| wanted(subject.variant)));
-        for (named, variant) in mine.iter().filter_map(|named| Some((named, named.variant?))) {
+    for (case, variants) in selected(names)? {
+        found.extend(registry::subjects(case).into_iter().filter(|subject| variants.contain(subject.variant)));
+        for variant in variants.named() {
             if found.iter().all(|subject| subject.case.name != case.name || subject.variant != variant) {
-                found.push(of_variant(named.case, variant)?);
+                found.push(of_variant(case, variant)?);
             }
         }
     }
@@ -156,33 +141,4 @@ fn of_variant(case: &'static Case, variant: &str) -> Result<TargetQuantity, Faul
         "{}/{variant}: expected a variant with an exact solution for a single run ({known}), found one without",
         case.name
     )))
-}
-
-/// Returns hashes of the solvers' sources, by solver name.
-pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
-    names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
-}
-
-/// Returns the summary of a cost study as text: one line per target quantity and error target, followed by the changes
-/// since an earlier study.
-pub(crate) fn text(study: &Study) -> String {
-    let mut text = String::new();
-    for diagram in &study.diagrams {
-        text.push_str(&format!("{}/{} · {}\n", diagram.case, diagram.variant, diagram.quantity));
-        for target in drawn::TARGETS {
-            text.push_str(&format!("  {}\n", drawn::sentence(diagram, target)));
-        }
-    }
-    if let Some(old) = &study.against {
-        text.push_str(&format!("against {old}: "));
-        if study.changes.is_empty() {
-            text.push_str("all counts are equal, and no time differs by more than noise\n");
-        } else {
-            text.push('\n');
-        }
-        for change in &study.changes {
-            text.push_str(&format!("  {}: {}\n", change.what, change.how));
-        }
-    }
-    text
 }

@@ -2,8 +2,7 @@
 
 use super::exit::Fault;
 use grainbench::harness::claim::Claim;
-use grainbench::harness::verdict::{Control, Verdict};
-use grainbench::reports::terminal::is_red;
+use grainbench::harness::verdict::{ControlResult, Verdict};
 use grainbench::reports::{Report, line, number};
 use grainbench::store::artifact::read_json;
 use serde::Deserialize;
@@ -16,7 +15,7 @@ pub(crate) struct EarlierReport {
     #[serde(default)]
     provenance: Options,
     verdicts: Vec<Verdict>,
-    controls: Vec<Control>,
+    controls: Vec<ControlResult>,
 }
 
 /// Options of the earlier run, in words.
@@ -48,7 +47,7 @@ impl EarlierReport {
     /// Returns true if a result of the claim with this solver was red, or if its control did not fail.
     pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
         let (rows, controls) = self.of_claim(case, solver, claim);
-        rows.into_iter().any(is_red) || controls.iter().any(|control| !control.turned_red)
+        rows.iter().any(|row| row.outcome.is_red()) || controls.iter().any(|control| !control.turned_red)
     }
 
     /// Returns true if an interrupted run omitted the claim or its control.
@@ -58,13 +57,13 @@ impl EarlierReport {
     }
 
     /// Returns the results and the controls of a claim.
-    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&Control>) {
+    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&ControlResult>) {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
         let resolution = claim.resolution();
         let rows =
             self.verdicts.iter().filter(|row| row.key() == [case, variant, solver, &resolution, &claim.quantity]);
-        let is_its = |control: &&Control| {
+        let is_its = |control: &&ControlResult| {
             [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
         };
         (rows.collect(), self.controls.iter().filter(is_its).collect())
@@ -75,7 +74,7 @@ impl EarlierReport {
     ///
     /// If `is_whole` is false, earlier results of cases that are not in the report are ignored.
     pub(crate) fn changes(&self, report: &Report, is_whole: bool) -> Vec<String> {
-        let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
+        let rows = || report.verdicts();
         let before: BTreeMap<[&str; 5], &Verdict> = self.verdicts.iter().map(|row| (row.key(), row)).collect();
         let now: BTreeMap<[&str; 5], &Verdict> = rows().map(|row| (row.key(), row)).collect();
         let (mut red, mut other, mut moved) = (Vec::new(), Vec::new(), 0_usize);
@@ -89,7 +88,7 @@ impl EarlierReport {
                 continue;
             }
             let words = format!("was {}, is {}: {}", was.outcome.word(), row.outcome.word(), line::verdict(row));
-            if is_red(row) { red.push(words) } else { other.push(words) }
+            if row.outcome.is_red() { red.push(words) } else { other.push(words) }
         }
         let is_asked = |row: &&Verdict| is_whole || report.sections.iter().any(|section| section.name == row.case);
         for row in self.verdicts.iter().filter(is_asked).filter(|row| !now.contains_key(&row.key())) {
@@ -97,7 +96,7 @@ impl EarlierReport {
         }
         for section in &report.sections {
             for control in section.controls.iter().filter(|control| !control.turned_red) {
-                let same = |was: &&Control| {
+                let same = |was: &&ControlResult| {
                     (&was.case, &was.variant, &was.solver, &was.quantity)
                         == (&control.case, &control.variant, &control.solver, &control.quantity)
                 };

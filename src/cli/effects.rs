@@ -8,12 +8,11 @@ use super::provenance::provenance;
 use super::publish::{Output, publish_study};
 use super::solver;
 use super::step::Step;
-use super::subject::{self, Variant};
+use super::subject::{self, SelectedVariants, selected};
 use super::value::positive;
-use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
+use grainbench::harness::case::Case;
 use grainbench::reports::study::Study;
-use grainbench::reports::study::effects::EffectResult;
 use grainbench::scene::effect::Effect;
 use grainbench::scene::method::Method;
 use grainbench::solver::resolution::Resolution;
@@ -156,26 +155,9 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
     let chaotic = "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
                    time are compared, with the scatter of perturbed runs.\n";
-    let text = text(&study) + if whole.perturbed.is_empty() { "" } else { chaotic };
+    let text = study.text() + if whole.perturbed.is_empty() { "" } else { chaotic };
     let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
-    publish_study(&study, output, is_red(&study))
-}
-
-/// Returns true if an effect that is off changes a result when it is compiled in with a neutral value.
-pub(crate) fn is_red(study: &Study) -> bool {
-    study.ledger.iter().any(|entry| entry.worth == EffectResult::NotInert)
-}
-
-/// Returns a study in words, with a line for each effect of each scene.
-pub(crate) fn text(study: &Study) -> String {
-    let mut text = String::new();
-    for entry in &study.ledger {
-        let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
-        let scene = [entry.case.as_str(), &entry.variant].join("/");
-        let scene = scene.trim_end_matches('/');
-        text.push_str(&format!("{scene:<32} {}: {} ({key})\n", entry.effect, entry.worth.word()));
-    }
-    text
+    publish_study(&study, output)
 }
 
 /// Returns the study of each named case, with the effects to test.
@@ -185,19 +167,10 @@ pub(crate) fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)
         let pieces = ledger.pieces();
         return Ok(vec![(ledger, pieces)]);
     }
-    let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
-    let mut found = Vec::new();
-    for case in CASES {
-        let mine: Vec<_> = named.iter().filter(|named| named.case.name == case.name).collect();
-        if mine.is_empty() && !named.is_empty() {
-            continue;
-        }
-        let wanted = |variant: &str| {
-            mine.is_empty() || mine.iter().any(|named| named.variant.is_none_or(|name| name == variant))
-        };
+    let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
         let ledger = Ledger::new(case, Arc::new(Registry));
-        let pieces = ledger.pieces().into_iter().filter(|piece| wanted(piece.variant)).collect();
-        found.push((ledger, pieces));
-    }
-    Ok(found)
+        let pieces = ledger.pieces().into_iter().filter(|piece| variants.contain(piece.variant)).collect();
+        (ledger, pieces)
+    };
+    Ok(selected(names)?.into_iter().map(of_case).collect())
 }

@@ -11,8 +11,9 @@ use grainbench::fields::trails::Trails;
 use grainbench::reference::ReadError;
 use grainbench::reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench::reference::observer::Names;
-use grainbench::reports::elements::{Summary, write_elements};
-use grainbench::reports::{each_snapshot, number};
+use grainbench::reports::elements::{ElementMean, Summary, write_elements};
+use grainbench::reports::table::{Column, Format, Table};
+use grainbench::reports::{each_snapshot, number, row};
 use grainbench::scene::dimension::Dimension;
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::solver::record::Snapshot;
@@ -342,20 +343,19 @@ const PRINTED: usize = 11;
 fn summary_text(summary: &Summary, out: &Path) -> String {
     let [x, y, z] = summary.cell.map(|size| number::significant(size, 4));
     let mut text = format!("{}\ncells of {x} × {y} × {z} m\n\n", summary.words());
-    for over in summary.means.iter().filter(|over| COLUMNS[..PRINTED].iter().any(|column| column.name == over.quantity))
-    {
-        let unit = if over.unit == "1" { String::new() } else { format!(" {}", over.unit) };
-        let value = number::significant(over.mean.value, 4);
-        let interval = over.mean.half_width.map_or(String::new(), |half| {
-            format!(
-                " ± {} ({:.0} %, {} blocks)",
-                number::significant(half, 2),
-                100.0 * summary.confidence,
-                over.mean.blocks
-            )
-        });
-        text +=
-            &format!("{:<42} {value}{unit}{interval}, {} elements\n", over.words, number::count(over.elements as u64));
-    }
+    let is_printed = |over: &&ElementMean| COLUMNS[..PRINTED].iter().any(|column| column.name == over.quantity);
+    let columns = [
+        Column::text("mean"),
+        Column::new("value", Format::Digits(4)),
+        Column::new(format!("± ({:.0} %)", 100.0 * summary.confidence), Format::Digits(2)),
+        Column::text("unit"),
+        Column::new("blocks", Format::Count),
+        Column::new("elements", Format::Count),
+    ];
+    let row = |over: &ElementMean| {
+        let blocks = over.mean.half_width.map(|_| over.mean.blocks);
+        row![over.words, over.mean.value, over.mean.half_width, over.unit, blocks, over.elements]
+    };
+    text += &Table::new("", columns, summary.means.iter().filter(is_printed).map(row)).text();
     format!("{text}\n{}\n", out.display())
 }

@@ -11,9 +11,8 @@ use super::value::duration;
 use grainbench::cases::folder::{self as case_folder, CLAIMS};
 use grainbench::cases::registry::CASES;
 use grainbench::harness::case::Case;
-use grainbench::reports::number;
 use grainbench::reports::study::effects::Entry;
-use grainbench::reports::study::estimate::{SceneCost, TARGETS, difference_words, softer_words};
+use grainbench::reports::study::estimate::SceneCost;
 use grainbench::reports::study::stability::Limit;
 use grainbench::reports::study::{Study, write_study};
 use grainbench::scene::scene::{Duration as SceneDuration, Scene};
@@ -172,7 +171,6 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     measured.repetitions(&mut follower).map_err(Fault::writing)?;
     let mut result = measured.result();
     result.notes.extend(skipped);
-    let is_red = result.quantities.iter().all(|quantity| quantity.estimates.is_empty());
     let is_stopped = stop();
     let study = follower.study(result, is_stopped);
     if is_stopped {
@@ -180,10 +178,8 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
         write_study(input.out, &study).map_err(Fault::writing)?;
         return Err(stopped());
     }
-    let text = text(&study);
     drop(follower);
-    let output = Output { text: Some(text), ..Output::new(input.out, input.json, false) };
-    publish_study(&study, output, is_red)
+    publish_study(&study, Output::new(input.out, input.json, false))
 }
 
 /// Returns the study of a scene.
@@ -262,25 +258,12 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let mut written = Study::new(provenance(input.words("stability", options.budget()), start.elapsed().as_secs_f64()));
     written.limits = limits;
     written.sources = sources(&study.names);
-    let is_red = written.limits.iter().all(|limit| limit.found.is_none());
-    let output = Output { text: Some(limits_text(&written.limits)), ..Output::new(input.out, input.json, false) };
-    publish_study(&written, output, is_red)
+    publish_study(&written, Output::new(input.out, input.json, false))
 }
 
-/// Returns the hashes of the solvers' sources, by solver name.
-fn sources(names: &[String]) -> BTreeMap<String, String> {
+/// Returns hashes of the solvers' sources, by solver name.
+pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
-}
-
-/// Returns one line for each largest stable step.
-fn limits_text(limits: &[Limit]) -> String {
-    let number = |value: Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));
-    let line = |limit: &Limit| {
-        let Limit { scene, solver, unit, found, exact, error, detail, .. } = limit;
-        let exact = exact.map_or(String::new(), |_| format!(", exact {} ({})", number(*exact), number::error(*error)));
-        format!("{scene:<32} {solver:<22} {} {unit}{exact}; above: {detail}\n", number(*found))
-    };
-    limits.iter().map(line).collect()
 }
 
 /// Progress bar over the time budget.
@@ -346,48 +329,4 @@ impl StudyFollower for Follower<'_> {
         }
         Ok(())
     }
-}
-
-/// Returns the summary of a study.
-fn text(study: &Study) -> String {
-    let mut text = String::new();
-    for cost in &study.scenes {
-        text.push_str(&format!(
-            "{}, {}; errors are estimates from the levels of each solver\n",
-            cost.scene,
-            cost.reduction.word()
-        ));
-        for target in TARGETS {
-            text.push_str(&format!("  {}\n", cost.sentence(target, &study.limits)));
-        }
-        for quantity in &cost.quantities {
-            text.push_str(&format!("{} ({})\n", quantity.name, quantity.unit));
-            for row in &quantity.estimates {
-                let order =
-                    row.order.map_or(String::new(), |order| format!(", order {}", number::significant(order, 2)));
-                let value = number::significant(row.value, 6);
-                let uncertainty = number::significant(row.uncertainty, 2);
-                text.push_str(&format!("  {:<14} {value} ± {uncertainty}{order} [{}]\n", row.solver, row.basis.word()));
-            }
-            for difference in quantity.differences() {
-                text.push_str(&format!("  {}\n", difference_words(&difference)));
-            }
-            text.push_str(&format!("  {}\n", cost.sentence_of(quantity, TARGETS[1], &study.limits)));
-        }
-        for sentence in softer_words(cost) {
-            text.push_str(&format!("softer contacts: {sentence}\n"));
-        }
-    }
-    if !study.limits.is_empty() {
-        text.push_str("largest stable steps\n");
-        text.push_str(&limits_text(&study.limits));
-    }
-    for entry in study.ledger.iter() {
-        text.push_str(&format!("{}: {} ({})\n", entry.effect, entry.worth.word(), entry.key));
-    }
-    for cost in &study.scenes {
-        cost.notes.iter().for_each(|note| text.push_str(&format!("note: {note}\n")));
-        text.push_str(&format!("{} of a budget of {}\n", number::seconds(cost.spent), number::seconds(cost.budget)));
-    }
-    text
 }

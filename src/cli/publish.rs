@@ -3,7 +3,6 @@
 use super::exit::{Fault, Outcome, RED, print, print_text};
 use super::github;
 use super::terminal::width;
-use grainbench::harness::verdict::{self, Severity, Verdict};
 use grainbench::reports::results::results_json;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
@@ -50,22 +49,26 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
 }
 
 /// Writes and prints a study, and returns the exit code.
-pub(crate) fn publish_study(study: &Study, output: Output<'_>, is_red: bool) -> Outcome {
+pub(crate) fn publish_study(study: &Study, output: Output<'_>) -> Outcome {
     write_study(output.out, study).map_err(Fault::writing)?;
     if output.json {
         print(&study_json(study).map_err(Fault::input)?)?;
     } else {
-        print_text(&output.text.unwrap_or_default())?;
+        print_text(&output.text.unwrap_or_else(|| study.text()))?;
         print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
-    Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+    Ok(study_code(study))
+}
+
+/// Returns the exit code of a study.
+pub(crate) fn study_code(study: &Study) -> ExitCode {
+    if study.is_red() { ExitCode::from(RED) } else { ExitCode::SUCCESS }
 }
 
 /// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
 pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
-    let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    if is_mute || !rows.clone().any(|row| row.outcome.counts_for_exit()) {
-        let reason = rows.find_map(|row| row.detail.clone());
+    if is_mute || !report.verdicts().any(|row| row.outcome.is_judged()) {
+        let reason = report.verdicts().find_map(|row| row.detail.clone());
         let reason = reason.unwrap_or_else(|| "no result describes its quantity".to_owned());
         report.red_because.push(format!("nothing judged: {reason}"));
     }
@@ -81,22 +84,8 @@ fn quiet_text(report: &Report) -> String {
     format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
-/// Returns the exit code. It is red if a result is red, a control did not fail, nothing was judged, or the report
-/// states another reason. With `strict`, an amber result is red too.
+/// Returns the exit code. It is red if the report does not pass. With `strict`, an amber result is red too.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
-    let least = if strict { Severity::Amber } else { Severity::Red };
-    let red_row = |verdict: &Verdict| verdict.outcome.severity() >= least;
-    let rows = || report.sections.iter().flat_map(|section| &section.verdicts);
-    let mut controls = report.sections.iter().flat_map(|section| &section.controls);
-    let is_red = !report.red_because.is_empty()
-        || rows().any(red_row)
-        || !rows().any(|row| row.outcome.counts_for_exit())
-        || controls.any(|control| !control.turned_red);
+    let is_red = !report.passes() || strict && Headline::of_report(report).amber() > 0;
     if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
-}
-
-/// Returns true if no result judges its quantity. For an unsupported scene, the quantity is not judged.
-pub(crate) fn says_nothing(report: &Report) -> bool {
-    let mut rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    rows.all(|row| row.outcome == verdict::Outcome::Unsupported || !row.outcome.counts_for_exit())
 }

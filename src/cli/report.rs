@@ -1,12 +1,9 @@
 //! `grainbench report`: writes a page from stored results.
 
-use super::cost;
-use super::effects;
-use super::exit::{Fault, Outcome, RED, print, print_text};
+use super::exit::{Fault, Outcome, print, print_text};
 use super::jobs::collect::{CollectOptions, collect};
 use super::jobs::status::status;
-use super::publish::exit_code;
-use super::stability;
+use super::publish::{exit_code, study_code};
 use super::terminal::width;
 use super::value::{positive, whole};
 use grainbench::harness::figure::Figure;
@@ -19,7 +16,7 @@ use grainbench::reports::publication::{FigureFormat, convert_figures, write_figu
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::{REPORT_FILE, named_figures};
-use grainbench::reports::study::{self, STUDY_FILE, Study, load_study, write_study};
+use grainbench::reports::study::{self, STUDY_FILE, load_study, write_study};
 use grainbench::reports::{SaveError, summary_table_within, write_pictures, write_report};
 use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
@@ -129,7 +126,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         let study = load_study(&arguments.dir).map_err(Fault::input)?;
         write_study(&arguments.dir, &study).map_err(Fault::writing)?;
         publish(arguments, &style, &study::named_figures(&study))?;
-        return Ok(if is_red(&study) { ExitCode::from(RED) } else { ExitCode::SUCCESS });
+        return Ok(study_code(&study));
     }
     let report = Report::load(&arguments.dir).map_err(Fault::input)?;
     write_report(&arguments.dir, &report).map_err(Fault::writing)?;
@@ -168,21 +165,6 @@ fn style(path: &Path) -> Result<FigureStyle, Fault> {
         Some((key, expected, found)) => Err(named(format!("{key}: expected {expected}, found {found}"))),
         None => Ok(style),
     }
-}
-
-/// Returns true if a study is red: it is unfinished, or the command that made it would end red with these results.
-fn is_red(study: &Study) -> bool {
-    let is_unfinished = study.provenance.options.iter().any(|words| words.starts_with("unfinished:"));
-    let is_of_effects = !study.ledger.is_empty();
-    let is_of_stability = !study.limits.is_empty() || !study.hard.is_empty();
-    is_unfinished
-        || if is_of_effects {
-            effects::is_red(study)
-        } else if is_of_stability {
-            stability::is_red(study)
-        } else {
-            cost::is_red(study)
-        }
 }
 
 /// Writes and returns the figures of a simulation and of the simulations compared with it.

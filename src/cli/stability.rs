@@ -1,12 +1,9 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
-use super::cost::sources;
 use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
-use super::own;
-use grainbench::reports::number;
+use super::own::{self, sources};
 use grainbench::reports::study::Study;
-use grainbench::reports::study::stability::{HardCaseResult, Hardness, Limit};
 use grainbench::studies::stability::assembly::Assembly;
 use grainbench::studies::stability::hard::HardCase;
 use grainbench::studies::stability::limit;
@@ -94,24 +91,11 @@ impl Arguments {
     }
 }
 
-/// Returns true if no stability limit was found and no hard case was solved.
-fn measures_nothing(study: &Study) -> bool {
-    let holds = |row: &HardCaseResult| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
-    study.limits.iter().all(|row| row.found.is_none()) && !study.hard.iter().any(holds)
-}
-
 /// Returns the hashes of the sources of all solvers in the study, by solver name.
 pub(crate) fn sources_of(study: &Study) -> BTreeMap<String, String> {
     let limits = study.limits.iter().map(|row| row.solver.clone());
     let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
     sources(&asked)
-}
-
-/// Returns true if nothing was measured, or if a solver ends without an error and with a wrong result. LAMMPS, LIGGGHTS
-/// and `rigid` are exempt, because their errors are documented.
-pub(crate) fn is_red(study: &Study) -> bool {
-    let red = |solver: &str| !grainbench::cases::solvers::is_program(solver) && solver != "rigid";
-    measures_nothing(study) || study.hard.iter().any(|row| row.standing == Hardness::QuietlyWrong && red(&row.solver))
 }
 
 /// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of
@@ -149,29 +133,4 @@ pub(crate) fn select(
         return Err(Fault::input("expected at least one case for the selected solvers, found none"));
     }
     Ok(pieces)
-}
-
-pub(crate) fn text(study: &Study) -> String {
-    let mut text = String::new();
-    for Limit { scene, at, solver, unit, found, exact, error, detail, .. } in &study.limits {
-        let number = |value: &Option<f64>| value.map_or("—".to_owned(), |value| number::significant(value, 4));
-        let at = at.map_or(String::new(), |at| format!(" {}", number::significant(at, 3)));
-        let exact = exact.map_or(String::new(), |_| format!(", exact {} ({})", number(exact), number::error(*error)));
-        text.push_str(&format!(
-            "{:<32} {solver:<22} {} {unit}{exact}; above: {detail}\n",
-            format!("{scene}{at}"),
-            number(found)
-        ));
-    }
-    for row in &study.hard {
-        let detail = if row.detail.is_empty() { String::new() } else { format!(": {}", row.detail) };
-        text.push_str(&format!(
-            "{:<32} {:<14} {} [{}]{detail}\n",
-            row.case,
-            row.solver,
-            row.standing.word(),
-            row.resolution
-        ));
-    }
-    text
 }

@@ -74,6 +74,32 @@ impl<'a> Variant<'a> {
     }
 }
 
+/// Variants of a case that the user names; none stands for all variants.
+pub(crate) struct SelectedVariants<'a>(Vec<Option<&'a str>>);
+
+impl<'a> SelectedVariants<'a> {
+    /// Returns true if a variant is selected. Without names, all variants are.
+    pub(crate) fn contain(&self, variant: &str) -> bool {
+        self.0.is_empty() || self.0.iter().any(|named| named.is_none_or(|name| name == variant))
+    }
+
+    /// Returns the variants that are named.
+    pub(crate) fn named(&self) -> impl Iterator<Item = &'a str> {
+        self.0.iter().copied().flatten()
+    }
+}
+
+/// Returns the cases that `CASE` and `CASE/VARIANT` name, in the order of the registry; all cases if there are no names.
+pub(crate) fn selected(names: &[String]) -> Result<Vec<(&'static Case, SelectedVariants<'_>)>, Fault> {
+    let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
+    let of_case = |case: &'static Case| {
+        let mine = named.iter().filter(|named| named.case.name == case.name);
+        let variants: Vec<Option<&str>> = mine.map(|named| named.variant).collect();
+        (named.is_empty() || !variants.is_empty()).then_some((case, SelectedVariants(variants)))
+    };
+    Ok(CASES.iter().filter_map(|case| of_case(case)).collect())
+}
+
 /// Returns true if a text names a scene file.
 pub(crate) fn is_scene_file(text: &str) -> bool {
     Path::new(text).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))

@@ -8,7 +8,7 @@ use std::collections::BTreeMap;
 /// Prints the number of unsupported results and the features that they need, most frequent first. Nothing is printed if
 /// no result needs such a feature.
 pub(crate) fn tell(report: &Report) {
-    let rows = report.sections.iter().flat_map(|section| &section.verdicts);
+    let rows = report.verdicts();
     if let Some(message) = message(rows.filter_map(|row| row.detail.as_deref())) {
         exit::say("note", &message);
     }

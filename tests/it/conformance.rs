@@ -62,6 +62,6 @@ fn a_solver_that_runs_nothing_does_not_pass() {
         }
     }
     let refused = grainbench::conform(&IdleSolver, &Terms::at(Resolution::TimeStep(1e-4))).require().unwrap_err();
-    assert!(refused.to_string().contains("no result passed"));
+    assert!(refused.to_string().contains("nothing was judged"));
     assert!(grainbench::judge(IdleSolver, &["backspin"]).unwrap().require().is_err());
 }

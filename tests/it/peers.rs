@@ -7,7 +7,8 @@ use crate::common::{expect_file, root, with_generated};
 use grainbench::cases::registry;
 use grainbench::peers::{KEPT, kept};
 use grainbench::reference::outside::ExternalProgram;
-use grainbench::reports::judged::{Count, ExternalResults, cases};
+use grainbench::reports::Headline;
+use grainbench::reports::judged::{ExternalResults, cases};
 use grainbench::reports::study::point::Diagram;
 use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
@@ -67,7 +68,9 @@ fn programs_table(judged: &[ExternalResults]) -> String {
     let mut table =
         "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
     for results in judged {
-        let Count { pass, red, amber, controls, controls_red, .. } = results.count(None);
+        let count = results.count(None);
+        let (pass, red, amber) = (count.pass(), count.red(), count.amber());
+        let Headline { controls, controls_red, .. } = count;
         let rows = results.rows.len();
         let (version, day, commit) = (&results.version, results.day(), &results.provenance.commit);
         writeln!(
@@ -81,12 +84,11 @@ fn programs_table(judged: &[ExternalResults]) -> String {
 
 /// Returns a table cell: largest |error|/allowed, number of passed claims, and number of all claims including amber
 /// ones. If no claim passed or failed, the cell is a dash.
-fn cell(count: Count) -> String {
-    let Count { pass, red, amber, worst, .. } = count;
-    if pass + red == 0 {
+fn cell(count: Headline, worst: Option<f64>) -> String {
+    if count.conclusive() == 0 {
         return "–".to_owned();
     }
-    let asked = pass + red + amber;
+    let (pass, red, asked) = (count.pass(), count.red(), count.rows());
     let red = if red > 0 { format!(", **{red} red**") } else { String::new() };
     worst.map_or_else(String::new, |worst| format!("{} · ", number::significant(worst, 2)))
         + &format!("{pass}/{asked}{red}")
@@ -96,7 +98,8 @@ fn cases_table(judged: &[ExternalResults]) -> String {
     let names: Vec<&str> = judged.iter().map(|results| results.program.as_str()).collect();
     let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
     for case in cases(judged) {
-        let cells: Vec<String> = judged.iter().map(|results| cell(results.count(Some(case)))).collect();
+        let cells: Vec<String> =
+            judged.iter().map(|results| cell(results.count(Some(case)), results.worst(case))).collect();
         writeln!(table, "| `{case}` | {} |", cells.join(" | ")).unwrap();
     }
     table.trim_end().to_owned()

@@ -116,3 +116,12 @@ material = "rock"
 radius = 0.5
 position = [0.0, 0.0]
 "#;
+
+/// A program without documented errors would have red results in hard cases.
+#[test]
+fn errors_of_all_programs_are_documented() {
+    use grainbench::reports::study::stability::DOCUMENTED;
+    for program in grainbench::reference::deck::Program::ALL {
+        assert!(DOCUMENTED.contains(&program.name()), "{}", program.name());
+    }
+}

@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 16] = [
-    ("solvers/scene", 10_130, 0),
+    ("solvers/scene", 10_155, 0),
     ("solvers/solver", 3_455, 0),
     ("solvers/lanes", 1_495, 0),
-    ("solvers/dem", 9_090, 0),
-    ("solvers/mpm", 11_625, 0),
+    ("solvers/dem", 9_110, 0),
+    ("solvers/mpm", 11_665, 0),
     ("solvers/rigid", 1_625, 0),
-    ("harness", 7_940, 5),
-    ("store", 2_025, 0),
+    ("harness", 8_010, 5),
+    ("store", 2_030, 0),
     ("reference", 15_185, 0),
-    ("cases", 20_740, 0),
+    ("cases", 20_745, 0),
     ("fields", 3_230, 0),
-    ("reports", 15_615, 0),
+    ("reports", 15_855, 0),
     ("studies", 6_355, 0),
-    ("jobs", 2_905, 0),
-    ("src", 11_360, 0),
-    ("tests", 11_375, 0),
+    ("jobs", 2_890, 0),
+    ("src", 11_210, 0),
+    ("tests", 11_415, 0),
 ];
 
 fn root() -> &'static Path {

@@ -30,7 +30,7 @@ pub use flaw::{Flaw, FlawedSolver};
 
 use crate::control::FailureMode;
 use crate::evidence::Evidence;
-use crate::verdict::{Control, Outcome, Verdict};
+use crate::verdict::{ControlResult, Outcome, Verdict};
 use grainbench_solver::Solver;
 use grainbench_solver::terms::Terms;
 use std::time::Instant;
@@ -93,19 +93,19 @@ pub const ALL: [Property; 11] = [
 ///
 /// A control checks that the property detects its flaw. A result that fails because of a stated exception has no control.
 #[must_use]
-pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
-    judge_kept(solver, solver, terms)
+pub fn judge(solver: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
+    judge_with_cache(solver, solver, terms)
 }
 
-/// Returns the results and the controls of all properties. `kept` may return finished runs from a cache.
+/// Returns the results and the controls of all properties. `cached` is the solver with a cache of finished runs.
 ///
-/// `itself` does the runs that are repeated or observed.
+/// `solver` does the runs that are repeated or observed.
 #[must_use]
-pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<Control>) {
+pub fn judge_with_cache(solver: &dyn Solver, cached: &dyn Solver, terms: &Terms) -> (Vec<Verdict>, Vec<ControlResult>) {
     let (mut rows, mut controls) = (Vec::new(), Vec::new());
-    let once = CachedRuns::new(kept);
+    let once = CachedRuns::new(cached);
     for property in ALL {
-        let found = property.check_again(&once, itself, terms);
+        let found = property.check_again(&once, solver, terms);
         let passed = |row: &Verdict| {
             let same = |other: &&Verdict| other.variant == row.variant && other.quantity == row.quantity;
             found.iter().find(same).is_some_and(|other| other.outcome == Outcome::Pass)
@@ -114,12 +114,12 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
             let start = Instant::now();
             let flaw = property.flaw(terms);
             // Runs with a flaw may also come from the cache, because only the flaw must be detected.
-            let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(kept, flaw)];
+            let [flawed, again] = [FlawedSolver::new(&once, flaw), FlawedSolver::again(cached, flaw)];
             // The stated exceptions of the solver do not apply to flawed runs.
             let flawed = property.check_again(&flawed, &again, &terms.owing_less(&[]));
             let seconds = start.elapsed().as_secs_f64() / flawed.len() as f64;
             let tried = flawed.into_iter().filter(passed);
-            controls.extend(tried.map(|row| Control::new(row, flaw.words(), FailureMode::Value, seconds)));
+            controls.extend(tried.map(|row| ControlResult::new(row, flaw.words(), FailureMode::Value, seconds)));
         }
         rows.extend(found);
     }
@@ -128,8 +128,8 @@ pub fn judge_kept(itself: &dyn Solver, kept: &dyn Solver, terms: &Terms) -> (Vec
 
 /// Returns one line for each failure, for tests of solvers.
 ///
-/// A line reports a red result, an undetected flaw, or a stated exception of which no result makes use. A solver with no
-/// passing result also has a line.
+/// A line reports a red result, an undetected flaw, or a stated exception of which no result makes use. A solver without
+/// judged results also has a line.
 #[must_use]
 pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
     let (rows, controls) = judge(solver, terms);
@@ -154,8 +154,8 @@ pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
             lines.push(format!("{} {}: documented as an exception, but satisfied", less.property, less.quantity));
         }
     }
-    if rows.iter().all(|row| row.outcome != Outcome::Pass) {
-        lines.push(format!("{}: no result passed", solver.name()));
+    if !rows.iter().any(|row| row.outcome.is_judged()) {
+        lines.push(format!("{}: nothing was judged", solver.name()));
     }
     lines
 }

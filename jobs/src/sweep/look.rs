@@ -207,11 +207,7 @@ impl EvaluatedQuantity {
             }
             Self::Own(own) => own.at(seen),
         };
-        found.unwrap_or_else(|missing| QuantityResult {
-            verdict: Some(Outcome::Unsupported),
-            detail: Some(missing.to_string()),
-            ..QuantityResult::default()
-        })
+        found.unwrap_or_else(|missing| QuantityResult::without_value(Outcome::Unsupported, Some(missing.to_string())))
     }
 }
 
@@ -225,16 +221,7 @@ fn own_allowance(claim: &Claim, done: &FinishedRun) -> f64 {
 /// Compares a measurement with the largest error that passes, and returns the result for the report.
 fn judged(measured: &Measurement, allowed: f64, tolerance: ToleranceOrigin) -> QuantityResult {
     let row = Verdict { allowed, tolerance, ..Verdict::open("", "", "") };
-    let row = row.judged(measured).unless_as_wide_as_the_scale();
-    QuantityResult {
-        value: row.value,
-        expected: row.expected,
-        scale: row.scale,
-        error: row.error,
-        allowed: Some(allowed).filter(|allowed| allowed.is_finite()),
-        verdict: Some(row.outcome),
-        detail: row.detail,
-    }
+    row.judged(measured).unless_as_wide_as_the_scale().into()
 }
 
 /// Returns true if a number is a valid scale: finite and above zero.

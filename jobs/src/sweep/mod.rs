@@ -413,7 +413,7 @@ fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
 
 /// Returns the result of a failed task, which has no record.
 fn failed(detail: String, outcome: Outcome, looks: usize) -> (State, PointOutput) {
-    let looked = grainbench_reports::sweep::QuantityResult { verdict: Some(outcome), ..Default::default() };
+    let looked = grainbench_reports::sweep::QuantityResult::without_value(outcome, None);
     (State::Failed, PointOutput { ran: None, looked: vec![looked; looks], timings: Vec::new(), detail: Some(detail) })
 }
 

@@ -6,6 +6,7 @@ use maud::{Markup, html};
 
 use super::rows::address;
 use super::rows_of;
+use crate::distinct;
 use crate::measured::{AT, Costs, Hold, Line, Stability};
 use crate::number;
 use crate::report::Report;
@@ -31,12 +32,7 @@ pub fn meaning(solver: &str) -> Option<&'static str> {
 /// Returns the solvers of a report. Methods and programs come first, in a fixed order, then conventions such as `dem:lammps`.
 /// Solvers with settings for single cases, such as `mpm+…`, are last.
 pub(crate) fn solvers(report: &Report) -> Vec<&str> {
-    let mut names: Vec<&str> = Vec::new();
-    for row in report.sections.iter().flat_map(|section| &section.verdicts) {
-        if !names.contains(&row.solver.as_str()) {
-            names.push(&row.solver);
-        }
-    }
+    let mut names = distinct(report.verdicts().map(|row| row.solver.as_str()));
     const METHODS: [&str; 5] = ["dem", "mpm", "rigid", "lammps", "liggghts"];
     let place = |name: &&str| {
         let method = name.split([':', '+']).next().unwrap_or_default();
@@ -69,7 +65,7 @@ pub(crate) fn render(report: &Report, anchors: &[String], has_rows: &dyn Fn(&str
 
 /// Returns the results of a solver.
 pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Verdict> {
-    report.sections.iter().flat_map(|section| &section.verdicts).filter(move |row| row.solver == solver)
+    report.verdicts().filter(move |row| row.solver == solver)
 }
 
 /// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the larger
@@ -150,7 +146,7 @@ fn compared(report: &Report, solver: &str) -> Markup {
         let is_named = row.quantity.contains(&against) || row.source.to_lowercase().contains(solver);
         row.evidence == Evidence::OtherCode && row.solver != solver && is_named
     };
-    let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).filter(by_it).collect();
+    let rows: Vec<&Verdict> = report.verdicts().filter(by_it).collect();
     let agree = rows.iter().filter(|row| row.outcome == Outcome::Pass).count();
     html! {
         @if !rows.is_empty() {

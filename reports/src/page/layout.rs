@@ -1,5 +1,6 @@
 //! Frame of every page, and the names and signs that all pages share.
 
+use crate::class;
 use crate::plot::{self, DrawError, markup};
 use grainbench_harness::figure::Figure;
 use grainbench_harness::verdict::{Outcome, Severity};
@@ -65,11 +66,12 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
 /// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
 /// colour.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
-    match outcome.severity() {
-        Severity::Green => ("✓", "pass"),
-        Severity::Red => ("✗", "fail"),
-        Severity::Amber => ("▲", "amber"),
-    }
+    let symbol = match outcome.severity() {
+        Severity::Green => "✓",
+        Severity::Red => "✗",
+        Severity::Amber => "▲",
+    };
+    (symbol, class(outcome.severity()))
 }
 
 /// Renders a figure with its caption.

@@ -278,7 +278,7 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
 fn theirs(results: &ExternalResults, case: &str) -> Markup {
     let outcomes = results.rows.iter().filter(|row| row.result.case == case).map(|row| row.result.outcome);
     let Some(worst) = outcomes.clone().max_by_key(|outcome| order(*outcome)) else { return html! {} };
-    let used = results.count(Some(case)).worst;
+    let used = results.worst(case);
     let counts = counts(outcomes);
     let words = description(case, &results.program, &counts);
     html! { span class={ (class(worst, used)) (stripe(&counts)) } title=(words) { (text(worst, used)) } }

@@ -96,7 +96,7 @@ fn headline(counts: Headline) -> String {
     };
     let results = format!(
         "{} of {} results pass, {}, {}",
-        counts.pass,
+        counts.pass(),
         counts.rows(),
         colour(counts.red(), "red"),
         colour(counts.amber(), "amber")

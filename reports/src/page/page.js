@@ -130,7 +130,7 @@
       cases.set(one.case, (cases.get(one.case) || 0) + 1);
       const of = tally.get(one.solver) || { pass: 0, judged: 0, all: 0, worst: 0 };
       of.all += 1;
-      of.judged += ["unsupported", "no-reference", "not-available"].includes(one.outcome) ? 0 : 1;
+      of.judged += "unjudged" in one.row.dataset ? 0 : 1;
       of.pass += one.outcome === "pass" ? 1 : 0;
       of.worst = Math.max(of.worst, Number(one.row.cells[4].dataset.v || 0));
       tally.set(one.solver, of);

@@ -1,10 +1,10 @@
 //! Results of external solvers beside ours, from the last stored run of each solver.
 
-use grainbench_harness::verdict::{Outcome, Verdict};
+use grainbench_harness::verdict::Verdict;
 use maud::{Markup, html};
 
-use crate::headline;
-use crate::judged::{self, Count, ExternalResults};
+use crate::headline::{self, Headline};
+use crate::judged::{self, ExternalResults};
 use crate::number;
 use crate::report::Report;
 use crate::row;
@@ -42,7 +42,7 @@ fn programs(judged: &[ExternalResults]) -> Table<'_> {
         let count = results.count(None);
         row![
             html! { (results.program) span.title { (results.version) } },
-            tally(&count),
+            tally(count),
             format!("{} of {}", count.controls_red, count.controls),
             format!("{}, commit {}", results.day(), results.provenance.commit),
             &results.provenance.machine
@@ -52,11 +52,11 @@ fn programs(judged: &[ExternalResults]) -> Table<'_> {
     Table::new("Programs", columns, judged.iter().map(row))
 }
 
-fn tally(count: &Count) -> Markup {
+fn tally(count: Headline) -> Markup {
     html! {
-        span.tally { (count.pass) " / " (count.pass + count.red + count.amber) }
-        @if count.red > 0 { span.mark.fail { "✗ " (count.red) } }
-        @if count.amber > 0 { span.mark.amber { "▲ " (count.amber) } }
+        span.tally { (count.pass()) " / " (count.rows()) }
+        @if count.red() > 0 { span.mark.fail { "✗ " (count.red()) } }
+        @if count.amber() > 0 { span.mark.amber { "▲ " (count.amber()) } }
     }
 }
 
@@ -64,18 +64,19 @@ fn by_case(report: &Report) -> Table<'_> {
     let programs = report.judged.iter().map(|results| Column::text(&results.program));
     let row = |case| {
         let worst = ours(report, case).map(|worst| number::significant(worst, 2));
-        let counts = report.judged.iter().map(|results| Cell::from(cell(&results.count(Some(case)))));
+        let counts =
+            report.judged.iter().map(|results| Cell::from(cell(results.count(Some(case)), results.worst(case))));
         Row::from([Cell::from(case), worst.into()].into_iter().chain(counts).collect::<Vec<_>>())
     };
     let columns = [Column::heading("Case"), Column::text("ours")].into_iter().chain(programs);
     Table::new("Programs by case", columns, judged::cases(&report.judged).into_iter().map(row))
 }
 
-fn cell(count: &Count) -> Markup {
+fn cell(count: Headline, worst: Option<f64>) -> Markup {
     html! {
-        @if let Some(worst) = count.worst { (number::significant(worst, 2)) " · " } @else if count.red == 0 { "— " }
-        @if count.pass + count.red > 0 { (count.pass) "/" (count.pass + count.red + count.amber) }
-        @if count.red > 0 { " " span.mark.fail { "✗ " (count.red) } }
+        @if let Some(worst) = worst { (number::significant(worst, 2)) " · " } @else if count.red() == 0 { "— " }
+        @if count.conclusive() > 0 { (count.pass()) "/" (count.rows()) }
+        @if count.red() > 0 { " " span.mark.fail { "✗ " (count.red()) } }
     }
 }
 
@@ -85,12 +86,10 @@ fn ours(report: &Report, case: &str) -> Option<f64> {
     let asked = report.judged.iter().flat_map(|results| &results.rows).map(|row| &row.result);
     let asked = asked.filter(|row| row.case == case);
     let is_asked = |row: &&Verdict| {
-        let is_judged = matches!(row.outcome, Outcome::Pass | Outcome::Fail);
-        let is_it = |theirs: &Verdict| {
+        asked.clone().any(|theirs| {
             (&theirs.variant, &theirs.quantity, &theirs.resolution) == (&row.variant, &row.quantity, &row.resolution)
-        };
-        is_judged && asked.clone().any(is_it)
+        })
     };
     let section = report.sections.iter().find(|section| section.name == case)?;
-    section.verdicts.iter().filter(is_asked).map(headline::used_tolerance).reduce(f64::max)
+    headline::worst(section.verdicts.iter().filter(is_asked)).map(headline::used_tolerance)
 }

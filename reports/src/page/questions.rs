@@ -1,8 +1,10 @@
 //! Three questions on the first screen, each with a figure and a sentence, and the sections with all numbers.
 
 use grainbench_harness::figure::{Drawing, Figure};
+use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 
+use crate::distinct;
 use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp, TARGETS};
 use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
@@ -10,7 +12,7 @@ use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
 use crate::report::Report;
 use crate::study::effects::{EffectResult, Entry, change, median};
-use crate::study::stability::{Hardness, distinct};
+use crate::study::stability::{HardCaseResult, Hardness};
 use crate::study::stability_page::{self, sign};
 use crate::study::{cost, effects, stability};
 use crate::table::{Cell, Column, Row, Table};
@@ -131,21 +133,17 @@ fn steps(stability: &Stability) -> Markup {
         .iter()
         .filter_map(|solver| stability.lines.iter().find(|line| line.solver == **solver))
         .collect();
-    let found = |case: &str, solver: &str| {
-        stability.hard.iter().find(|row| row.case == case && row.solver == solver).map(|row| row.standing)
-    };
-    let is_held = |case: &str| {
-        let is_not = |standing| {
-            matches!(standing, Hardness::HoldsAtASmallerStep | Hardness::TypedFailure | Hardness::QuietlyWrong)
-        };
-        !lines.iter().any(|line| found(case, &line.solver).is_some_and(is_not))
-    };
+    let found = |case: &str, solver: &str| stability.hard.iter().find(|row| row.case == case && row.solver == solver);
+    let severity = |case: &str, line: &Hold| found(case, &line.solver).and_then(HardCaseResult::severity);
+    let is_held =
+        |case: &str| !lines.iter().any(|line| severity(case, line).is_some_and(|severity| severity != Severity::Green));
     let (held, hard): (Vec<&str>, Vec<&str>) =
         distinct(stability.hard.iter().map(|row| row.case.as_str())).into_iter().partition(|case| is_held(case));
     let columns = [Column::heading("Hard case")].into_iter().chain(lines.iter().map(|line| Column::text(&line.solver)));
     let mark = |case: &str, line: &Hold| {
-        let standing = found(case, &line.solver).unwrap_or(Hardness::Unsupported);
-        let (symbol, class) = sign(standing);
+        let row = found(case, &line.solver);
+        let standing = row.map_or(Hardness::Unsupported, |row| row.standing);
+        let (symbol, class) = row.map_or(("–", ""), sign);
         Cell::from(html! { span class={ "mark " (class) } title=(standing.word()) { (symbol) } })
     };
     let row = |case: &&str| {
@@ -153,10 +151,8 @@ fn steps(stability: &Stability) -> Markup {
         Row::from([Cell::from(case.replace('-', " "))].into_iter().chain(marks).collect::<Vec<_>>())
     };
     let total = |line: &&Hold| {
-        let of =
-            |is: fn(Hardness) -> bool| held.iter().filter(|case| found(case, &line.solver).is_some_and(is)).count();
-        let holds = of(|standing| standing == Hardness::Holds);
-        let asked = of(|standing| !matches!(standing, Hardness::Unsupported | Hardness::NotAvailable));
+        let found = || held.iter().filter_map(|case| severity(case, line));
+        let (holds, asked) = (found().filter(|severity| *severity == Severity::Green).count(), found().count());
         let title = format!("{holds} of {asked} supported");
         Cell::from(html! { span.mark.pass title=(title) { "✓" (holds) @if holds < asked { "/" (asked) } } })
     };

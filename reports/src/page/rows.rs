@@ -54,7 +54,8 @@ fn row(verdict: &Verdict, id: &str) -> Markup {
     let (symbol, class) = sign(verdict.outcome);
     let used = verdict.error.map(|_| used_tolerance(verdict)).filter(|used| used.is_finite());
     html! {
-        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) id=(id) class=(class) {
+        tr data-s=(verdict.solver) data-o=(verdict.outcome.word()) data-unjudged[!verdict.outcome.is_judged()] id=(id)
+            class=(class) {
             td {
                 span class={ "mark " (class) } { (symbol) " " (verdict.outcome.word()) }
                 @if let Some(detail) = &verdict.detail { span.fine { (detail) } }

@@ -3,7 +3,7 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use maud::{Markup, Render, html};
 
 use super::budget::{Part, Rank};
@@ -86,7 +86,8 @@ impl Render for CaseSection<'_> {
     fn render(&self) -> Markup {
         let Self { section, anchor, figures, details } = self;
         let failing: Vec<&Verdict> = section.verdicts.iter().filter(|row| row.outcome.is_red()).collect();
-        let green_controls: Vec<&Control> = section.controls.iter().filter(|control| !control.turned_red).collect();
+        let green_controls: Vec<&ControlResult> =
+            section.controls.iter().filter(|control| !control.turned_red).collect();
         // The search also looks through this text.
         let words = format!("{} {} {}", section.name, section.title, section.claim);
         html! {

@@ -1,6 +1,6 @@
 //! Tables of negative controls and of costs of a case.
 
-use grainbench_harness::verdict::Control;
+use grainbench_harness::verdict::ControlResult;
 use maud::{Markup, html};
 
 use crate::number;
@@ -9,7 +9,7 @@ use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
 
 /// Renders the table of negative controls with their results.
-pub(crate) fn controls(controls: &[Control]) -> Markup {
+pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
     let columns = [
         Column::text("Result"),
         Column::heading("Quantity"),
@@ -17,7 +17,7 @@ pub(crate) fn controls(controls: &[Control]) -> Markup {
         Column::text("Wrong physics"),
         Column::new("Error found, allowed", Format::Error),
     ];
-    let row = |control: &Control| {
+    let row = |control: &ControlResult| {
         let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
         let variant = html! { @if !control.variant.is_empty() { span.fine { (control.variant) } } };
         let allowed = html! { span.fine { "allowed " (number::fraction(control.allowed)) } };

@@ -1,6 +1,7 @@
 //! Cost of accuracy: Pareto fronts, cheapest settings, and figures of measured against expected values.
 
 use super::point::{Counts, Diagram, Point, PointStatus};
+use crate::distinct;
 use crate::number;
 use crate::plot::palette::SOLVERS;
 use crate::table::{Cell, Column, Format, Row, Table};
@@ -30,13 +31,8 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
 
 /// Returns the solvers of some diagrams: all of [`SOLVERS`], followed by all other solvers that have points.
 pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
-    let mut lines = SOLVERS.to_vec();
-    for point in diagrams.into_iter().flat_map(|diagram| &diagram.points) {
-        if !lines.contains(&point.solver.as_str()) {
-            lines.push(&point.solver);
-        }
-    }
-    lines
+    let points = diagrams.into_iter().flat_map(|diagram| &diagram.points);
+    distinct(SOLVERS.into_iter().chain(points.map(|point| point.solver.as_str())))
 }
 
 /// Returns the points of a solver in a diagram.
@@ -66,6 +62,9 @@ pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {
     let is_reached = |point: &Point| point.error.is_some_and(|error| error <= target) && point.wall_seconds.is_none();
     cheapest(diagram, line, target).is_none() && of_line(diagram, line).any(is_reached)
 }
+
+/// Sentence about a comparison with an earlier study without changes.
+pub(super) const NO_CHANGE: &str = "all counts are equal, and no time differs by more than noise";
 
 /// Returns a sentence about the cost of an error of at most `target`. It names the cheapest setting of each solver, with the
 /// time of the setting divided by the shortest time of all solvers.

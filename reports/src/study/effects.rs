@@ -3,6 +3,8 @@
 use crate::number;
 use crate::row;
 use crate::table::{Cell, Column, Row, Table};
+use crate::{class, distinct};
+use grainbench_harness::verdict::Severity;
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
@@ -32,6 +34,16 @@ impl EffectResult {
             Self::Untold => "untold",
             Self::Inert => "inert",
             Self::NotInert => "not inert",
+        }
+    }
+
+    /// Returns the colour of the result.
+    #[must_use]
+    pub const fn severity(self) -> Severity {
+        match self {
+            Self::Needed | Self::Inert => Severity::Green,
+            Self::NotWorthSimulating | Self::Untold => Severity::Amber,
+            Self::NotInert => Severity::Red,
         }
     }
 }
@@ -115,14 +127,6 @@ pub(crate) fn important(ledger: &[Entry]) -> Markup {
     }
 }
 
-const fn class(worth: EffectResult) -> &'static str {
-    match worth {
-        EffectResult::Needed | EffectResult::Inert => "pass",
-        EffectResult::NotWorthSimulating | EffectResult::Untold => "amber",
-        EffectResult::NotInert => "fail",
-    }
-}
-
 /// Returns the quantity whose error changes most, relative to its tolerance.
 fn farthest(entry: &Entry) -> Option<&Shift> {
     entry.shifts.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))
@@ -153,16 +157,8 @@ pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
 
 /// Renders the matrix of scenes and effects. Colour and number of a cell show the change without the effect.
 pub(crate) fn heat(ledger: &[Entry]) -> Markup {
-    let mut effects: Vec<&str> = Vec::new();
-    let mut scenes: Vec<(&str, &str)> = Vec::new();
-    for entry in ledger {
-        if !effects.contains(&entry.effect.as_str()) {
-            effects.push(&entry.effect);
-        }
-        if !scenes.contains(&(&entry.case, &entry.variant)) {
-            scenes.push((&entry.case, &entry.variant));
-        }
-    }
+    let effects = distinct(ledger.iter().map(|entry| entry.effect.as_str()));
+    let scenes = distinct(ledger.iter().map(|entry| (entry.case.as_str(), entry.variant.as_str())));
     let find = |(case, variant): (&str, &str), effect: &str| {
         ledger.iter().find(|entry| entry.case == case && entry.variant == variant && entry.effect == effect)
     };
@@ -203,6 +199,16 @@ fn warmth(entry: &Entry) -> Markup {
     }
 }
 
+/// Returns a table of the results, with the key or the solvers of each effect.
+pub(super) fn results_table(ledger: &[Entry]) -> Table<'_> {
+    let row = |entry: &Entry| {
+        let key = if entry.on { entry.key.clone() } else { entry.tried.join(", ") };
+        row![scene_name(&entry.case, &entry.variant), &entry.effect, entry.worth.word(), key]
+    };
+    let columns = ["Scene", "Effect", "Result", "Enabled by, or tried with"].map(Column::text);
+    Table::new("", columns, ledger.iter().map(row))
+}
+
 fn table(ledger: &[Entry]) -> Markup {
     let columns = [
         Column::heading("Scene"),
@@ -216,7 +222,8 @@ fn table(ledger: &[Entry]) -> Markup {
     ];
     let row = |entry: &Entry| {
         let key = if entry.on { entry.key.clone() } else { format!("disabled; tried with {}", entry.tried.join(", ")) };
-        let result = html! { span class={ "mark " (class(entry.worth)) } { (entry.worth.word()) } };
+        let class = class(entry.worth.severity());
+        let result = html! { span class={ "mark " (class) } { (entry.worth.word()) } };
         let change = farthest(entry).map(|shift| {
             let [with, without] = [shift.with, shift.without].map(number::error);
             let allowed = number::fraction(shift.allowed);
@@ -225,7 +232,7 @@ fn table(ledger: &[Entry]) -> Markup {
         let red = entry.shifts.iter().filter(|shift| shift.red).count();
         let red = entry.on.then(|| format!("{red} of {}", entry.shifts.len()));
         let (scene, change) = (scene_name(&entry.case, &entry.variant), change.unwrap_or_default());
-        row![scene, &entry.effect, key, result, change, red, entry.counts, entry.time].class(class(entry.worth))
+        row![scene, &entry.effect, key, result, change, red, entry.counts, entry.time].class(class)
     };
     Table::new("All effects", columns, ledger.iter().map(row)).page("rows")
 }

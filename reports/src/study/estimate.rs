@@ -1,6 +1,7 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
 use super::stability::Limit;
+use crate::distinct;
 use crate::number;
 use crate::page::{captioned as figure, slug};
 use crate::plot::DrawError;
@@ -262,7 +263,7 @@ impl SceneCost {
     #[must_use]
     pub fn solvers(&self) -> Vec<&str> {
         let run = self.levels.iter().map(|level| level.solver.as_str());
-        super::stability::distinct(self.names.iter().map(String::as_str).chain(run))
+        distinct(self.names.iter().map(String::as_str).chain(run))
     }
 
     /// Returns the reason why a solver has no reference value.
@@ -598,8 +599,7 @@ fn agreement(cost: &SceneCost) -> Markup {
 pub fn softer_words(cost: &SceneCost) -> Vec<String> {
     let points =
         || cost.quantities.iter().flat_map(|quantity| quantity.points.iter().map(move |point| (quantity, point)));
-    let settings =
-        super::stability::distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));
+    let settings = distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));
     let sentence = |setting: &str| {
         let own = || points().filter(move |(_, point)| point.setting == setting);
         let certain = |point: &EstimatedPoint| point.error - point.uncertainty;

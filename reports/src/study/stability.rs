@@ -1,6 +1,8 @@
 //! Study of stability: largest stable time steps and hard cases, with figures.
 
+use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::verdict::Severity;
 use serde::{Deserialize, Serialize};
 
 /// Largest stable time step of an assembly with one solver.
@@ -53,6 +55,12 @@ pub enum Hardness {
 }
 
 impl Hardness {
+    /// Returns true if the required property holds at some time step.
+    #[must_use]
+    pub const fn holds(self) -> bool {
+        matches!(self, Self::Holds | Self::HoldsAtASmallerStep)
+    }
+
     /// Returns the name used in tables.
     #[must_use]
     pub const fn word(self) -> &'static str {
@@ -84,15 +92,21 @@ pub struct HardCaseResult {
     pub detail: String,
 }
 
-/// Returns the values in the order of their first occurrence, each once.
-pub(crate) fn distinct<'a>(values: impl Iterator<Item = &'a str>) -> Vec<&'a str> {
-    let mut seen: Vec<&str> = Vec::new();
-    for value in values {
-        if !seen.contains(&value) {
-            seen.push(value);
+/// Solvers whose wrong results in hard cases are documented errors.
+pub const DOCUMENTED: [&str; 3] = ["lammps", "liggghts", "rigid"];
+
+impl HardCaseResult {
+    /// Returns the colour of the result; none if the solver cannot run the case. A wrong result without an error is red, unless
+    /// the error of the solver is documented.
+    #[must_use]
+    pub fn severity(&self) -> Option<Severity> {
+        match self.standing {
+            Hardness::Holds => Some(Severity::Green),
+            Hardness::QuietlyWrong if !DOCUMENTED.contains(&self.solver.as_str()) => Some(Severity::Red),
+            Hardness::HoldsAtASmallerStep | Hardness::TypedFailure | Hardness::QuietlyWrong => Some(Severity::Amber),
+            Hardness::Unsupported | Hardness::NotAvailable => None,
         }
     }
-    seen
 }
 
 /// Returns figures of the largest stable time step: one against the exact limit, and one for each unit against the

@@ -1,13 +1,14 @@
 //! Page of stability: largest stable time steps and hard cases.
 
 use super::Study;
-use super::stability::{HardCaseResult, Hardness, Limit, distinct, figures};
+use super::stability::{HardCaseResult, Hardness, Limit, figures};
 use crate::measured::{Hold, Stability};
 use crate::number;
 use crate::page::captioned;
 use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
+use crate::{class, distinct};
 use maud::{Markup, html};
 
 /// Renders a table with one row per solver: its largest stable time steps, and its outcomes in hard cases.
@@ -59,7 +60,7 @@ pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
                  elastic energy grows threefold. 2√(m/k) is the critical time step of the scene, and h/c is the time in \
                  which a wave crosses a cell."
             }
-            (limits(rows, "Scene"))
+            (limits(rows, "Scene", with_parameter).page("rows"))
         }
     }
 }
@@ -83,20 +84,21 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
         @if !stability.limits.is_empty() {
             h3 { "Largest stable steps" }
             div.figures { @for picture in &pictures { (picture) } }
-            (limits(&stability.limits, "Assembly"))
+            (limits(&stability.limits, "Assembly", with_parameter).page("rows"))
         }
     })
 }
 
-/// Returns the symbol and the CSS class of an outcome.
-pub(crate) const fn sign(standing: Hardness) -> (&'static str, &'static str) {
-    match standing {
-        Hardness::Holds => ("✓", "pass"),
-        Hardness::HoldsAtASmallerStep => ("↓", "amber"),
-        Hardness::TypedFailure => ("!", "amber"),
-        Hardness::QuietlyWrong => ("✗", "fail"),
-        Hardness::Unsupported | Hardness::NotAvailable => ("–", ""),
-    }
+/// Returns the symbol and the CSS class of a result.
+pub(crate) fn sign(row: &HardCaseResult) -> (&'static str, &'static str) {
+    let symbol = match row.standing {
+        Hardness::Holds => "✓",
+        Hardness::HoldsAtASmallerStep => "↓",
+        Hardness::TypedFailure => "!",
+        Hardness::QuietlyWrong => "✗",
+        Hardness::Unsupported | Hardness::NotAvailable => "–",
+    };
+    (symbol, row.severity().map_or("", class))
 }
 
 fn matrix(rows: &[HardCaseResult]) -> Markup {
@@ -106,7 +108,7 @@ fn matrix(rows: &[HardCaseResult]) -> Markup {
     let row = |case: &str| {
         let result = |solver: &&str| {
             let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) else { return "".into() };
-            let (symbol, class) = sign(row.standing);
+            let (symbol, class) = sign(row);
             Cell::from(html! {
                 span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
                 @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
@@ -134,8 +136,33 @@ fn details_of(rows: &[HardCaseResult]) -> Markup {
     }
 }
 
-/// Renders a table of largest stable steps. It has exact limits only if at least one is known.
-fn limits(rows: &[Limit], heading: &str) -> Markup {
+/// Returns the table of hard cases for the terminal.
+pub(super) fn hard_table(rows: &[HardCaseResult]) -> Table<'_> {
+    let columns = ["Hard case", "Solver", "Result", "Resolution", "Detail"].map(Column::text);
+    let row = |row: &HardCaseResult| {
+        let HardCaseResult { case, solver, standing, resolution, detail, .. } = row;
+        row![case, solver, standing.word(), resolution, detail]
+    };
+    Table::new("", columns, rows.iter().map(row))
+}
+
+/// Returns the table of largest stable steps for the terminal.
+pub(super) fn limits_table(rows: &[Limit]) -> Table<'_> {
+    let scene = |row: &Limit| parameter(row).map_or_else(|| row.scene.clone(), |at| format!("{}, {at}", row.scene));
+    limits(rows, "Scene", move |row| scene(row).into())
+}
+
+/// Returns the name and the value of a parameter; none if there is no parameter.
+fn parameter(row: &Limit) -> Option<String> {
+    row.at.map(|at| format!("{} = {}", row.knob, number::significant(at, 4)))
+}
+
+fn with_parameter(row: &Limit) -> Cell {
+    html! { (row.scene) @if let Some(at) = parameter(row) { span.fine { (at) } } }.into()
+}
+
+/// Returns a table of largest stable steps. It has exact limits only if at least one is known.
+fn limits<'a>(rows: &'a [Limit], heading: &str, scene: impl Fn(&Limit) -> Cell + 'a) -> Table<'a> {
     let number = |name| Column::new(name, Format::Digits(4));
     let is_exact = rows.iter().any(|row| row.exact.is_some());
     let exact = is_exact.then(|| [number("Exact"), Column::new("Error", Format::Error)]);
@@ -146,9 +173,8 @@ fn limits(rows: &[Limit], heading: &str) -> Markup {
         number("Margin"),
         Column::text("How it fails above").class("wide"),
     ]);
-    let row = |row: &Limit| {
-        let at = row.at.map(|at| format!("{} = {}", row.knob, number::significant(at, 4)));
-        let scene = html! { (row.scene) @if let Some(at) = at { span.fine { (at) } } };
+    let row = move |row: &Limit| {
+        let scene = scene(row);
         let Limit { solver, found, exact, error, unit, default, margin, detail, .. } = row;
         if is_exact {
             row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
@@ -156,7 +182,7 @@ fn limits(rows: &[Limit], heading: &str) -> Markup {
             row![scene, solver, *found, unit, *default, *margin, detail]
         }
     };
-    Table::new("Largest stable steps", columns, rows.iter().map(row)).page("rows")
+    Table::new("Largest stable steps", columns, rows.iter().map(row))
 }
 
 #[cfg(test)]

@@ -11,7 +11,7 @@ use crate::report::Provenance;
 use crate::store::SaveError;
 use crate::{page as shared, plot};
 use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{Control, Verdict};
+use grainbench_harness::verdict::{ControlResult, Verdict};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir};
 use serde::{Deserialize, Serialize};
@@ -26,7 +26,7 @@ pub const STUDY_FILE: &str = "study.json";
 struct Results<'a> {
     provenance: &'a Provenance,
     verdicts: [Verdict; 0],
-    controls: [Control; 0],
+    controls: [ControlResult; 0],
     points: Vec<&'a Point>,
     #[serde(skip_serializing_if = "<[SceneCost]>::is_empty")]
     scenes: &'a [SceneCost],

@@ -1,6 +1,7 @@
 //! Figures of a sweep: error against cost over all points.
 
 use super::Sweep;
+use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
 /// Returns all figures of a sweep.
@@ -10,21 +11,12 @@ pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
 
 /// Returns the solvers with their resolution levels, in the order of the points.
 pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
-    let mut found: Vec<(String, String)> = Vec::new();
-    for point in &sweep.points {
-        // Points of one level follow each other.
-        if found.last().is_none_or(|(solver, level)| *solver != point.solver || *level != point.resolution) {
-            let level = (point.solver.clone(), point.resolution.clone());
-            if !found.contains(&level) {
-                found.push(level);
-            }
-        }
-    }
-    found
+    let levels = distinct(sweep.points.iter().map(|point| (&point.solver, &point.resolution)));
+    levels.into_iter().map(|(solver, level)| (solver.clone(), level.clone())).collect()
 }
 
 /// Returns the value below which the fraction `part` of the values lies; none for an empty list. Sorts the values.
-fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
+pub(super) fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
     values.sort_by(f64::total_cmp);
     values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
 }

@@ -1,7 +1,7 @@
 //! Maps over two factors. They show where each solver is within the tolerance, with one panel per solver and level.
 
 use super::figures::levels;
-use super::{Line, Point, Sweep, SweepStatus};
+use super::{Line, Point, Sweep, counts};
 use crate::number;
 use crate::plot::{WIDTH, document, px};
 use maud::{Markup, html};
@@ -28,7 +28,7 @@ const SIGN: f64 = 13.0;
 /// Smallest distance between numbers along each axis (drawing units).
 const APART: [f64; 2] = [36.0, 15.0];
 
-/// Colours of a cell: all judged points are within the tolerance, some are, none is, and no point is judged.
+/// Colours of a cell: all points are within the tolerance, some are, none is, and no point is conclusive.
 const COLOURS: [&str; 4] = ["#009e73", "#f0c36a", "#d55e00", "#e4e7eb"];
 /// Signs of a cell. They distinguish cells without colour.
 const SIGNS: [&str; 4] = ["", "·", "×", "–"];
@@ -62,7 +62,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
     let caption = format!(
         "A cell is a pair of {} and {}: green if every point is within the tolerance for all values of the other \
          factors, yellow with a dot if some points are, red with a cross if none is. The number over a panel is the \
-         fraction of its points within the tolerance.",
+         fraction of its conclusive points within the tolerance.",
         labels[0], labels[1]
     );
     vec![("map".to_owned(), caption, document(&title, [WIDTH, height], &body))]
@@ -132,27 +132,24 @@ fn panel(
     [left, top, wide]: [f64; 3],
 ) -> Markup {
     let [across, up] = [axes[0].values.len(), axes[1].values.len()];
-    let mut cells = vec![[0_usize; 3]; across * up];
+    let mut cells = vec![Vec::new(); across * up];
     let is_in_panel = |point: &&Point| point.solver == solver && point.resolution == level;
-    let mut all = [0_usize; 3];
-    for point in sweep.points.iter().filter(is_in_panel) {
-        // Points that are not judged count as amber.
-        let standing = (point.standing() as usize).min(SweepStatus::Amber as usize);
-        all[standing] += 1;
+    let points: Vec<&Point> = sweep.points.iter().filter(is_in_panel).collect();
+    for point in &points {
         if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
-            cells[row * across + column][standing] += 1;
+            cells[row * across + column].push(*point);
         }
     }
-    let judged = all[SweepStatus::Within as usize] + all[SweepStatus::Outside as usize];
-    let share = if judged > 0 { number::fraction(all[0] as f64 / judged as f64) } else { "—".to_owned() };
+    let [within, outside, ..] = counts(points);
+    let conclusive = within + outside;
+    let share = if conclusive > 0 { number::fraction(within as f64 / conclusive as f64) } else { "—".to_owned() };
     let size = [wide / across as f64, HIGH / up as f64];
     let has_room = size[0] >= SIGN && size[1] >= SIGN;
     let title = format!("{solver} {level}: {share}");
     html! {
         text x=(px(left + 0.5 * wide)) y=(px(top - 8.0)) text-anchor="middle" font-size="13" fill="#222" { (title) }
         @for (place, cell) in cells.iter().enumerate() {
-            @let kind = kind(*cell);
-            @if let Some(kind) = kind {
+            @if let Some(kind) = kind(counts(cell.iter().copied())) {
                 @let corner = [
                     left + (place % across) as f64 * size[0],
                     top + HIGH - (place / across + 1) as f64 * size[1],
@@ -201,14 +198,14 @@ fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2])
     runs.into_iter().filter(|run| run.len() > 1).map(|run| run.join(" ")).collect()
 }
 
-/// Returns the index of the colour of a cell, from its numbers of points within, outside and amber; none for a cell
-/// without points.
-fn kind([within, outside, amber]: [usize; 3]) -> Option<usize> {
-    match (within, outside) {
-        (0, 0) if amber == 0 => None,
-        (0, 0) => Some(3),
-        (_, 0) => Some(0),
-        (0, _) => Some(2),
+/// Returns the index of the colour of a cell, from its numbers of points within, outside, amber and not judged; none for a
+/// cell without points. A cell with an amber point is never green.
+fn kind([within, outside, amber, unjudged]: [usize; 4]) -> Option<usize> {
+    match (within, outside, amber + unjudged) {
+        (0, 0, 0) => None,
+        (0, 0, _) => Some(3),
+        (_, 0, 0) => Some(0),
+        (0, ..) => Some(2),
         _ => Some(1),
     }
 }
@@ -234,5 +231,18 @@ fn legend(y: f64, line: Option<&Line>) -> Markup {
                 stroke-dasharray="7 4" {}
             text x=(px(LEFT + 34.0)) y=(px(y + 36.0)) font-size="13" fill="#222" { (line.label) }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::kind;
+
+    /// An amber point is not within the tolerance, so its cell is not green.
+    #[test]
+    fn amber_points_are_seen() {
+        assert_eq!([[2, 0, 0, 0], [2, 0, 1, 0], [0, 1, 1, 0], [0, 0, 1, 0]].map(kind), [0, 1, 2, 3].map(Some));
+        assert_eq!([[2, 0, 0, 1], [1, 1, 0, 0], [0, 0, 0, 1]].map(kind), [1, 1, 3].map(Some));
+        assert_eq!(kind([0; 4]), None);
     }
 }

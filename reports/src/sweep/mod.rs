@@ -10,7 +10,7 @@ use crate::store::SaveError;
 use crate::study::point::Timing;
 use crate::{page as shared, plot};
 use grainbench_harness::expect::ExpectedValue;
-use grainbench_harness::verdict::{Outcome, Severity};
+use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use grainbench_store::StagedDir;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
@@ -138,42 +138,45 @@ pub struct QuantityResult {
     pub detail: Option<String>,
 }
 
-impl Sweep {
-    /// Returns the numbers of points that are within, outside, amber and not judged.
+impl QuantityResult {
+    /// Returns a result without a value.
     #[must_use]
-    pub fn counts(&self) -> [usize; 4] {
-        let mut counts = [0; 4];
-        for point in &self.points {
-            counts[point.standing() as usize] += 1;
-        }
-        counts
+    pub fn without_value(outcome: Outcome, detail: Option<String>) -> Self {
+        Self { verdict: Some(outcome), detail, ..Self::default() }
     }
 }
 
-/// Status of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum SweepStatus {
-    /// At least one quantity is judged, and all judged quantities pass.
-    Within,
-    /// A quantity fails, or the run crashed.
-    Outside,
-    /// No quantity is red, and at least one is amber, for example because the solver cannot represent the scene.
-    Amber,
-    /// No quantity is judged, for example because no quantity has an expectation.
-    Unjudged,
+impl From<Verdict> for QuantityResult {
+    fn from(row: Verdict) -> Self {
+        let Verdict { value, expected, scale, error, allowed, outcome, detail, .. } = row;
+        let allowed = Some(allowed).filter(|allowed| allowed.is_finite());
+        Self { value, expected, scale, error, allowed, verdict: Some(outcome), detail }
+    }
+}
+
+/// Colours of points with their words; none for points without an expectation.
+pub const KINDS: [(Option<Severity>, &str); 4] = [
+    (Some(Severity::Green), "within"),
+    (Some(Severity::Red), "outside or broken"),
+    (Some(Severity::Amber), "amber"),
+    (None, "not judged"),
+];
+
+/// Returns the numbers of points of each kind of [`KINDS`].
+#[must_use]
+pub fn counts<'a>(points: impl IntoIterator<Item = &'a Point>) -> [usize; 4] {
+    let mut counts = [0; 4];
+    for severity in points.into_iter().map(Point::severity) {
+        counts.iter_mut().zip(KINDS).for_each(|(count, (kind, _))| *count += usize::from(kind == severity));
+    }
+    counts
 }
 
 impl Point {
-    /// Returns the status of the point.
+    /// Returns the colour of the worst result; none if no quantity has an expectation.
     #[must_use]
-    pub fn standing(&self) -> SweepStatus {
-        let severities = self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity);
-        match severities.max() {
-            Some(Severity::Red) => SweepStatus::Outside,
-            Some(Severity::Amber) => SweepStatus::Amber,
-            Some(Severity::Green) => SweepStatus::Within,
-            None => SweepStatus::Unjudged,
-        }
+    pub fn severity(&self) -> Option<Severity> {
+        self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity).max()
     }
 
     /// Returns the largest |error| of all quantities; none if no quantity has an error.
@@ -232,14 +235,14 @@ mod tests {
             resolution: String::new(),
             left: PointOutput { looked: verdicts.iter().copied().map(looked).collect(), ..PointOutput::default() },
         };
-        for (verdicts, standing) in [
-            (&[None][..], SweepStatus::Unjudged),
-            (&[], SweepStatus::Unjudged),
-            (&[None, Some(Outcome::Pass)], SweepStatus::Within),
-            (&[None, Some(Outcome::NoReference)], SweepStatus::Amber),
-            (&[Some(Outcome::Pass), Some(Outcome::Fail)], SweepStatus::Outside),
+        for (verdicts, severity) in [
+            (&[None][..], None),
+            (&[], None),
+            (&[None, Some(Outcome::Pass)], Some(Severity::Green)),
+            (&[None, Some(Outcome::NoReference)], Some(Severity::Amber)),
+            (&[Some(Outcome::Pass), Some(Outcome::Fail)], Some(Severity::Red)),
         ] {
-            assert_eq!(point(verdicts).standing(), standing, "{verdicts:?}");
+            assert_eq!(point(verdicts).severity(), severity, "{verdicts:?}");
         }
     }
 }

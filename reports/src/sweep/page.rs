@@ -1,11 +1,13 @@
 //! Page of a sweep.
 
-use super::figures::levels;
-use super::{Sweep, SweepStatus};
+use super::figures::{levels, quantile};
+use super::{KINDS, Sweep, counts};
+use crate::class;
 use crate::number;
 use crate::page::{provenance, shell};
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
+use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 
 /// Largest number of points that the page lists one by one.
@@ -13,7 +15,7 @@ const MOST: usize = 50;
 
 /// Renders the page. `drawings` contains name, caption and SVG of each drawing.
 pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> String {
-    let [within, outside, amber, unjudged] = sweep.counts();
+    let counts = KINDS.into_iter().zip(counts(&sweep.points));
     let body = html! {
         main.alone {
             header id="summary" {
@@ -21,11 +23,8 @@ pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> St
                 h1 { (sweep.title) }
                 @if !sweep.about.is_empty() { p.lead { (sweep.about) } }
                 ul.counts {
-                    li.pass { b { (number::count(within as u64)) } " " span { "within" } }
-                    li.fail { b { (number::count(outside as u64)) } " " span { "outside or broken" } }
-                    li.amber { b { (number::count(amber as u64)) } " " span { "amber" } }
-                    @if unjudged > 0 {
-                        li.amber { b { (number::count(unjudged as u64)) } " " span { "not judged" } }
+                    @for ((severity, word), count) in counts.filter(|((severity, _), count)| severity.is_some() || *count > 0) {
+                        li class=(severity.map_or("amber", class)) { b { (number::count(count as u64)) } " " span { (word) } }
                     }
                     @if sweep.missing > 0 {
                         li.amber { b { (number::count(sweep.missing as u64)) } " " span { "not finished" } }
@@ -54,27 +53,14 @@ fn factors(sweep: &Sweep) -> String {
 fn table(sweep: &Sweep) -> Markup {
     let rows = levels(sweep).into_iter().map(|(solver, level)| {
         let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
-        let count = |standing| level_points().filter(|point| point.standing() == standing).count() as u64;
         let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
-        errors.sort_by(f64::total_cmp);
-        let at = |part: f64| {
-            errors.get(((errors.len() as f64 * part) as usize).min(errors.len().saturating_sub(1))).copied()
-        };
+        let [half, most, worst] = [0.5, 0.9, 1.0].map(|part| quantile(&mut errors, part));
         let mut steps: Vec<u64> =
             level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
         steps.sort_unstable();
-        row![
-            &solver,
-            &level,
-            count(SweepStatus::Within),
-            count(SweepStatus::Outside),
-            count(SweepStatus::Amber),
-            count(SweepStatus::Unjudged),
-            at(0.5),
-            at(0.9),
-            errors.last().copied(),
-            steps.get(steps.len() / 2).copied(),
-        ]
+        let [within, outside, amber, unjudged] = counts(level_points());
+        let steps = steps.get(steps.len() / 2).copied();
+        row![&solver, &level, within, outside, amber, unjudged, half, most, worst, steps]
     });
     let counts = ["Within", "Outside or broken", "Amber", "Not judged"].map(|name| Column::new(name, Format::Count));
     let errors = ["Median |error|", "90 % below", "Worst"].map(|name| Column::new(name, Format::Fraction));
@@ -87,7 +73,7 @@ fn table(sweep: &Sweep) -> Markup {
 /// Renders the points outside the tolerance, crashed runs first and then by decreasing error.
 fn worst(sweep: &Sweep) -> Markup {
     let mut points: Vec<&super::Point> =
-        sweep.points.iter().filter(|point| point.standing() == SweepStatus::Outside).collect();
+        sweep.points.iter().filter(|point| point.severity() == Some(Severity::Red)).collect();
     let size = |point: &super::Point| point.error().unwrap_or(f64::INFINITY);
     points.sort_by(|a, b| size(b).total_cmp(&size(a)));
     let count = points.len();

@@ -4,7 +4,7 @@ use crate::cli::exit::Fault;
 use crate::cli::solver;
 use grainbench::cases::solvers;
 use grainbench::harness::solvers::Solvers;
-use grainbench::harness::verdict::{Control, Verdict};
+use grainbench::harness::verdict::{ControlResult, Verdict};
 use grainbench::harness::{case::Physics, conformance};
 use grainbench::reports::Section;
 use grainbench::solver::Solver;
@@ -35,13 +35,13 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
 }
 
 /// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache.
-pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<Control>) {
+pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<ControlResult>) {
     let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
-    conformance::judge_kept(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
+    conformance::judge_with_cache(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
 }
 
 /// Returns a report section with results of conformance properties.
-pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<Control>) -> Section {
+pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<ControlResult>) -> Section {
     Section {
         name: "conformance".to_owned(),
         physics: Physics::Properties,

@@ -10,7 +10,7 @@ use grainbench::harness::mistake;
 use grainbench::harness::run::{FinishedRun, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
-use grainbench::harness::verdict::{self, Control, Verdict};
+use grainbench::harness::verdict::{self, ControlResult, Verdict};
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::{RunCost, Section};
@@ -143,11 +143,6 @@ impl ClaimTasks {
         order
     }
 
-    /// Returns true if the results of an external solver are judged.
-    pub(crate) fn has_stranger(&self) -> bool {
-        self.selected.iter().any(|selected| selected.stranger.is_some())
-    }
-
     /// Returns the name of the case or solver to which a task belongs.
     pub(crate) fn name(&self, task: ClaimTask) -> String {
         match task {
@@ -226,7 +221,7 @@ impl ClaimTasks {
 /// Results of one case, in the order of its claims.
 struct CaseResults {
     verdicts: Vec<Option<Verdict>>,
-    controls: Vec<Control>,
+    controls: Vec<ControlResult>,
     figures: Vec<Figure>,
     runs: BTreeMap<String, RunCost>,
 }

@@ -9,7 +9,7 @@ use crate::cli::claims::{self, ClaimOptions};
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::filter::Filters;
 use crate::cli::provenance::provenance;
-use crate::cli::publish::{Output, add_reasons, publish, says_nothing};
+use crate::cli::publish::{Output, add_reasons, publish};
 use crate::cli::select::{self, CaseSelection};
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
@@ -213,9 +213,8 @@ impl Study for ClaimStudy {
         let sections = self.tasks.sections(results);
         let words = self.words.iter().chain(&how.words).cloned().collect();
         let mut report = claims::report(provenance(words, how.seconds), sections, self.is_whole)?;
-        let is_mute = self.tasks.has_stranger() && says_nothing(&report);
         report.red_because.extend(how.unfinished.clone());
-        add_reasons(&mut report, is_mute, how.strict);
+        add_reasons(&mut report, false, how.strict);
         publish(&report, &Output { parquet: how.parquet, ..Output::new(how.out, how.json, how.strict) })
     }
 }

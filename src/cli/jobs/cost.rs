@@ -202,10 +202,10 @@ impl Study for CostStudy {
         study.diagrams.retain(|diagram| !diagram.points.is_empty());
         let asked: Vec<String> =
             study.diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| point.solver.clone()).collect();
-        study.sources = cost::sources(&asked);
+        study.sources = own::sources(&asked);
         if let (Some(old), Some(path)) = (&old, how.against) {
             cost::set_against(&mut study, old, path);
         }
-        how.publish(&study, cost::text(&study), has_crash || cost::is_red(&study))
+        how.publish(&study, has_crash)
     }
 }

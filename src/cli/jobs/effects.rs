@@ -2,10 +2,10 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::cost::sources;
 use crate::cli::effects;
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
+use crate::cli::own::sources;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
@@ -81,6 +81,6 @@ impl Study for EffectStudy {
         study.ledger.extend(results.into_iter().flatten().flatten());
         let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
         study.sources = sources(&solvers.collect::<Vec<_>>());
-        how.publish(&study, effects::text(&study), has_crash || effects::is_red(&study))
+        how.publish(&study, has_crash)
     }
 }

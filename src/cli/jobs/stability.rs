@@ -142,6 +142,6 @@ impl Study for StabilityStudy {
             }
         }
         study.sources = stability::sources_of(&study);
-        how.publish(&study, stability::text(&study), has_crash || stability::is_red(&study))
+        how.publish(&study, has_crash)
     }
 }

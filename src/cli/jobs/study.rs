@@ -2,7 +2,7 @@
 //! directory of a command, or in the directory of a plan.
 
 use super::arguments::Arguments;
-use crate::cli::exit::{self, Fault, Outcome};
+use crate::cli::exit::{self, Fault, Outcome, RED};
 use crate::cli::keep::keep_study;
 use crate::cli::provenance::provenance;
 use crate::cli::publish::{Output, publish_study};
@@ -115,8 +115,8 @@ impl ReportOptions<'_> {
         Report::new(provenance(words.into_iter().chain(self.words.iter().cloned()).collect(), self.seconds))
     }
 
-    /// Writes and prints a study.
-    pub(super) fn publish(&self, study: &Report, text: String, is_red: bool) -> Outcome {
+    /// Writes and prints a study. The exit code is red if a task crashed.
+    pub(super) fn publish(&self, study: &Report, has_crash: bool) -> Outcome {
         if self.is_draft {
             write_study(self.out, study).map_err(Fault::writing)?;
             return Ok(ExitCode::SUCCESS);
@@ -124,8 +124,9 @@ impl ReportOptions<'_> {
         if let Some(name) = self.update_stored {
             keep_study(name, study)?;
         }
-        let output = Output { text: Some(text + &self.end), ..Output::new(self.out, self.json, false) };
-        publish_study(study, output, is_red)
+        let text = Some(study.text() + &self.end);
+        let code = publish_study(study, Output { text, ..Output::new(self.out, self.json, false) })?;
+        Ok(if has_crash { ExitCode::from(RED) } else { code })
     }
 }
 

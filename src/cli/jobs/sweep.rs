@@ -12,7 +12,7 @@ use grainbench::jobs::plan::{Kind, Plan};
 use grainbench::jobs::sweep::Sweep;
 use grainbench::jobs::task::Task;
 use grainbench::reports::number;
-use grainbench::reports::sweep::{PointOutput, QuantityResult, sweep_json, write_sweep};
+use grainbench::reports::sweep::{PointOutput, QuantityResult, counts, sweep_json, write_sweep};
 use grainbench::solver::Solver;
 use grainbench::store::key;
 use grainbench::store::log::State;
@@ -119,14 +119,14 @@ impl Study for SweepStudy {
             TaskResult::Nothing => None,
             TaskResult::Out(left) => Some(left),
             TaskResult::Crash(detail) => {
-                let looked = QuantityResult { verdict: Some(verdict::Outcome::Broken), ..QuantityResult::default() };
+                let looked = QuantityResult::without_value(verdict::Outcome::Broken, None);
                 Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
             }
         };
         let left = results.into_iter().map(left).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
         write_sweep(how.out, &report).map_err(Fault::writing)?;
-        let [within, outside, amber, unjudged] = report.counts();
+        let [within, outside, amber, unjudged] = counts(&report.points);
         if how.json {
             print(&sweep_json(&report).map_err(Fault::input)?)?;
         } else {
@@ -136,7 +136,7 @@ impl Study for SweepStudy {
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
-        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.counts_for_exit());
+        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.is_judged());
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
         Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
     }

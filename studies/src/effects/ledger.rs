@@ -148,7 +148,7 @@ impl Ledger {
             (false, false) => EffectResult::NotWorthSimulating,
             (false, true) => EffectResult::Untold,
         };
-        if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_judged(run)) {
+        if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_tested(run)) {
             let with = self.runner.run(run);
             if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
                 let work = |record: &Record| record.cost.work() as f64;
@@ -189,7 +189,7 @@ impl Ledger {
     ///
     /// Reference runs and runs of other programs keep the effect.
     fn run_without(&mut self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
-        if !self.is_judged(run) {
+        if !self.is_tested(run) {
             return self.runner.run(run);
         }
         let key = (effect, run.key());
@@ -213,7 +213,7 @@ impl Ledger {
     }
 
     /// Returns true for a run of our solver that is not a reference run.
-    fn is_judged(&self, run: &Run) -> bool {
+    fn is_tested(&self, run: &Run) -> bool {
         !run.aside && !self.solvers.is_program(run.solver)
     }
 
@@ -238,7 +238,7 @@ impl Ledger {
 
     fn idle_with(&self, piece: &SceneEffect, method: Method) -> Option<(&'static str, NeutralTrial)> {
         let is_ours = |run: &&Run| {
-            self.is_judged(run) && run.variant == piece.variant && Method::from_name(run.solver) == Some(method)
+            self.is_tested(run) && run.variant == piece.variant && Method::from_name(run.solver) == Some(method)
         };
         let run = self.claims.iter().flat_map(|claim| &claim.runs).find(is_ours)?;
         let mut scene = (*self.runner.scene(run).ok()?).clone();
