@@ -1,7 +1,7 @@
 //! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
 use std::io;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 use grainbench_harness::figure::{Drawing, Figure, Graph};
 use rayon::prelude::*;

@@ -9,7 +9,6 @@ use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::time::SystemTime;
 
-use grainbench_scene::error::expected_and_found;
 use grainbench_scene::text::tamed;
 use grainbench_scene::toml_error::TomlError;
 use serde::Serialize;
