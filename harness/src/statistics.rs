@@ -186,7 +186,7 @@ mod tests {
     }
 
     /// The prediction interval misses the mean of a further run about as often as the confidence level states, also if the
-    /// samples are correlated over more than a block. A mean that is wrong by six times the scatter is found.
+    /// samples are correlated over more than a block. A mean that is wrong by six times the scatter is found in nine of ten runs.
     #[test]
     fn a_further_run_lies_in_its_interval() {
         for memory in [0.0, 0.9, 0.99] {
@@ -210,7 +210,7 @@ mod tests {
             };
             let scatter = (1.0_f64 / 12.0 / 400.0).sqrt() / (1.0 - memory);
             assert!(outside(0.0) <= 16, "{memory}: {}", outside(0.0));
-            assert!(outside(6.0 * scatter) > 380, "{memory}: {}", outside(6.0 * scatter));
+            assert!(outside(6.0 * scatter) > 360, "{memory}: {}", outside(6.0 * scatter));
         }
     }
 
