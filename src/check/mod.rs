@@ -17,7 +17,7 @@ mod summary;
 
 pub use error::CheckError;
 pub use ours::ConventionChoice;
-pub use power::{Power, is_of_power};
+pub use power::{Power, is_of_power, power_words};
 pub use subject::{DeclaredScene, StartFile};
 pub use summary::sentence;
 
@@ -36,6 +36,7 @@ use grainbench_reports::Section;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
+use horizon::Ensemble;
 use judgement::is_outside;
 use ours::{Plan, nearest_first, ours};
 use power::CheckInputs;
@@ -175,7 +176,9 @@ fn section(
             let power = if subject.case().is_some() { Power::Off } else { options.power };
             let mut rows = rows_of_ours(&made, power, &row);
             let is_other = rows.iter().any(|row| row.outcome == Outcome::Fail || is_outside(row));
-            let hint = of_ours.end.as_ref().filter(|_| is_other);
+            // Contacts of grains that flow out do not carry a static load.
+            let is_at_rest = candidate.scene.stays.removal.is_none();
+            let hint = of_ours.end.as_ref().filter(|_| is_other && is_at_rest);
             rows.extend(hint.and_then(|end| stiffness::at_end(&candidate.scene, observed, end, &row)));
             (rows, figures(&of_ours.peers, &file, observed))
         }
@@ -224,8 +227,8 @@ struct OwnRuns {
     peers: Vec<Peer>,
     /// Last snapshot of the first run.
     end: Option<Snapshot>,
-    /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
-    horizon: Option<f64>,
+    /// Our runs after the predictability horizon; `None` if the run is predictable to its end.
+    ensemble: Option<Ensemble>,
 }
 
 impl OwnRuns {
@@ -236,17 +239,18 @@ impl OwnRuns {
         observed: &'c DumpRecord,
         covered: &'c Coverage,
     ) -> CheckInputs<'c> {
-        let (plan, ours, horizon, scene) = (&self.plan, &self.peers, self.horizon, &candidate.scene);
-        CheckInputs { scene, plan, ours, choice: self.choice, horizon, outputs, observed, covered }
+        let (plan, ours, ensemble, scene) = (&self.plan, &self.peers, self.ensemble.as_ref(), &candidate.scene);
+        CheckInputs { scene, plan, ours, choice: self.choice, ensemble, outputs, observed, covered }
     }
 }
 
 fn against_ours(scene: &Scene, plan: Plan, observed: &DumpRecord, choice: ConventionChoice) -> Result<OwnRuns, String> {
     let (mut peers, mut ends) = ours(scene, &plan)?;
-    let horizon = horizon::find(scene, &plan, &peers)?;
+    let parting = horizon::find(scene, &plan, &peers, choice)?;
+    let horizon = parting.as_ref().and_then(|parting| parting.time);
     let nearest = nearest_first(scene, &plan, &mut peers, observed, horizon, choice)?;
-    let horizon = horizon.map(|horizon| horizon::shortened(horizon, &peers[0]));
-    Ok(OwnRuns { plan, choice, peers, end: ends.swap_remove(nearest), horizon })
+    let ensemble = parting.map_or(Ok(None), |parting| horizon::ensemble(scene, &plan, &peers, parting))?;
+    Ok(OwnRuns { plan, choice, peers, end: ends.swap_remove(nearest), ensemble })
 }
 
 /// Compares the output with our runs, sample by sample up to the horizon and by means after it. Adds the results about

@@ -9,7 +9,7 @@ use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::Outputs;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Probe, ProbeTarget, Scene};
 use grainbench_solver::Solver;
 use grainbench_solver::record::{Record, Series, Snapshot};
 use grainbench_solver::refined::refined;
@@ -38,7 +38,7 @@ impl ConventionChoice {
         }
     }
 
-    const fn only(self) -> Option<&'static str> {
+    pub(super) const fn only(self) -> Option<&'static str> {
         match self {
             Self::Named(name) => Some(name),
             Self::Nearest => None,
@@ -73,7 +73,7 @@ pub(super) fn convention(run: &Peer) -> Convention {
 const CONVENTIONS: [Convention; 4] =
     [Convention::DEFAULT, Convention::CUNDALL_STRACK, Convention::LAMMPS, Convention::LIGGGHTS];
 /// Allowed difference in addition to the measured differences, as a fraction of the scale.
-const FLOOR: f64 = 1e-6;
+pub(super) const FLOOR: f64 = 1e-6;
 /// Largest number of particle-steps of one run of our solvers, which takes about half an hour.
 const MOST_WORK: f64 = 2e10;
 /// Largest number of samples of our runs.
@@ -132,7 +132,11 @@ impl Plan {
 
     /// Runs a scene with a contact convention. Each step of the plan is divided into `parts` steps.
     pub(super) fn run(&self, scene: &Scene, convention: Convention, parts: u64) -> Result<Record, String> {
-        let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
+        let mut scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
+        // Numbers of grains show only late that two runs part. The kinetic energy shows it at once.
+        if scene.probes.iter().all(|probe| probe.target == ProbeTarget::Count) {
+            scene.probes.push(Probe { name: String::new(), target: ProbeTarget::System });
+        }
         let (scene, resolution) = refined(&scene, self.step, self.counts, parts);
         Dem::new(convention).run(&scene, &resolution, &mut ()).map_err(|error| error.to_string())
     }

@@ -2,7 +2,7 @@
 //! changed, and the result is checked in place of the output.
 
 use super::covered::Coverage;
-use super::horizon;
+use super::horizon::{Ensemble, beyond, is_only_mean};
 use super::judgement::is_outside;
 use super::ours::{ConventionChoice, Plan, compare, convention, is_compared, until};
 use grainbench_dem::convention::Convention;
@@ -49,6 +49,17 @@ pub fn is_of_power(row: &Verdict) -> bool {
 /// Last words of the detail of a result whose change cannot be detected.
 pub(super) const HIDDEN: &str = " cannot be detected in this output";
 
+/// Last words of the detail of a result whose change is detected.
+const SEEN: &str = " would be detected in this output";
+
+/// Returns a result about the power of a check as a sentence, without numbers that only a program needs.
+#[must_use]
+pub fn power_words(row: &Verdict) -> String {
+    let detail = row.detail.clone().unwrap_or_default();
+    let is_sentence = detail.ends_with(SEEN) || detail.ends_with(HIDDEN);
+    if is_sentence { detail } else { format!("{}: {detail}", row.quantity) }
+}
+
 /// Effect with changes of increasing size.
 struct Family {
     name: String,
@@ -79,8 +90,8 @@ pub(super) struct CheckInputs<'c> {
     pub(super) plan: &'c Plan,
     pub(super) ours: &'c [Peer],
     pub(super) choice: ConventionChoice,
-    /// Time (s) up to which the run is predictable; `None` if it is predictable to its end.
-    pub(super) horizon: Option<f64>,
+    /// Our runs after the predictability horizon; `None` if the run is predictable to its end.
+    pub(super) ensemble: Option<&'c Ensemble>,
     pub(super) outputs: &'c Outputs,
     pub(super) observed: &'c DumpRecord,
     pub(super) covered: &'c Coverage,
@@ -90,14 +101,17 @@ impl CheckInputs<'_> {
     /// Compares output with our runs, sample by sample up to the horizon and by means after it.
     pub(super) fn compare(&self, observed: &DumpRecord, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
         let mut seen = observed.clone();
-        if let Some(horizon) = self.horizon {
+        let horizon = self.ensemble.map(|ensemble| ensemble.from);
+        if let Some(horizon) = horizon {
             seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
         }
-        let truncated = self.horizon.map(|horizon| until(self.ours, horizon));
+        let truncated = horizon.map(|horizon| until(self.ours, horizon));
         let ours = truncated.as_deref().unwrap_or(self.ours);
         let mut rows = compare(self.scene, ours, self.choice, self.outputs, &seen, &self.covered.by(&seen), row);
         rows.extend(
-            self.horizon.into_iter().flat_map(|from| horizon::beyond(self.scene, self.ours, observed, from, row)),
+            self.ensemble
+                .into_iter()
+                .flat_map(|ensemble| beyond(self.scene, (self.ours, self.choice, ensemble), observed, row)),
         );
         rows
     }
@@ -121,16 +135,16 @@ impl CheckInputs<'_> {
                 found => rows.push(outcome_row(
                     &family,
                     &found,
-                    row(format!("{}: smallest change that this output reveals", family.name)),
+                    row(format!("{}: smallest mistake that this output would reveal", family.name)),
                 )),
             }
         }
         if !not_tried.is_empty() {
-            let row = Verdict { because: "no comparison was made".to_owned(), ..row("effects not tried".to_owned()) };
+            let row = Verdict { because: "no comparison was made".to_owned(), ..row("mistakes not tried".to_owned()) };
             rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
         }
         rows.extend(self.unjudged().map(|names| {
-            let because = "a wrong value in these columns cannot be detected".to_owned();
+            let because = "a wrong value in these columns is not detected".to_owned();
             let row = Verdict { because, ..row("columns of probes not judged".to_owned()) };
             row.left(Outcome::NoReference, names)
         }));
@@ -192,6 +206,7 @@ impl CheckInputs<'_> {
     /// Returns the names of the columns of the scene's probes that are not compared; `None` if all are compared.
     fn unjudged(&self) -> Option<String> {
         let columns = Recorder::new(self.scene, 1.0, 1).finish().0.columns;
+        let is_compared = |name: &str| is_compared(name) || self.ensemble.is_some() && is_only_mean(name);
         let is_judged = |name: &str| is_compared(name) && self.observed.series.column(name).is_some();
         let names: Vec<String> =
             columns.into_iter().map(|column| column.name).filter(|name| !is_judged(name)).collect();
@@ -205,12 +220,16 @@ impl CheckInputs<'_> {
 /// Returns the result for an effect that was tried.
 fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict {
     let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
-    let row = Verdict { because: format!("tried: {}", sizes.join(", ")), ..row };
+    let because =
+        format!("our solver ran the scene with this mistake, and was judged as your output: {}", sizes.join(", "));
+    let row = Verdict { because, ..row };
     let largest = family.sizes.last();
     match (found, largest) {
         (SearchOutcome::Revealed(amount), Some(largest)) => {
             let most = ExpectedValue::Bound(Bound::AtMost(largest.amount));
-            row.judged(&Measurement::new(*amount, most, 1.0))
+            let size = family.sizes.iter().find(|size| size.amount.total_cmp(amount).is_eq()).unwrap_or(largest);
+            let detail = Some(format!("{}: {}{SEEN}", family.name, size.words));
+            Verdict { detail, ..row.judged(&Measurement::new(*amount, most, 1.0)) }
         }
         (_, largest) => {
             let words = largest.map_or("any change", |largest| &largest.words);

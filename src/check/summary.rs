@@ -27,9 +27,13 @@ pub fn sentence(section: &Section) -> String {
     parts.extend(agreement(&of(&|row| row.source.contains("stored run")), "the stored run"));
     let means = of(&|row| row.source.contains("predictability horizon") && row.outcome != Outcome::NoReference);
     if !means.is_empty() {
-        let red: Vec<&str> = means.iter().filter(|row| row.outcome.is_red()).map(|row| name(row)).collect();
+        let words = |row: &&&Verdict| {
+            let by = row.error.map_or(String::new(), |error| format!(" by {}", number::fraction(error.abs())));
+            name(row).to_owned() + &by
+        };
+        let red: Vec<String> = means.iter().filter(|row| row.outcome.is_red()).map(|row| words(&row)).collect();
         parts.push(match red[..] {
-            [] => "The means after the predictability horizon agree within their confidence intervals".to_owned(),
+            [] => "The means after the predictability horizon agree within their statistical uncertainty".to_owned(),
             _ => format!("The means after the predictability horizon differ: {}", red.join(", ")),
         });
     }

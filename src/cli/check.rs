@@ -9,7 +9,7 @@ use super::value::{path_and_value, positive};
 use glob::Pattern;
 use grainbench::adapt::AdaptedScene;
 use grainbench::check::{
-    ConventionChoice, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, sentence,
+    ConventionChoice, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, power_words, sentence,
 };
 use grainbench::harness::expect::ExpectedValue;
 use grainbench::harness::verdict::{self, Severity, Verdict};
@@ -309,14 +309,19 @@ fn text(report: &Report) -> String {
                 && row.value == Some(0.0)
                 && row.expected == Some(ExpectedValue::Value(0.0))
         };
-        for row in section.verdicts.iter().filter(|row| !is_zero(row)) {
-            let line = if is_of_one_file { line::quantity(row) } else { line::verdict_in_section(row) };
-            text.push_str(&format!("{:<12} {line}\n{:<12} {}\n", row.outcome.word(), "", row.because));
-        }
+        let shown: Vec<&Verdict> = section.verdicts.iter().filter(|row| !is_zero(row)).collect();
+        let (power, shown): (Vec<_>, Vec<_>) = shown.into_iter().partition(|row| is_of_power(row));
+        text.push_str(&with_reasons(&shown, if is_of_one_file { line::quantity } else { line::verdict_in_section }));
         let name = |row: &Verdict| row.quantity.split(", ").next().unwrap_or_default().to_owned();
         let zeros: Vec<String> = section.verdicts.iter().filter(is_zero).map(name).collect();
         if !zeros.is_empty() {
             text.push_str(&format!("{:<12} exactly zero as expected: {}\n", "pass", zeros.join(", ")));
+        }
+        if !power.is_empty() {
+            text.push_str("mistakes that this output would reveal, found by runs of our solver with each mistake:\n");
+        }
+        for row in power {
+            text.push_str(&format!("{:<12} {}\n", row.outcome.word(), power_words(row)));
         }
     }
     text + &counts(report)
@@ -330,12 +335,25 @@ fn counts(report: &Report) -> String {
     format!("{pass} pass, {fail} fail, {amber} amber\n")
 }
 
+/// Returns the lines of results with their reasons. Consecutive results with the same reason share one line with it.
+fn with_reasons(rows: &[&Verdict], line: fn(&Verdict) -> String) -> String {
+    let mut text = String::new();
+    for group in rows.chunk_by(|a, b| (&a.because, &a.detail) == (&b.because, &b.detail)) {
+        let shares_detail = group.len() > 1;
+        for row in group {
+            let words = if shares_detail { line(&Verdict { detail: None, ..(*row).clone() }) } else { line(row) };
+            text.push_str(&format!("{:<12} {words}\n", row.outcome.word()));
+        }
+        let of_all = if shares_detail { format!("{} results: ", group.len()) } else { String::new() };
+        let detail = group.first().and_then(|row| row.detail.as_deref()).filter(|_| shares_detail);
+        let reasons = detail.into_iter().chain(group.first().map(|row| row.because.as_str()));
+        text.push_str(&format!("{:<12} {of_all}{}\n", "", reasons.collect::<Vec<_>>().join("; ")));
+    }
+    text
+}
+
 /// Returns a table of all results of a report, followed by the number of results of each colour.
 pub(crate) fn rows(report: &Report) -> String {
-    let mut text = String::new();
-    for row in report.sections.iter().flat_map(|section| &section.verdicts) {
-        text.push_str(&format!("{:<12} {}\n", row.outcome.word(), line::verdict_in_section(row)));
-        text.push_str(&format!("{:<12} {}\n", "", row.because));
-    }
-    text + &counts(report)
+    let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
+    with_reasons(&rows, line::verdict_in_section) + &counts(report)
 }

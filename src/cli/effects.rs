@@ -1,6 +1,7 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
 use super::exit::{Fault, Outcome, check_writable};
+use super::interrupt::Interrupt;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use super::own;
 use super::progress::Progress;
@@ -9,19 +10,25 @@ use super::publish::{Output, publish_study};
 use super::solver;
 use super::step::Step;
 use super::subject::{self, SelectedVariants, selected};
-use super::value::positive;
+use super::value::{duration, positive};
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
+use grainbench::reports::number;
 use grainbench::reports::study::Study;
+use grainbench::reports::study::effects::Entry;
 use grainbench::scene::effect::Effect;
 use grainbench::scene::method::Method;
 use grainbench::solver::resolution::Resolution;
+use grainbench::store::artifact::{Directory, Json};
+use grainbench::store::key;
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use grainbench::studies::effects::scene::StudyInput;
+use grainbench::studies::own::within::Within;
+use grainbench::studies::run_cache::key_of_run;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::sync::Arc;
-use std::time::Instant;
+use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -57,17 +64,26 @@ struct SceneOptions {
     /// Smallest relevant change of a probe, as a fraction of the largest value of the probe.
     #[arg(long, value_name = "FRACTION", default_value_t = MATTERS, value_parser = positive, allow_hyphen_values = true)]
     matters: f64,
+    /// Time for a scene of your own, such as `90s`, `2m` or `1h`. Effects for which no time is left are listed. Default: no
+    /// limit.
+    #[arg(long, value_name = "TIME", value_parser = duration)]
+    budget: Option<Duration>,
 }
 
 /// Default solver for a scene file.
 const SOLVER: &str = "dem";
+/// Name under which the result of the test for chaos is stored.
+const CHAOS: &str = "chaos";
+/// Time limit if the user gives none: a year.
+const UNLIMITED: Duration = Duration::from_secs(31_536_000);
 /// Default of the smallest relevant change of a probe, as a fraction of the probe's largest value.
 const MATTERS: f64 = 0.01;
 
 impl SceneOptions {
     /// Returns true if all options have their defaults. Cases define these settings themselves and would ignore the options.
     fn is_usual(&self) -> bool {
-        self.solver == SOLVER && self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq()
+        let is_usual = self.step.is_usual() && self.matters.total_cmp(&MATTERS).is_eq() && self.budget.is_none();
+        self.solver == SOLVER && is_usual
     }
 
     fn resolution(&self) -> Resolution {
@@ -97,67 +113,117 @@ impl Arguments {
     }
 }
 
-/// Tests the effects of a scene file; returns `None` if the arguments name no scene file.
+/// Tests the effects of a scene file, or of the scene of a folder without claims; returns `None` if the arguments name neither.
 pub(crate) fn scene_file(arguments: &Arguments) -> Result<Option<ExitCode>, Fault> {
-    if let Some(scene) = arguments.cases.iter().find(|name| is_scene(name)) {
-        if arguments.cases.len() > 1 {
-            return Err(Fault::input(format!("{scene}: expected no case in addition to a scene file")));
-        }
+    let named = if own::folder(&arguments.cases)?.is_some() { None } else { own::scene(&arguments.cases)? };
+    if let Some(scene) = named {
         if arguments.plan.is_given() {
             return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
         }
-        return of_scene(scene, arguments).map(Some);
+        return of_scene(&scene, arguments).map(Some);
     }
     if !arguments.yours.is_usual() {
         let found = "found no scene file: a case sets its own solvers, steps and quantities";
         return Err(Fault::input(format!(
-            "--solver, --time-step, --time-step-fraction, --matters: expected a scene file with them, {found}"
+            "--solver, --time-step, --time-step-fraction, --matters, --budget: expected a scene file with them, {found}"
         )));
     }
     Ok(None)
 }
 
-fn is_scene(name: &str) -> bool {
-    Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"))
-}
-
-/// Tests the effects of a scene file.
+/// Tests the effects of a scene file. Finished effects are stored, so that a stopped study continues.
 fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let yours = &arguments.yours;
     let (scene, _) = subject::scene(name, &[])?;
     let solver = solver::find(&yours.solver)?;
-    check_writable(&arguments.out)?;
-    let asked = StudyInput {
-        name: name.to_owned(),
-        scene: &scene,
-        solver: &*solver,
-        resolution: yours.resolution(),
-        matters: yours.matters,
-    };
-    let effects: Vec<Effect> = Effect::switches().collect();
-    let start = Instant::now();
-    let progress = Progress::new(effects.len() as u64 + 1, "effects");
-    progress.now("the unchanged scene");
-    let whole = asked.whole().map_err(|error| Fault::input(error.to_string()))?;
-    progress.advance();
-    if whole.record.series.columns.is_empty() {
+    if scene.probes.is_empty() {
         return Err(Fault::input(format!(
             "{name}: expected probes, because they show the influence of an effect, found none"
         )));
     }
+    check_writable(&arguments.out)?;
+    // The files of an external program may change between two runs.
+    let is_program = Path::new(&yours.solver).is_file();
+    let cache =
+        Directory::open(&arguments.out.join(own::RUNS), arguments.no_cache || is_program).map_err(Fault::writing)?;
+    let interrupt = Interrupt::listen();
+    let stop = || interrupt.is_asked();
+    let start = Instant::now();
+    let deadline = start + yours.budget.unwrap_or(UNLIMITED);
+    let within = Within::new(&*solver, deadline, &stop);
+    let (resolution, matters) = (yours.resolution(), yours.matters);
+    let asked = StudyInput { name: name.to_owned(), scene: &scene, solver: &within, resolution, matters };
+    let program = key::of_this_program();
+    let id = |what: &str| {
+        key_of_run(&program, &yours.solver, &scene, &resolution, &format!("{what} of {name}, {matters:?}"))
+    };
+    let effects: Vec<Effect> = Effect::switches().collect();
+    let progress = Progress::new(effects.len() as u64 + 1, "effects");
+    let mut whole = None;
     let mut study = Study::new(provenance(vec!["effects".to_owned(), name.to_owned()], 0.0));
+    let mut left_out = Vec::new();
     for effect in effects {
-        progress.now(effect.word());
-        study.ledger.extend(asked.entry(&whole, effect));
         progress.advance();
+        if let Ok(entry) = cache.get::<Json<Option<Entry>>>(&id(effect.word())) {
+            study.ledger.extend(entry);
+            continue;
+        }
+        if within.0.is_cut() || Instant::now() >= deadline {
+            left_out.push(effect.word());
+            continue;
+        }
+        if whole.is_none() {
+            progress.now("the unchanged scene");
+            let found = asked.whole();
+            if stop() {
+                return Err(own::stopped());
+            }
+            whole = Some(found.map_err(|error| match within.0.is_cut() {
+                false => Fault::input(error.to_string()),
+                true => {
+                    Fault::Broken(format!("{name}: expected a larger `--budget`: the unchanged scene needs more time"))
+                }
+            })?);
+        }
+        let Some(whole) = &whole else { continue };
+        progress.now(effect.word());
+        let entry = asked.entry(whole, effect);
+        if stop() {
+            return Err(own::stopped());
+        }
+        if within.0.is_cut() {
+            left_out.push(effect.word());
+            continue;
+        }
+        cache.put::<Json<_>>(&id(effect.word()), &entry).map_err(Fault::writing)?;
+        cache.put::<Json<_>>(&id(CHAOS), &!whole.perturbed.is_empty()).map_err(Fault::writing)?;
+        study.ledger.extend(entry);
     }
     drop(progress);
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
-    let chaotic = "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
-                   time are compared, with the scatter of perturbed runs.\n";
-    let text = study.text() + if whole.perturbed.is_empty() { "" } else { chaotic };
+    let stored_chaos = cache.get::<Json<bool>>(&id(CHAOS)).ok();
+    let is_chaotic = stored_chaos.unwrap_or_else(|| whole.is_some_and(|whole| !whole.perturbed.is_empty()));
+    let text = study.text() + &scale_words(matters, is_chaotic, &left_out);
     let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
     publish_study(&study, output)
+}
+
+/// Returns the scale by which changes are judged, and the effects for which no time was left.
+fn scale_words(matters: f64, is_chaotic: bool, left_out: &[&str]) -> String {
+    let most = number::fraction(matters);
+    let change = if is_chaotic { "the mean over time of a column changes" } else { "a column changes at any sample" };
+    let mut text = format!(
+        "needed: without the effect, {change} by more than {most} of the largest |value| that the columns of the same probe \
+         and unit have (--matters)\n"
+    );
+    if is_chaotic {
+        text += "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
+                 time are compared, with the scatter of perturbed runs.\n";
+    }
+    if !left_out.is_empty() {
+        text += &format!("no time was left for: {}; a larger --budget continues\n", left_out.join(", "));
+    }
+    text
 }
 
 /// Returns the study of each named case, with the effects to test.

@@ -32,7 +32,7 @@ const BUDGET: Duration = Duration::from_secs(60);
 /// Shortest time between two updates of the report.
 const EVERY: Duration = Duration::from_secs(5);
 /// Directory of finished runs in the directory of the report.
-const RUNS: &str = "runs";
+pub(crate) const RUNS: &str = "runs";
 /// Name of the scene file in a folder.
 const SCENE: &str = "scene.toml";
 
@@ -204,7 +204,7 @@ fn scene_study<'a>(
 }
 
 /// Returns the error of a study that the user stops.
-fn stopped() -> Fault {
+pub(crate) fn stopped() -> Fault {
     Fault::Broken("stopped; the same command continues".to_owned())
 }
 

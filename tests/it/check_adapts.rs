@@ -182,6 +182,46 @@ fn a_wrong_friction_of_many_grains_is_red() {
     }
 }
 
+/// 605 discs flow out of a hopper. Only their numbers are known, as in the log of a program.
+const HOPPER: &str = "title = 'A hopper'\ndimension = 2\nduration = 1.6\ngravity = [0.0, -9.81]\n\
+     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e5\n\
+     tangential_stiffness = 2.9e4\nfriction = 0.5\nrestitution = 0.6\n[grains.a]\nmaterial = 'g'\nradius = 0.005\n\
+     lattice = { origin = [-0.0525, 0.0055], spacing = [0.0105, 0.0105], count = [11, 55], perturbation = 1e-4, seed = 1 }\n\
+     [walls]\nleft = { material = 'g', plane = { point = [-0.06, 0.0], normal = [1.0, 0.0] } }\n\
+     right = { material = 'g', plane = { point = [0.06, 0.0], normal = [-1.0, 0.0] } }\n\
+     floor = { material = 'g', segment = [[-0.06, 0.0], [-0.028, 0.0]] }\n\
+     other = { material = 'g', segment = [[0.06, 0.0], [0.028, 0.0]] }\n\
+     [removal]\nlow = [-0.1, -0.05]\nhigh = [0.1, 1.0]\n[output]\nevery = 0.01\n[probes]\ndiscs = { count = true }\n";
+
+/// The flow rate reveals a wrong friction. The tolerance is the scatter of our runs, and a right run of another convention and
+/// another rounding lies within it. The result says how long a run must be to be conclusive.
+#[test]
+fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
+    let directory = tempfile::tempdir().unwrap();
+    fs::write(directory.path().join("s.toml"), HOPPER).unwrap();
+    let flow = |solver: &str, set: &[&str]| {
+        simulated(directory.path(), "s.toml", solver, "2.5e-4", set);
+        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off", "--json"];
+        let answer = grainbench(directory.path(), &words);
+        let rows = rows(&answer);
+        let is_flow = |row: &&Value| row["quantity"].as_str().unwrap().starts_with("discs.left, mean rate from t = ");
+        let row = rows.iter().find(is_flow).unwrap_or_else(|| panic!("{rows:#?}")).clone();
+        (answer.code, count(&rows, "fail"), row)
+    };
+    for solver in ["dem:lammps", "dem:1979"] {
+        let (code, failed, row) = flow(solver, &["grains.a.lattice.perturbation=1.00000001e-4"]);
+        assert_eq!((code, failed), (Some(0), 0), "{row}");
+        let detail = row["detail"].as_str().unwrap_or("times as long, to t = ");
+        assert!(detail.contains("times as long, to t = "), "{row}");
+    }
+    let (code, _, row) = flow("dem:lammps", &["contacts.g.friction=.1"]);
+    assert_eq!((code, &row["verdict"]), (Some(1), &"fail".into()), "{row}");
+    let detail = row["detail"].as_str().unwrap();
+    assert!(detail.contains("larger than the mean of our runs, which lie between"), "{detail}");
+    let allowed = row["allowed"].as_f64().unwrap();
+    assert!((0.02..0.15).contains(&allowed), "{allowed}");
+}
+
 /// An output with another stiffness: the result is red, and the overlap at rest leads to the cause.
 #[test]
 fn an_overlap_at_rest_tells_the_stiffness() {

@@ -7,7 +7,7 @@ use grainbench::reference::deck::{DeckError, Program, write_deck};
 use grainbench::scene::dimension::GrainShape;
 use grainbench::scene::function::{Function, FunctionKind};
 use grainbench::scene::motion::{Moment, Motion, Phase};
-use grainbench::scene::scene::{Scene, WallShape};
+use grainbench::scene::scene::{Domain, Scene, WallShape};
 use grainbench::solver::resolution::Resolution;
 use nalgebra::Vector3;
 use rayon::prelude::*;
@@ -144,6 +144,29 @@ fn every_case_has_a_deck_or_a_reason() {
 }
 
 /// Returns the message about a changed scene that an external program does not support.
+/// The meshes of walls need room in the box, but not along a periodic axis, because the box is the period there. LIGGGHTS
+/// deletes triangles beyond it.
+#[test]
+fn meshes_leave_the_period_as_it_is() {
+    let deck = |depth: f64| {
+        let case = by_name("chung-ooi").unwrap();
+        let mut scene = case.variant("plain").unwrap();
+        let [x, y, z] = [Vector3::x(), Vector3::y(), Vector3::z()];
+        scene.domain = Some(Domain { low: -x - y - z, high: x + y + z, periodic: [false, true, false] });
+        scene.walls[0].shape = WallShape::Rectangle { corner: -x - y, edges: [x * 2.0, y * depth] };
+        write_deck(&scene, &case.default_level.resolution, Program::LIGGGHTS)
+    };
+    let box_of = |name: &str| -> String {
+        let files = deck(2.0).unwrap().files;
+        let (_, data) = files.iter().find(|(file, _)| file == "data.grains").unwrap();
+        data.lines().find(|line| line.contains(name)).unwrap().to_owned()
+    };
+    assert_eq!(box_of("ylo"), "-1.0 1.0 ylo yhi");
+    assert!(!box_of("xlo").starts_with("-1.0 "), "the mesh needs room: {}", box_of("xlo"));
+    let message = deck(2.5).unwrap_err().to_string();
+    assert!(message.contains("extends beyond the periodic bounds along y, -1 m to 1 m"), "{message}");
+}
+
 fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();

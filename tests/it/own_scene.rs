@@ -1,11 +1,12 @@
 //! Cost and stability of a scene of the user's on the command line.
 
-use crate::common::{grainbench, root};
+use crate::common::{grainbench, program, root};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::time::SystemTime;
+use std::process::{Command, Stdio};
+use std::time::{Duration, SystemTime};
 
 /// Runs `cost` of a scene of the guide, and returns `results.json` and the stored runs with the times at which they were
 /// written.
@@ -38,6 +39,71 @@ fn a_study_continues() {
     let rows: Vec<Value> = rows.collect();
     assert!(!rows.is_empty() && rows.iter().all(|row| row["evidence"] == "convergence"), "{rows:?}");
     assert_eq!(first["verdicts"], Value::Array(Vec::new()));
+}
+
+/// Ctrl-C ends a study with exit code 1. The same command continues it with the finished runs.
+#[test]
+#[cfg(target_os = "linux")]
+fn a_stopped_study_continues() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(root("guide/scenes/heap.toml"), folder.path().join("heap.toml")).unwrap();
+    for command in ["cost", "effects"] {
+        let runs = || fs::read_dir(folder.path().join(command).join("runs")).map_or(0, |files| files.count());
+        let arguments = [command, "heap.toml", "--solver", "dem", "--budget", "60s", "--out", command];
+        let mut child = program()
+            .args(arguments)
+            .current_dir(folder.path())
+            .stdout(Stdio::null())
+            .stderr(Stdio::piped())
+            .spawn()
+            .unwrap();
+        while runs() < 2 && child.try_wait().unwrap().is_none() {
+            std::thread::sleep(Duration::from_millis(20));
+        }
+        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
+        let stopped = child.wait_with_output().unwrap();
+        let message = String::from_utf8(stopped.stderr).unwrap();
+        assert_eq!(stopped.status.code(), Some(1), "{message}");
+        assert!(message.contains("stopped; the same command continues"), "{message}");
+        let finished = runs();
+        assert!(finished >= 2, "{finished}");
+        let arguments = [&arguments[..4], &["--budget", "4s", "--out", command]].concat();
+        let answer = grainbench(folder.path(), &arguments);
+        assert!(answer.code == Some(0) && runs() >= finished, "{command}: {}", answer.err);
+    }
+}
+
+/// The effects of a folder without claims are those of its scene. The scale of a change is stated, and effects for which the
+/// budget leaves no time are listed. A larger budget continues.
+#[test]
+fn effects_of_a_folder_continue_within_a_larger_budget() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::create_dir(folder.path().join("mine")).unwrap();
+    fs::copy(root("guide/scenes/heap.toml"), folder.path().join("mine/scene.toml")).unwrap();
+    let fine = ["--time-step-fraction", "0.005", "--budget", "1s", "--out", "e"];
+    let short = grainbench(folder.path(), &[&["effects", "mine"], &fine[..]].concat());
+    assert!(short.code == Some(1) && short.err.contains("expected a larger `--budget`"), "{}", short.err);
+    let whole = grainbench(folder.path(), &["effects", "mine", "--out", "e"]);
+    assert_eq!(whole.code, Some(0), "{}", whole.err);
+    assert!(whole.out.contains("gravity: needed") && whole.out.contains("needed: without the effect"), "{}", whole.out);
+    // All effects are stored, so that no time is needed.
+    let again = grainbench(folder.path(), &["effects", "mine", "--budget", "1s", "--out", "e"]);
+    assert_eq!((again.code, again.out), (Some(0), whole.out), "{}", again.err);
+}
+
+/// A rigid-body engine has no elastic energy: the row is unsupported, and is not compared.
+#[test]
+fn a_quantity_that_a_method_lacks_is_unsupported() {
+    let folder = tempfile::tempdir().unwrap();
+    let scene = fs::read_to_string(root("guide/scenes/slope.toml")).unwrap();
+    let scene = scene.replace("disc = { grain = \"disc\" }", "all = { system = true }");
+    fs::write(folder.path().join("s.toml"), scene).unwrap();
+    let quantity = ["--quantity", "all.elastic_energy"];
+    let words = ["cost", "s.toml", "--solver", "dem", "--solver", "rigid", "--budget", "6s"];
+    let answer = grainbench(folder.path(), &[&words[..], &quantity].concat());
+    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let note = "rigid: unsupported, because its contacts are rigid: all.elastic_energy.";
+    assert!(answer.out.contains(note) && !answer.out.contains("differ by"), "{}", answer.out);
 }
 
 /// One disc that oscillates on the spring of a floor: the exact limit is that of one mass on one spring.

@@ -30,7 +30,7 @@ impl EffectResult {
     pub const fn word(self) -> &'static str {
         match self {
             Self::Needed => "needed",
-            Self::NotWorthSimulating => "not worth simulating here",
+            Self::NotWorthSimulating => "does not matter",
             Self::Untold => "untold",
             Self::Inert => "inert",
             Self::NotInert => "not inert",

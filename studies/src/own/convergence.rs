@@ -85,17 +85,17 @@ pub fn reference(levels: &[LevelValue], formal: f64, rounding: f64) -> Option<Re
 }
 
 /// Returns the reference of a chaotic scene: the mean of the values at up to three of the finest levels. `deviation` is the
-/// standard deviation of five perturbed runs. The uncertainty is the larger one of the spread of the levels and of the
-/// 95 % interval of their mean.
+/// standard deviation of five perturbed runs. The uncertainty is the largest one of the spread of the levels, of the 95 %
+/// interval of their mean, and of the rounding error.
 #[must_use]
-pub fn ensemble(levels: &[LevelValue], deviation: f64) -> Option<Reference> {
+pub fn ensemble(levels: &[LevelValue], deviation: f64, rounding: f64) -> Option<Reference> {
     let last = &levels[levels.len().saturating_sub(3)..];
     if last.len() < 2 || last.iter().any(|level| !level.value.is_finite()) {
         return None;
     }
     let count = last.len() as f64;
     let value = last.iter().map(|level| level.value).sum::<f64>() / count;
-    let uncertainty = range(last).max(scatter(deviation) / count.sqrt());
+    let uncertainty = range(last).max(scatter(deviation) / count.sqrt()).max(rounding);
     Some(Reference { value, uncertainty, order: None, basis: Basis::Ensemble })
 }
 
@@ -229,7 +229,10 @@ mod tests {
     fn an_ensemble_scatters() {
         assert!((deviation(&[1.0, 2.0, 3.0, 4.0, 5.0]) - 2.5_f64.sqrt()).abs() < 1e-12);
         assert_eq!(deviation(&[1.0]), 0.0);
-        let found = ensemble(&levels(&[8.0, 4.0, 2.0, 1.0], |h| if h == 8.0 { 100.0 } else { 1.0 }), 0.3).unwrap();
+        let found =
+            ensemble(&levels(&[8.0, 4.0, 2.0, 1.0], |h| if h == 8.0 { 100.0 } else { 1.0 }), 0.3, 1e-12).unwrap();
         assert!(found.value == 1.0 && (found.uncertainty - 2.776 * 0.3 / 3.0_f64.sqrt()).abs() < 1e-12, "{found:?}");
+        // A mean that all runs share, such as the momentum, is known up to its rounding error.
+        assert!(ensemble(&levels(&[2.0, 1.0], |_| 1.0), 0.0, 1e-12).unwrap().uncertainty == 1e-12);
     }
 }

@@ -1,9 +1,9 @@
 //! Cost of accuracy of a scene: levels of each solver within a time budget, and their estimated errors.
 
 use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, scatter};
-use super::ladder::Ladder;
+use super::ladder::{Ladder, soften};
 use super::schedule::{self, Finished};
-use super::stored_run::{StoredColumn, StoredRun, columns, failure, wall_seconds};
+use super::stored_run::{StoredColumn, StoredRun, columns, failure, natural, wall_seconds};
 use super::within::Within;
 use crate::chaos::perturbed_runs;
 use crate::run_cache::key_of_run;
@@ -49,6 +49,9 @@ const SOFTER: [f64; 2] = [10.0, 100.0];
 const FAILURES: [usize; 2] = [12, 6];
 /// Columns that count something. They change in jumps, and are target quantities only if the user names them.
 const COUNTS: [&str; 6] = ["slipping", "contacts", "slipping_contacts", "present", "entered", "left"];
+
+/// Ends of the names of columns that contain the energy of springs.
+const ELASTIC: [&str; 3] = [".elastic_energy", ".elastic", ".springs"];
 
 /// Scene, solvers and extent of a study.
 pub struct SceneStudy<'a> {
@@ -513,6 +516,7 @@ impl<'a> Measurement<'a> {
         };
         let mut notes = self.notes.clone();
         notes.extend((0..self.study.names.len()).filter_map(|at| self.failures(at)));
+        notes.extend((0..self.study.names.len()).filter_map(|at| self.unsupported(at)));
         if self.is_chaotic() {
             notes.push(
                 "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes by more \
@@ -570,7 +574,7 @@ impl<'a> Measurement<'a> {
             let all = self.runs.iter().flat_map(|run| &run.stored.columns);
             let largest =
                 all.filter(|other| other.name == column.name).fold(0.0, |most: f64, other| most.max(other.largest));
-            if finest.scale <= self.negligible(&column.unit) || largest <= ZERO * finest.scale {
+            if finest.scale <= ZERO * natural(&self.scene, &column.unit) || largest <= ZERO * finest.scale {
                 continue;
             }
             let scale = if reduction == Reduction::End { finest.largest } else { finest.mean_absolute };
@@ -592,6 +596,9 @@ impl<'a> Measurement<'a> {
 
     /// Adds the reference value and the points of a solver to a quantity. Differences up to `rounding` are rounding errors.
     fn estimate(&self, at: usize, (reduction, rounding): (Reduction, f64), quantity: &mut Quantity) {
+        if self.is_unsupported(at, &quantity.name) {
+            return;
+        }
         let value = |run: &Run| {
             let column = run.stored.columns.iter().find(|column| column.name == quantity.name)?;
             Some(if reduction == Reduction::End { column.end } else { column.mean })
@@ -609,7 +616,7 @@ impl<'a> Measurement<'a> {
         let spread = perturbed.map_or(0.0, |(_, values)| deviation(values));
         let found = match reduction {
             Reduction::End => reference(&values, ladder.order(), rounding),
-            Reduction::Mean => ensemble(&values, spread),
+            Reduction::Mean => ensemble(&values, spread, rounding),
         };
         let Some(Reference { value: limit, mut uncertainty, order, basis }) = found else { return };
         if reduction == Reduction::End && quantity.estimates.is_empty() {
@@ -654,6 +661,22 @@ impl<'a> Measurement<'a> {
         });
     }
 
+    /// Returns true if the method of a solver has no such quantity: rigid contacts store no elastic energy.
+    fn is_unsupported(&self, at: usize, column: &str) -> bool {
+        let ladder = &self.ladders[at];
+        !ladder.has_cells() && !ladder.has_steps() && ELASTIC.iter().any(|end| column.ends_with(end))
+    }
+
+    /// Returns a note about the target quantities that the method of a solver does not have.
+    fn unsupported(&self, at: usize) -> Option<String> {
+        let columns = self.own(at).next()?.stored.columns.iter();
+        let names = columns.filter(|column| self.is_wanted(column) && self.is_unsupported(at, &column.name));
+        let names: Vec<&str> = names.map(|column| column.name.as_str()).collect();
+        (!names.is_empty()).then(|| {
+            format!("{}: unsupported, because its contacts are rigid: {}.", self.study.names[at], names.join(", "))
+        })
+    }
+
     /// Returns true if a column is a target quantity.
     fn is_wanted(&self, column: &StoredColumn) -> bool {
         let wanted = &self.study.quantities;
@@ -663,36 +686,6 @@ impl<'a> Measurement<'a> {
         }
         wanted.iter().any(|name| *name == column.name || column.name.starts_with(&format!("{name}.")))
     }
-
-    /// Returns the value of a unit below which a probe is zero apart from rounding.
-    fn negligible(&self, unit: &str) -> f64 {
-        let length = self.scene.reference_length;
-        let time = self.scene.duration.seconds().unwrap_or(1.0);
-        let mass = self.scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
-        let natural = match unit {
-            "m" => length,
-            "m/s" => length / time,
-            "rad" | "1" => 1.0,
-            "rad/s" => 1.0 / time,
-            "N" => mass * length / (time * time),
-            "N s" | "kg m/s" => mass * length / time,
-            "J" => mass * (length / time).powi(2),
-            "kg m²/s" => mass * length * length / time,
-            _ => 0.0,
-        };
-        ZERO * natural
-    }
-}
-
-/// Divides the stiffness of all contacts by a factor. Dashpots that are not relative to the stiffness change so that the
-/// coefficient of restitution stays.
-fn soften(scene: &mut Scene, factor: f64) {
-    scene.change_laws(|law| {
-        law.springs = law.springs.scaled([1.0 / factor; 2]);
-        law.normal_damping /= factor.sqrt();
-        law.tangential_damping /= factor.sqrt();
-        law.stiffness_damping *= factor.sqrt();
-    });
 }
 
 #[cfg(test)]

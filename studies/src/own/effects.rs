@@ -11,7 +11,6 @@ use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
 use grainbench_store::WriteError;
 use grainbench_store::artifact::Json;
-use std::time::Instant;
 
 /// Test of the effects that a scene uses.
 pub struct Importance<'a> {
@@ -75,7 +74,7 @@ impl Importance<'_> {
             if measured.is_stopped() {
                 return Ok((entries, None));
             }
-            if Instant::now() >= deadline {
+            if within.0.is_cut() {
                 return Ok((entries, Some(format!("Some effects were left out because of the time. {command}"))));
             }
             entries.extend(entry);

@@ -120,3 +120,14 @@ fn listed(refined: Refined, values: &[f64], are_steps: bool) -> (Refined, Vec<f6
         other => (other, finenesses),
     }
 }
+
+/// Divides the stiffness of all contacts by a factor. Dashpots that are not relative to the stiffness change so that the
+/// coefficient of restitution stays.
+pub(super) fn soften(scene: &mut Scene, factor: f64) {
+    scene.change_laws(|law| {
+        law.springs = law.springs.scaled([1.0 / factor; 2]);
+        law.normal_damping /= factor.sqrt();
+        law.tangential_damping /= factor.sqrt();
+        law.stiffness_damping *= factor.sqrt();
+    });
+}

@@ -8,7 +8,7 @@ use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_solver::failure::{RunError, StorageError};
 use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
 use grainbench_solver::record::{PartialOutput, Record, Snapshot};
-use std::sync::atomic::{AtomicU64, Ordering};
+use std::sync::atomic::{AtomicBool, AtomicU64, Ordering};
 use std::time::Instant;
 
 /// Fraction of the time limit after which the progress of a run is believed.
@@ -24,13 +24,22 @@ pub struct Within<'a> {
     stop: &'a (dyn Fn() -> bool + Sync),
     /// Numbers of completed steps and of all steps of the last run.
     progress: [AtomicU64; 2],
+    /// True if a run was interrupted.
+    is_cut: AtomicBool,
 }
 
 impl<'a> Within<'a> {
     /// Returns the solver with a deadline. `stop` returns true if the user stops the study.
     #[must_use]
     pub const fn new(solver: &'a dyn Solver, deadline: Instant, stop: &'a (dyn Fn() -> bool + Sync)) -> Wrapped<Self> {
-        Wrapped(Self { solver, deadline, stop, progress: [AtomicU64::new(0), AtomicU64::new(0)] })
+        let progress = [AtomicU64::new(0), AtomicU64::new(0)];
+        Wrapped(Self { solver, deadline, stop, progress, is_cut: AtomicBool::new(false) })
+    }
+
+    /// Returns true if a run was interrupted, so that a result of several runs is incomplete.
+    #[must_use]
+    pub fn is_cut(&self) -> bool {
+        self.is_cut.load(Ordering::Relaxed)
     }
 
     /// Returns the completed fraction of the last run; none if it has not begun.
@@ -48,7 +57,9 @@ impl Wrapper for Within<'_> {
 
     fn run(&self, start: Start<'_>, observer: &mut dyn Observer) -> Result<Record, RunError> {
         self.progress.iter().for_each(|count| count.store(0, Ordering::Relaxed));
-        start.run(self.solver, &mut Watch { solver: self, observer, begin: Instant::now() })
+        let found = start.run(self.solver, &mut Watch { solver: self, observer, begin: Instant::now() });
+        self.is_cut.fetch_or(matches!(found, Err(RunError::Interrupted { .. })), Ordering::Relaxed);
+        found
     }
 }
 

@@ -95,6 +95,7 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
         (low.z, high.z) = (-depth, depth);
     }
     let corners = if meshes.is_empty() { (low, high) } else { around((low, high), &meshes, reach, stepping) };
+    let corners = with_periods(scene, (low, high), corners, &meshes)?;
     let types = 2 * scene.materials.len();
     let data = data_file(scene, types, corners, if flat { of_disc } else { of_sphere });
     let force = |number: usize| forces_of_wall(number, &meshes);
@@ -142,6 +143,9 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
     (command, [1, 2, 3].map(|at| format!("c_wall{number}[{at}]")))
 }
 
+/// Rounding error of a bound, as a fraction of the period.
+const PRINTED: f64 = 1e-9;
+
 /// Returns an upper bound on the displacement of a grain without contacts during the run (m). The meshes of planes must
 /// extend at least so far.
 fn way(scene: &Scene, stepping: &Stepping) -> f64 {
@@ -173,6 +177,31 @@ fn around(
     }
     let margin = Vector3::repeat(0.1 * reach);
     (least - margin, most + margin)
+}
+
+/// Returns corners with the bounds of the scene along its periodic axes. Room for meshes there would change the period.
+fn with_periods(
+    scene: &Scene,
+    (low, high): (Vector3<f64>, Vector3<f64>),
+    (mut least, mut most): (Vector3<f64>, Vector3<f64>),
+    meshes: &[Mesh<'_>],
+) -> Result<(Vector3<f64>, Vector3<f64>), String> {
+    let periodic = scene.domain.map_or([false; 3], |domain| domain.periodic);
+    for axis in (0..3).filter(|&axis| periodic[axis]) {
+        (least[axis], most[axis]) = (low[axis], high[axis]);
+        let room = PRINTED * (high[axis] - low[axis]);
+        let is_beyond = |corner: &Vector3<f64>| corner[axis] < low[axis] - room || corner[axis] > high[axis] + room;
+        if let Some(mesh) = meshes.iter().find(|mesh| mesh.triangles.iter().flatten().any(is_beyond)) {
+            return Err(format!(
+                "wall `{}` extends beyond the periodic bounds along {}, {} m to {} m, where LIGGGHTS deletes its triangles",
+                mesh.wall.name,
+                ['x', 'y', 'z'][axis],
+                low[axis],
+                high[axis]
+            ));
+        }
+    }
+    Ok((least, most))
 }
 
 /// Returns true if the motion has a rotation in any phase.
