@@ -4,6 +4,7 @@ use super::exit::Fault;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
 use super::own;
 use super::subject::selected;
+use super::value::window;
 use grainbench::cases::registry;
 use grainbench::harness::case::Case;
 use grainbench::harness::subject::{TargetQuantity, of_each_variant};
@@ -47,6 +48,10 @@ pub(crate) struct Arguments {
     /// Repeatable. Default: all columns except counts.
     #[arg(long, value_name = "PROBE[.COLUMN]")]
     quantity: Vec<String>,
+    /// Compare means over a window of time in seconds, such as `.2..1`. Only for a scene of your own. Default: the value at the
+    /// end, or the mean over the whole run if the scene is chaotic.
+    #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
+    window: Option<(f64, f64)>,
     /// Print the results as JSON instead of text.
     #[arg(long)]
     json: bool,
@@ -79,16 +84,23 @@ impl Arguments {
         let path = own::scene(&self.cases)?;
         let has_claims = own::folder(&self.cases)?.is_some_and(|case| !registry::subjects(case).is_empty());
         let Some(path) = path.filter(|_| !has_claims) else {
-            self.own.refuse_for_cases(!self.quantity.is_empty())?;
+            self.own.refuse_for_cases(!self.quantity.is_empty() || self.window.is_some())?;
             return Ok(None);
         };
         if has_levels || is_planned {
             return Err(Fault::input(format!("{path}: expected `--budget`, found `--levels`, `--prices` or `--plan`")));
         }
         let words = [&self.cases[..], &self.solver].concat();
-        let (solvers, quantities) = (&self.solver, &self.quantity);
-        let input =
-            own::Input { path, words, solvers, quantities, no_cache: self.no_cache, out: &self.out, json: self.json };
+        let input = own::Input {
+            path,
+            words,
+            solvers: &self.solver,
+            quantities: &self.quantity,
+            window: self.window,
+            no_cache: self.no_cache,
+            out: &self.out,
+            json: self.json,
+        };
         own::cost(&input, &self.own).map(Some)
     }
 

@@ -52,7 +52,7 @@ impl Options {
             return Ok(());
         }
         Err(Fault::input(
-            "--budget, --quantity: expected a scene without exact claims, found cases or claims, which set their own levels",
+            "--budget, --quantity, --window: expected a scene without exact claims, found cases or claims, which set their own levels",
         ))
     }
 
@@ -71,17 +71,33 @@ pub(crate) struct Input<'a> {
     pub(crate) solvers: &'a [String],
     /// Target quantities; all if empty.
     pub(crate) quantities: &'a [String],
+    /// Window of time (s) whose means are compared.
+    pub(crate) window: Option<(f64, f64)>,
     pub(crate) no_cache: bool,
     pub(crate) out: &'a Path,
     pub(crate) json: bool,
 }
 
 impl Input<'_> {
+    /// Returns the input with a window of time within the duration of the scene.
+    fn within(&self, scene: &Scene) -> Result<Self, Fault> {
+        let duration = scene.duration.seconds().unwrap_or_default();
+        let window = self.window.map(|(from, to)| (from.max(0.0), to.min(duration)));
+        match window {
+            Some((from, to)) if from >= to => Err(Fault::input(format!(
+                "--window: expected a window within 0..{duration}, the duration of {}, found {from}..{to}",
+                self.path
+            ))),
+            window => Ok(Self { window, path: self.path.clone(), words: self.words.clone(), ..*self }),
+        }
+    }
+
     /// Returns the words of the command for the report.
     fn words(&self, command: &str, budget: Duration) -> Vec<String> {
         let mut words = vec![command.to_owned()];
         words.extend(self.words.iter().cloned());
         words.extend(self.quantities.iter().map(|quantity| format!("--quantity {quantity}")));
+        words.extend(self.window.map(|(from, to)| format!("--window {from}..{to}")));
         words.push(format!("--budget {}s", budget.as_secs_f64()));
         words
     }
@@ -151,6 +167,7 @@ fn solver_names(named: Vec<String>) -> Vec<String> {
 /// Measures cost, stability and effects of a scene within the budget, and writes one report.
 pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let scene = read(&input.path, input.quantities)?;
+    let input = &input.within(&scene)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
     let cache = Directory::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
@@ -196,6 +213,7 @@ fn scene_study<'a>(
         names: solver_names(named),
         solvers,
         quantities: input.quantities.to_vec(),
+        window: input.window,
         budget: options.budget(),
         cache,
         program: key::of_this_program(),

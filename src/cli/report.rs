@@ -5,7 +5,7 @@ use super::jobs::collect::{CollectOptions, collect};
 use super::jobs::status::status;
 use super::publish::{exit_code, study_code};
 use super::terminal::width;
-use super::value::{positive, whole};
+use super::value::{positive, whole, window};
 use grainbench::harness::figure::Figure;
 use grainbench::jobs::plan::Plan;
 use grainbench::reports::export::BROKEN_FILE;
@@ -67,22 +67,6 @@ impl Arguments {
     const fn is_of_pictures(&self) -> bool {
         !self.beside.is_empty() || self.fringe_stress.is_some() || self.window.is_some() || self.frames.is_some()
     }
-}
-
-/// Reads a time interval `FROM..TO` (s).
-fn window(text: &str) -> Result<(f64, f64), String> {
-    let expected = || format!("expected two times in seconds with `..` between them, such as `.2..1`, found `{text}`");
-    let (from, to) = text.split_once("..").ok_or_else(expected)?;
-    let read = |part: &str, open: f64| {
-        let part = part.trim();
-        if part.is_empty() {
-            Ok(open)
-        } else {
-            part.parse::<f64>().ok().filter(|time| time.is_finite()).ok_or_else(expected)
-        }
-    };
-    let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
-    if from <= to { Ok((from, to)) } else { Err(format!("expected a later time after `..`, found `{text}`")) }
 }
 
 /// Reads a directory and writes its page, figures and result files again. The exit code is that of the stored results.

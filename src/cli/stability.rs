@@ -78,6 +78,7 @@ impl Arguments {
             words,
             solvers,
             quantities: &[],
+            window: None,
             no_cache: self.no_cache,
             out: &self.out,
             json: self.json,

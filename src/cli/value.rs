@@ -44,6 +44,22 @@ where
     }
 }
 
+/// Reads a time interval `FROM..TO` (s).
+pub(crate) fn window(text: &str) -> Result<(f64, f64), String> {
+    let expected = || format!("expected two times in seconds with `..` between them, such as `.2..1`, found `{text}`");
+    let (from, to) = text.split_once("..").ok_or_else(expected)?;
+    let read = |part: &str, open: f64| {
+        let part = part.trim();
+        if part.is_empty() {
+            Ok(open)
+        } else {
+            part.parse::<f64>().ok().filter(|time| time.is_finite()).ok_or_else(expected)
+        }
+    };
+    let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
+    if from <= to { Ok((from, to)) } else { Err(format!("expected a later time after `..`, found `{text}`")) }
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -41,6 +41,33 @@ fn a_study_continues() {
     assert_eq!(first["verdicts"], Value::Array(Vec::new()));
 }
 
+/// A window compares means over this time: in free fall, the mean velocity from a to b is −g (a + b)/2. Negative controls: the
+/// value at the end differs, and a window outside the run is an error.
+#[test]
+fn a_window_of_time_is_compared() {
+    let folder = tempfile::tempdir().unwrap();
+    fs::copy(root("guide/scenes/drop.toml"), folder.path().join("drop.toml")).unwrap();
+    let cost = |window: &[&str]| {
+        let arguments = ["cost", "drop.toml", "--solver", "dem", "--budget", "3s", "--quantity", "ball.vz", "--json"];
+        grainbench(folder.path(), &[&arguments[..], &["--out", "out"], window].concat())
+    };
+    let estimate = |window: &[&str]| {
+        let answer = cost(window);
+        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let results: Value = serde_json::from_str(&answer.out).unwrap();
+        let estimate = &results["scenes"][0]["quantities"][0]["estimates"][0];
+        ["value", "uncertainty"].map(|key| estimate[key].as_f64().unwrap())
+    };
+    let mean = -9.81 * 0.06;
+    let [value, uncertainty] = estimate(&["--window", "0.02..0.1"]);
+    assert!((value - mean).abs() <= uncertainty.max(1e-9), "{value} ± {uncertainty}, {mean}");
+    let [end, _] = estimate(&[]);
+    assert!((end - mean).abs() > 0.1, "{end}");
+    let outside = cost(&["--window", "0.6..0.7"]);
+    let expected = "--window: expected a window within 0..0.5, the duration of drop.toml, found 0.6..0.5";
+    assert!(outside.code == Some(2) && outside.err.contains(expected), "{}", outside.err);
+}
+
 /// Ctrl-C ends a study with exit code 1. The same command continues it with the finished runs.
 #[test]
 #[cfg(target_os = "linux")]

@@ -27,22 +27,25 @@ const OPEN: usize = 3;
 const LEAST: f64 = 1e-12;
 
 /// Value of a time series that is compared between levels.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Reduction {
     /// Last sample.
     End,
     /// Mean over time, for chaotic scenes.
     Mean,
+    /// Mean over a time window, from its first to its last time (s).
+    Window(f64, f64),
 }
 
 impl Reduction {
     /// Returns the reduction in words.
     #[must_use]
-    pub const fn word(self) -> &'static str {
+    pub fn word(self) -> String {
         match self {
-            Self::End => "at the end",
-            Self::Mean => "mean over time",
+            Self::End => "at the end".to_owned(),
+            Self::Mean => "mean over time".to_owned(),
+            Self::Window(from, to) => format!("mean from {} to {}", number::seconds(from), number::seconds(to)),
         }
     }
 
@@ -51,7 +54,7 @@ impl Reduction {
     pub const fn scale(self) -> &'static str {
         match self {
             Self::End => "the larger of |reference value| and the largest |value| of this quantity over the run",
-            Self::Mean => "the mean over time of |value| of this quantity",
+            Self::Mean | Self::Window(..) => "the mean over this time of |value| of this quantity",
         }
     }
 }

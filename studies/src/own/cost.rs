@@ -65,6 +65,8 @@ pub struct SceneStudy<'a> {
     pub solvers: &'a dyn Solvers,
     /// Columns of probes that are target quantities; all if empty.
     pub quantities: Vec<String>,
+    /// Window of time (s) whose means are compared.
+    pub window: Option<(f64, f64)>,
     /// Time budget.
     pub budget: Duration,
     /// Storage of finished runs.
@@ -364,7 +366,8 @@ impl<'a> Measurement<'a> {
         let solver_name = &self.study.names[at];
         let setting = format!("{resolution}{words}");
         let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
-        let name = key_of_run(&program, solver_name, scene, &resolution, "scene without claims");
+        let what = self.study.window.map_or(String::new(), |(from, to)| format!(", {from:?}..{to:?}"));
+        let name = key_of_run(&program, solver_name, scene, &resolution, &format!("scene without claims{what}"));
         follower.now(&format!("{solver_name} {setting}"), self.spent());
         let stored = match self.study.cache.get::<Json<StoredRun>>(&name) {
             Ok(stored) => {
@@ -421,7 +424,7 @@ impl<'a> Measurement<'a> {
                 stored.walls = vec![wall_seconds(&record, stored.seconds)];
                 stored.steps = record.cost.steps;
                 stored.detail = None;
-                stored.columns = columns(&record);
+                stored.columns = columns(&record, self.study.window);
             }
             Err(error) => {
                 (stored.status, stored.detail) = failure(&error, within.0.completed(), stored.seconds, resolution);
@@ -462,7 +465,8 @@ impl<'a> Measurement<'a> {
         };
         let mut perturbed = Perturbed::new();
         if !others.is_empty() {
-            let all: Vec<Vec<StoredColumn>> = [&whole].into_iter().chain(&others).map(columns).collect();
+            let all: Vec<Vec<StoredColumn>> =
+                [&whole].into_iter().chain(&others).map(|run| columns(run, self.study.window)).collect();
             for column in &all[0] {
                 let named = all.iter().filter_map(|columns| columns.iter().find(|other| other.name == column.name));
                 perturbed.push((column.name.clone(), named.map(|column| column.mean).collect()));
@@ -504,7 +508,8 @@ impl<'a> Measurement<'a> {
     /// Returns the results so far.
     #[must_use]
     pub fn result(&self) -> SceneCost {
-        let reduction = if self.is_chaotic() { Reduction::Mean } else { Reduction::End };
+        let whole = if self.is_chaotic() { Reduction::Mean } else { Reduction::End };
+        let reduction = self.study.window.map_or(whole, |(from, to)| Reduction::Window(from, to));
         let level = |run: &Run| Level {
             solver: self.study.names[run.solver].clone(),
             setting: run.setting.clone(),
@@ -614,9 +619,9 @@ impl<'a> Measurement<'a> {
         values.sort_by(|a, b| b.size.total_cmp(&a.size));
         let perturbed = self.perturbed.iter().flatten().find(|(name, _)| *name == quantity.name);
         let spread = perturbed.map_or(0.0, |(_, values)| deviation(values));
-        let found = match reduction {
-            Reduction::End => reference(&values, ladder.order(), rounding),
-            Reduction::Mean => ensemble(&values, spread, rounding),
+        let found = match self.is_chaotic() || reduction == Reduction::Mean {
+            false => reference(&values, ladder.order(), rounding),
+            true => ensemble(&values, spread, rounding),
         };
         let Some(Reference { value: limit, mut uncertainty, order, basis }) = found else { return };
         if reduction == Reduction::End && quantity.estimates.is_empty() {
@@ -628,7 +633,7 @@ impl<'a> Measurement<'a> {
                 uncertainty += (half - whole).abs();
             }
         }
-        let scatter = if reduction == Reduction::Mean { scatter(spread) } else { 0.0 };
+        let scatter = if reduction == Reduction::End { 0.0 } else { scatter(spread) };
         let point = |run: &Run, softer: bool| {
             let value = value(run)?;
             Some(EstimatedPoint {

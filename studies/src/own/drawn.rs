@@ -175,6 +175,7 @@ fn with_study(
         names: vec!["dem".to_owned()],
         solvers,
         quantities: Vec::new(),
+        window: None,
         budget,
         cache: &cache,
         program: String::new(),

@@ -42,15 +42,21 @@ pub(super) fn wall_seconds(record: &Record, whole: f64) -> f64 {
     Some(record.cost.wall_seconds).filter(|wall| wall.is_finite() && *wall > 0.0).unwrap_or(whole)
 }
 
-/// Returns the finite columns of a record. The mean is weighted by the time between samples.
-pub(super) fn columns(record: &Record) -> Vec<StoredColumn> {
+/// Returns the finite columns of a record. Means over a window of time (s), or over the whole run, are weighted by the time
+/// between samples.
+pub(super) fn columns(record: &Record, window: Option<(f64, f64)>) -> Vec<StoredColumn> {
+    let (from, to) = window.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let series = &record.series;
     let column = |(at, column): (usize, &Column)| {
         let values = series.values.get(at)?;
-        let (first, last) = (series.time.first()?, series.time.last()?);
+        let (first, last) = (series.time.first()?.max(from), series.time.last()?.min(to));
         let mean = |part: fn(f64) -> f64| {
-            let areas = series.time.windows(2).zip(values.windows(2));
-            let areas = areas.map(|(t, v)| 0.5 * (t[1] - t[0]) * (part(v[0]) + part(v[1])));
+            let areas = series.time.windows(2).zip(values.windows(2)).map(|(t, v)| {
+                let [begin, end] = [t[0].max(first).min(t[1]), t[1].min(last).max(t[0])];
+                let value =
+                    |time: f64| v[0] + (v[1] - v[0]) * if t[1] > t[0] { (time - t[0]) / (t[1] - t[0]) } else { 0.0 };
+                0.5 * (end - begin).max(0.0) * (part(value(begin)) + part(value(end)))
+            });
             if last > first {
                 areas.sum::<f64>() / (last - first)
             } else {
