@@ -124,7 +124,9 @@ fn options(families: Option<&str>) -> Result<Options<'static>, SaveError> {
 
 /// Converts an SVG document.
 fn convert(svg: &str, format: FigureFormat, options: &Options<'_>) -> Result<Vec<u8>, String> {
-    let tree = Tree::from_str(svg, options).map_err(|error| error.to_string())?;
+    // A dot is a line of length zero with a round end, which the reader of SVG would leave out.
+    let dots = svg.replace("h0\"", "h.01\"").replace("h0M", "h.01M");
+    let tree = Tree::from_str(&dots, options).map_err(|error| error.to_string())?;
     match format {
         FigureFormat::Pdf => pdf(&tree),
         FigureFormat::Png => png(&tree),
@@ -155,9 +157,10 @@ fn png(tree: &Tree) -> Result<Vec<u8>, String> {
 mod tests {
     use super::*;
 
-    /// A red bar of 10 × 5 units, and a letter.
+    /// A red bar, a blue dot and a letter.
     const BAR: &str = r##"<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 96 48" width="100%">
         <rect width="96" height="48" fill="#fff"/><rect x="48" width="48" height="24" fill="#f00"/>
+        <path d="M72 36h0" stroke="#00f" stroke-width="6" stroke-linecap="round"/>
         <text x="4" y="40" font-size="20" font-family="Arial, sans-serif">Ω</text></svg>"##;
 
     #[test]
@@ -168,6 +171,7 @@ mod tests {
         let color = |x, y| picture.pixel(x, y).map(|pixel| (pixel.red(), pixel.green(), pixel.blue()));
         assert_eq!(color(225, 30), Some((255, 0, 0)));
         assert_eq!(color(75, 30), Some((255, 255, 255)));
+        assert_eq!(color(225, 112), Some((0, 0, 255)), "the dot");
         let is_dark = |x, y| picture.pixel(x, y).is_some_and(|pixel| pixel.red() < 64);
         let dark = (0..75).flat_map(|x| (75..150).map(move |y| (x, y))).filter(|(x, y)| is_dark(*x, *y)).count();
         assert!(dark > 100, "{dark} pixels of the letter");

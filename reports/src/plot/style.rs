@@ -87,7 +87,11 @@ impl FigureStyle {
             _ => draw(figure)?,
         };
         if let Some(width) = self.width {
-            svg = svg.replacen("width=\"100%\"", &format!("width=\"{width}mm\""), 1);
+            // Some readers do not derive the height from the width and the view box.
+            let sizes = svg.split("viewBox=\"0 0 ").nth(1).and_then(|rest| rest.split('"').next()?.split_once(' '));
+            let ratio = sizes.and_then(|(wide, high)| Some(high.parse::<f64>().ok()? / wide.parse::<f64>().ok()?));
+            let height = ratio.map_or(String::new(), |ratio| format!(" height=\"{:.2}mm\"", width * ratio));
+            svg = svg.replacen("width=\"100%\"", &format!("width=\"{width}mm\"{height}"), 1);
         }
         if let Some(font) = &self.font {
             svg = svg.replace(FONTS, font);
@@ -121,6 +125,10 @@ mod tests {
             FigureStyle { width: Some(86.0), font_size: Some(8.0), font: Some("Times, serif".to_owned()), colors };
         assert_eq!(style.wrong(), None);
         let svg = style.draw(&figure).unwrap();
+        let shape = svg.split("viewBox=\"0 0 ").nth(1).unwrap().split('"').next().unwrap();
+        let (wide, high) = shape.split_once(' ').unwrap();
+        let height = 86.0 * high.parse::<f64>().unwrap() / wide.parse::<f64>().unwrap();
+        assert!(svg.contains(&format!("width=\"86mm\" height=\"{height:.2}mm\"")), "{svg}");
         assert!(svg.contains("width=\"86mm\"") && svg.contains("font-family=\"Times, serif\""), "{svg}");
         // 86 mm are 243.8 pt, so letters of 14 units have 8 pt if the drawing is 14 · 243.8 / 8 = 426.6 units wide.
         assert!(svg.contains("viewBox=\"0 0 426.6"), "{svg}");
