@@ -1,12 +1,10 @@
 //! Stored results of the external solvers in `peers/`.
 
+use grainbench_reference::outside::STORED;
 use grainbench_reports::judged::ExternalResults;
 use grainbench_store::ReadError;
 use grainbench_store::artifact::parse_json;
 use std::path::Path;
-
-/// Name of the file with stored results, in the directory of a manifest.
-pub const STORED: &str = "judged.json";
 
 /// Stored results, by the name of the solver's directory in `peers/`.
 pub const KEPT: [(&str, &str); 5] = [

@@ -63,8 +63,8 @@ impl Outcome {
         matches!(self.severity(), Severity::Red)
     }
 
-    /// Returns true if a value was compared with its expected value, or could not be because the run broke. A report without
-    /// a judged result does not pass.
+    /// Returns true for all outcomes except those without a reference, an available program or a supported scene. A report
+    /// without a judged result does not pass.
     #[must_use]
     pub const fn is_judged(self) -> bool {
         !matches!(self, Self::NoReference | Self::Unsupported | Self::NotAvailable)

@@ -87,11 +87,14 @@ impl Headline {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }
 
-    /// Returns the passed results out of the conclusive ones, such as `3/5`; `not judged` if there are none, because `0/2`
-    /// would read as a failure. Amber results have a count of their own.
+    /// Returns the passed results out of the conclusive ones, such as `3/5`. If there are none, returns words, because
+    /// `0/2` would read as a failure. Amber results have a count of their own.
     #[must_use]
     pub fn passed(self) -> String {
         match self.conclusive() {
+            0 if OUTCOMES.into_iter().any(|outcome| outcome.is_judged() && self.count(outcome) > 0) => {
+                "not conclusive".to_owned()
+            }
             0 => "not judged".to_owned(),
             conclusive => format!("{}/{conclusive}", self.pass()),
         }

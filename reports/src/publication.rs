@@ -10,9 +10,10 @@ use krilla_svg::{SurfaceExt, SvgSettings};
 use rayon::prelude::*;
 use resvg::tiny_skia::{Pixmap, Transform};
 use resvg::usvg::fontdb::{Database, Family, Query};
-use resvg::usvg::{Options, Tree};
+use resvg::usvg::{ImageHrefResolver, Options, Tree};
 use std::borrow::Borrow;
 use std::fs;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
 
@@ -21,6 +22,9 @@ const POINTS: f32 = 72.0 / 96.0;
 
 /// Size of a drawing unit in a PNG picture (pixels), for 300 pixels in an inch.
 const PIXELS: f32 = 300.0 / 96.0;
+
+/// Largest number of pixels of a PNG picture. A figure of the page has about 4 million.
+const MOST_PIXELS: u64 = 100_000_000;
 
 /// File format of a figure.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -57,21 +61,19 @@ pub fn write_figures<F: Borrow<Figure>>(
     Ok(())
 }
 
-/// Converts each `dir/figures/NAME.svg` to `NAME.pdf` or `NAME.png`, and returns the number of files written. A film is
-/// already a PNG picture, so its file stays. `families` are the font families of a style, which must be installed;
+/// Converts each `dir/figures/NAME.svg` to `NAME.pdf` or `NAME.png`. A film is already a PNG picture, so its file stays. `families` are the font families of a style, which must be installed;
 /// without them, the letters are those of DejaVu Sans on every machine.
 ///
 /// # Errors
-/// When there is no figure, when no font family is installed, or when a file cannot be read, converted or written.
-pub fn convert_figures(dir: &Path, format: FigureFormat, families: Option<&str>) -> Result<usize, SaveError> {
-    let folder = dir.join("figures");
-    let mut paths: Vec<PathBuf> = fs::read_dir(&folder)
-        .map_err(|error| wrong(&folder, &error.to_string()))?
-        .filter_map(|entry| Some(entry.ok()?.path()))
-        .filter(|path| path.extension().is_some_and(|ending| ending == "svg"))
-        .filter(|path| format != FigureFormat::Png || !path.with_extension("png").is_file() || !is_film(path))
-        .collect();
-    paths.sort();
+/// When no font family is installed, or when a file cannot be read, converted or written.
+pub fn convert_figures<'a>(
+    dir: &Path,
+    names: impl Iterator<Item = &'a str>,
+    format: FigureFormat,
+    families: Option<&str>,
+) -> Result<(), SaveError> {
+    let paths = names.map(|name| dir.join("figures").join(format!("{name}.svg")));
+    let paths: Vec<PathBuf> = paths.filter(|path| format != FigureFormat::Png || !is_film(path)).collect();
     let options = options(families)?;
     let converted: Vec<(PathBuf, Vec<u8>)> = paths
         .par_iter()
@@ -87,13 +89,15 @@ pub fn convert_figures(dir: &Path, format: FigureFormat, families: Option<&str>)
         out.write(name, bytes)?;
     }
     out.commit_beside()?;
-    Ok(converted.len())
+    Ok(())
 }
 
 /// Returns true if the PNG picture beside an SVG file is animated: the chunk `acTL` precedes the image data.
 fn is_film(svg: &Path) -> bool {
-    let bytes = fs::read(svg.with_extension("png")).unwrap_or_default();
-    bytes[..bytes.len().min(1000)].windows(4).any(|name| name == b"acTL")
+    let mut start = Vec::new();
+    let file = fs::File::open(svg.with_extension("png"));
+    file.is_ok_and(|file| file.take(1000).read_to_end(&mut start).is_ok())
+        && start.windows(4).any(|name| name == b"acTL")
 }
 
 fn wrong(path: &Path, reason: &str) -> SaveError {
@@ -119,7 +123,10 @@ fn options(families: Option<&str>) -> Result<Options<'static>, SaveError> {
         set(&mut fonts, "DejaVu Sans");
     }
     fonts.set_monospace_family("DejaVu Sans Mono");
-    Ok(Options { fontdb: Arc::new(fonts), font_family: "DejaVu Sans".to_owned(), ..Options::default() })
+    // A figure contains its pictures, and reads no other file.
+    let resolver = ImageHrefResolver { resolve_string: Box::new(|_, _| None), ..ImageHrefResolver::default() };
+    let font_family = "DejaVu Sans".to_owned();
+    Ok(Options { fontdb: Arc::new(fonts), font_family, image_href_resolver: resolver, ..Options::default() })
 }
 
 /// Converts an SVG document.
@@ -148,6 +155,9 @@ fn pdf(tree: &Tree) -> Result<Vec<u8>, String> {
 
 fn png(tree: &Tree) -> Result<Vec<u8>, String> {
     let [width, height] = [tree.size().width(), tree.size().height()].map(|length| (length * PIXELS).ceil() as u32);
+    if u64::from(width) * u64::from(height) > MOST_PIXELS {
+        return Err(format!("expected at most {MOST_PIXELS} pixels, found {width} × {height}"));
+    }
     let mut picture = Pixmap::new(width, height).ok_or_else(|| format!("{width} × {height} pixels are too many"))?;
     resvg::render(tree, Transform::from_scale(PIXELS, PIXELS), &mut picture.as_mut());
     picture.encode_png().map_err(|error| error.to_string())
@@ -192,13 +202,17 @@ mod tests {
         for svg in ["", "<svg", "{}", r#"<svg xmlns="http://www.w3.org/2000/svg" width="0" height="1"/>"#] {
             assert!(convert(svg, FigureFormat::Pdf, &options).is_err(), "{svg}");
         }
+        let large = r#"<svg xmlns="http://www.w3.org/2000/svg" width="1e5" height="1e5"/>"#;
+        assert!(convert(large, FigureFormat::Png, &options).is_err_and(|reason| reason.contains("pixels")));
         let missing = super::options(Some("'No Such Family', serif")).err().map(|error| error.to_string());
         assert_eq!(
             missing.as_deref(),
-            Some("font: expected an installed family for PDF and PNG, found none of `'No Such Family', serif`")
+            Some(
+                "font: expected the name of an installed family for PDF and PNG, found none of `'No Such Family', serif`"
+            )
         );
         let dir = tempfile::tempdir().unwrap();
-        let error = convert_figures(dir.path(), FigureFormat::Pdf, None).unwrap_err().to_string();
-        assert!(error.contains("figures"), "{error}");
+        let missing = convert_figures(dir.path(), ["a"].into_iter(), FigureFormat::Pdf, None).unwrap_err().to_string();
+        assert!(missing.contains("a.svg"), "{missing}");
     }
 }

@@ -48,7 +48,7 @@ pub enum SaveError {
         reason: String,
     },
     /// No font family of a style is installed.
-    #[error("font: expected an installed family for PDF and PNG, found none of `{families}`")]
+    #[error("font: expected the name of an installed family for PDF and PNG, found none of `{families}`")]
     NoFont {
         /// Font families of the style.
         families: String,

@@ -1,10 +1,10 @@
-//! Predictability horizon of a run. After it, means over time are compared, for quantities of the whole system, of walls and for
-//! numbers of grains.
+//! Predictability horizon of a run. After it, means over time are compared: of quantities of the whole system, of forces on
+//! walls, and of numbers of grains.
 
 use super::ours::{ConventionChoice, FLOOR, Plan, convention, is_compared};
 use grainbench_harness::compare::peers::{Peer, WIDE, together};
 use grainbench_harness::expect::Measurement;
-use grainbench_harness::statistics::{BLOCKS, CONFIDENCE, next_mean};
+use grainbench_harness::statistics::{BLOCKS, CONFIDENCE, next_mean, next_value};
 use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
@@ -77,17 +77,22 @@ pub(super) struct Ensemble {
     perturbed: Vec<Series>,
 }
 
-/// Completes the perturbed runs, in the convention of the first run, and shortens the horizon.
+/// Completes the perturbed runs, and shortens the horizon. With a chosen convention, all perturbed runs have it. Otherwise each
+/// has another convention.
 pub(super) fn ensemble(
     scene: &Scene,
     plan: &Plan,
-    ours: &[Peer],
+    (ours, choice): (&[Peer], ConventionChoice),
     parting: Parting,
 ) -> Result<Option<Ensemble>, String> {
     let (Some(first), Some(horizon)) = (ours.first(), parting.time) else { return Ok(None) };
     let mut perturbed = vec![parting.perturbed];
     for times in 2..=PERTURBED {
-        perturbed.push(plan.run(&moved(scene, times), convention(first), 1)?.series);
+        let peer = match choice {
+            ConventionChoice::Nearest => &ours[times as usize % ours.len()],
+            _ => first,
+        };
+        perturbed.push(plan.run(&moved(scene, times), convention(peer), 1)?.series);
     }
     Ok(Some(Ensemble { from: shortened(horizon, first), perturbed }))
 }
@@ -123,9 +128,19 @@ impl Tail {
         };
         let begin = self.ours.iter().map(|run| reach(run, 0.0)).min().unwrap_or_default().saturating_sub(1);
         let all = self.ours.iter().chain([&self.found]).map(|run| reach(run, DISCHARGED * least));
-        self.cut(begin, all.min().unwrap_or_default() + 1);
+        // A discharge that is much faster still has the intervals that its rate needs.
+        let end = all.min().unwrap_or_default().max(begin + BLOCKS);
+        self.cut(begin, end + 1);
         self.found = rates(&self.times, &self.found);
         self.ours = self.ours.iter().map(|run| rates(&self.times, run)).collect();
+    }
+
+    /// Returns true if a mean lies in the prediction interval of one more convention, from the means of the first runs, which
+    /// have different conventions.
+    fn is_between(&self, conventions: usize, found: f64) -> bool {
+        let mean = |run: &Vec<f64>| run.iter().sum::<f64>() / run.len() as f64;
+        let means: Vec<f64> = self.ours.iter().take(conventions).map(mean).collect();
+        next_value(&means).is_some_and(|(mean, half_width)| (found - mean).abs() <= half_width)
     }
 
     /// Returns the mean of the output, the mean of our runs with their smallest and largest mean, and the mean magnitude of
@@ -185,7 +200,7 @@ pub(super) fn beyond(
             tolerance: ToleranceOrigin::Interval,
             because: format!(
                 "{} % prediction interval for one more run, from the scatter of our runs in {BLOCKS} blocks of time \
-                 ({}half the time step, {} perturbed); {count} judged together",
+                 ({}half the time step, {} perturbed); {count} means are judged together",
                 100.0 * CONFIDENCE,
                 if conventions.len() > 1 { format!("{} conventions, ", conventions.len()) } else { String::new() },
                 ensemble.perturbed.len(),
@@ -194,8 +209,8 @@ pub(super) fn beyond(
         };
         // A grain may cross the edge of a box shortly before the last sample in one run and after it in another.
         let span = tail.times.last().zip(tail.times.first()).map_or(0.0, |(last, first)| last - first);
-        let grain = if is_rate(&column.name) { 1.0 / span } else { 0.0 };
-        judged(row, tail, (count, grain + open), ensemble.from)
+        let floor = if is_rate(&column.name) { (1.0 + 2.0 * open) / span } else { *open };
+        judge_mean(row, tail, (count, floor), conventions.len())
     };
     compared.iter().map(judge).collect()
 }
@@ -208,11 +223,12 @@ fn rates(times: &[f64], values: &[f64]) -> Vec<f64> {
     values.windows(2).map(|value| (value[1] - value[0]) / step).collect()
 }
 
-/// Judges a mean. `judged` is the number of means that are judged together, and `floor` a difference of the means that is
-/// allowed in addition. The result is amber if the interval is too wide or there are too few samples.
-fn judged(row: Verdict, tail: &Tail, (judged, floor): (usize, f64), horizon: f64) -> Verdict {
+/// Judges a mean. `count` is the number of means that are judged together, and `floor` a difference of the means that is
+/// allowed in addition. The first `conventions` of our runs have different contact conventions. The result is amber if the
+/// interval is too wide, if there are too few samples, or if our conventions differ by as much as the output.
+fn judge_mean(row: Verdict, tail: &Tail, (count, floor): (usize, f64), conventions: usize) -> Verdict {
     let ours: Vec<&[f64]> = tail.ours.iter().map(Vec::as_slice).collect();
-    let Some((_, half_width)) = next_mean(&ours, BLOCKS, judged) else {
+    let Some((_, half_width)) = next_mean(&ours, BLOCKS, count) else {
         return row.left(Outcome::NoReference, format!("fewer than {BLOCKS} samples lie in this time"));
     };
     let (found, [expected, low, high], magnitude) = tail.means();
@@ -222,24 +238,31 @@ fn judged(row: Verdict, tail: &Tail, (judged, floor): (usize, f64), horizon: f64
     let row = Verdict { allowed: (half_width + floor) / scale + FLOOR, ..row };
     let row = row.judged(&Measurement::new(found, expected, scale));
     match row.outcome {
+        Outcome::Fail if tail.is_between(conventions, found) => {
+            let reason = "inconclusive: the output lies in the 99 % interval of the means of our conventions (--convention \
+                          selects one)";
+            row.left(Outcome::NoReference, reason.to_owned())
+        }
         Outcome::Fail if row.error.is_some() => {
             let [low, high] = [low, high].map(|value| number::significant(value, 4));
             let side = if found.abs() > expected.abs() { "larger" } else { "smaller" };
             let off = number::fraction((found - expected).abs() / scale);
-            let detail = format!("{off} {side} than the mean of our runs, which lie between {low} and {high}");
+            let detail = format!("{off} {side} than the mean of our runs, whose means lie between {low} and {high}");
             Verdict { detail: Some(detail), ..row }
         }
         Outcome::Pass if row.allowed > WIDE => {
             let span = tail.times.last().zip(tail.times.first()).map_or(0.0, |(last, first)| last - first);
             let times = (row.allowed / WIDE).powi(2);
-            let [most, times, end] = [
+            let begin = tail.times.first().copied().unwrap_or_default();
+            let [most, times, begin, end] = [
                 number::fraction(row.allowed),
                 number::significant(times, 2),
-                number::significant(horizon + times * span, 2),
+                number::significant(begin, 2),
+                number::significant(begin + times * span, 2),
             ];
             let reason = format!(
-                "inconclusive: the interval is {most} of the mean magnitude; a run {times} times as long, to t = {end} s, \
-                 would narrow it to {} %",
+                "inconclusive: the interval is {most} of the mean magnitude; it narrows to {} % if the time after t = {begin} \
+                 s is {times} times as long, to t = {end} s",
                 100.0 * WIDE
             );
             row.left(Outcome::NoReference, reason)
@@ -283,7 +306,7 @@ mod tests {
     }
 
     fn verdict(tail: &Tail) -> Verdict {
-        judged(Verdict::open("heap", "wall.force_y", "N"), tail, (1, 0.0), 0.0)
+        judge_mean(Verdict::open("heap", "wall.force_y", "N"), tail, (1, 0.0), 1)
     }
 
     /// Ten grains leave in two seconds, most of them between two close samples.
@@ -310,6 +333,24 @@ mod tests {
         tail.become_rates();
         let (found, [expected, ..], _) = tail.means();
         assert!(found < 0.1 * expected, "{found} {expected}");
+        // A discharge that ends after a few samples has a larger rate, and fails.
+        let mut tail = super::tests::tail(discharge(60), vec![discharge(5), discharge(5), discharge(6)]);
+        tail.become_rates();
+        assert_eq!(verdict(&tail).outcome, Outcome::Fail);
+    }
+
+    /// A mean that differs from all our runs fails if our conventions agree, and is inconclusive if they differ by as much.
+    #[test]
+    fn conventions_that_differ_leave_a_mean_open() {
+        let run = |mean: f64, seed: u64| -> Vec<f64> {
+            (0..400_u64).map(|at| mean + 1e-2 * ((at * at * 31 + 7 * at * seed) % 97) as f64 / 97.0).collect()
+        };
+        let outcome = |scatter: f64| {
+            let ours =
+                (0..8_u64).map(|at| run(1.0 + if at < 4 { scatter * at as f64 } else { 0.0 }, 11 + at)).collect();
+            judge_mean(Verdict::open("heap", "wall.force_y", "N"), &tail(run(1.1, 5), ours), (1, 0.0), 4).outcome
+        };
+        assert_eq!([outcome(1e-4), outcome(1.3e-2)], [Outcome::Fail, Outcome::NoReference]);
     }
 
     /// Equal means pass if their interval is narrow. A single peak widens the interval, but the mean is not known better
@@ -326,7 +367,7 @@ mod tests {
         };
         assert_eq!([verdict(1.0).outcome, verdict(1e4).outcome], [Outcome::Pass, Outcome::NoReference]);
         let detail = verdict(1e4).detail.unwrap_or_default();
-        assert!(detail.contains("times as long, to t = "), "{detail}");
+        assert!(detail.contains(" times as long, to t = "), "{detail}");
         let wrong = values(150, 1.0).iter().map(|value| 1.1 * value).collect();
         let wrong = super::tests::verdict(&tail(wrong, (1..8).map(|run| values(47 * run, 1.0)).collect()));
         let detail = wrong.detail.unwrap_or_default();

@@ -184,7 +184,7 @@ fn section(
         }
         Err((Outcome::Fail, reason)) if options.partial => {
             let reason = format!("{reason}; accepted because of --partial");
-            (vec![no_comparison(&row, Outcome::Known, reason)], Vec::new())
+            (vec![no_comparison(&row, Outcome::NoReference, reason)], Vec::new())
         }
         Err((Outcome::Fail, reason)) => {
             let reason = format!("{reason}; --partial judges the existing samples");
@@ -249,7 +249,7 @@ fn against_ours(scene: &Scene, plan: Plan, observed: &DumpRecord, choice: Conven
     let parting = horizon::find(scene, &plan, &peers, choice)?;
     let horizon = parting.as_ref().and_then(|parting| parting.time);
     let nearest = nearest_first(scene, &plan, &mut peers, observed, horizon, choice)?;
-    let ensemble = parting.map_or(Ok(None), |parting| horizon::ensemble(scene, &plan, &peers, parting))?;
+    let ensemble = parting.map_or(Ok(None), |parting| horizon::ensemble(scene, &plan, (&peers, choice), parting))?;
     Ok(OwnRuns { plan, choice, peers, end: ends.swap_remove(nearest), ensemble })
 }
 

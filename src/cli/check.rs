@@ -114,7 +114,7 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
     // content is right.
     let is_told = report.sections.iter().all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
-        rows.any(|row| row.outcome.is_judged() && !is_of_power(row))
+        rows.any(|row| row.outcome.is_judged() && (row.value.is_some() || row.outcome.is_red()) && !is_of_power(row))
     });
     add_reasons(&mut report, !is_told, arguments.strict);
     let Arguments { out, json, strict, .. } = arguments;

@@ -13,6 +13,7 @@ use super::subject::{self, SelectedVariants, selected};
 use super::value::{duration, positive};
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
+use grainbench::harness::solvers::Solvers as _;
 use grainbench::reports::number;
 use grainbench::reports::study::Study;
 use grainbench::reports::study::effects::Entry;
@@ -25,7 +26,7 @@ use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use grainbench::studies::effects::scene::StudyInput;
 use grainbench::studies::own::within::Within;
 use grainbench::studies::run_cache::key_of_run;
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::process::ExitCode;
 use std::sync::Arc;
 use std::time::{Duration, Instant};
@@ -143,17 +144,16 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     }
     check_writable(&arguments.out)?;
     // The files of an external program may change between two runs.
-    let is_program = Path::new(&yours.solver).is_file();
-    let cache =
-        Directory::open(&arguments.out.join(own::RUNS), arguments.no_cache || is_program).map_err(Fault::writing)?;
+    let cache = match solver::is_manifest(&yours.solver) {
+        true => Directory::none(),
+        false => Directory::open(&arguments.out.join(own::RUNS), arguments.no_cache).map_err(Fault::writing)?,
+    };
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let start = Instant::now();
     let deadline = start + yours.budget.unwrap_or(UNLIMITED);
-    let within = Within::new(&*solver, deadline, &stop);
     let (resolution, matters) = (yours.resolution(), yours.matters);
-    let asked = StudyInput { name: name.to_owned(), scene: &scene, solver: &within, resolution, matters };
-    let program = key::of_this_program();
+    let program = key::of_this_program() + &Registry.edition(&yours.solver);
     let id = |what: &str| {
         key_of_run(&program, &yours.solver, &scene, &resolution, &format!("{what} of {name}, {matters:?}"))
     };
@@ -168,10 +168,13 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
             study.ledger.extend(entry);
             continue;
         }
-        if within.0.is_cut() || Instant::now() >= deadline {
+        if Instant::now() >= deadline {
             left_out.push(effect.word());
             continue;
         }
+        // A run that is too long for the remaining time ends one effect, not all.
+        let within = Within::new(&*solver, deadline, &stop);
+        let asked = StudyInput { name: name.to_owned(), scene: &scene, solver: &within, resolution, matters };
         if whole.is_none() {
             progress.now("the unchanged scene");
             let found = asked.whole();
@@ -201,6 +204,9 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     }
     drop(progress);
     study.provenance.wall_seconds = start.elapsed().as_secs_f64();
+    if !left_out.is_empty() {
+        study.provenance.options.push(format!("no time was left for: {}", left_out.join(", ")));
+    }
     let stored_chaos = cache.get::<Json<bool>>(&id(CHAOS)).ok();
     let is_chaotic = stored_chaos.unwrap_or_else(|| whole.is_some_and(|whole| !whole.perturbed.is_empty()));
     let text = study.text() + &scale_words(matters, is_chaotic, &left_out);
@@ -211,17 +217,18 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
 /// Returns the scale by which changes are judged, and the effects for which no time was left.
 fn scale_words(matters: f64, is_chaotic: bool, left_out: &[&str]) -> String {
     let most = number::fraction(matters);
-    let change = if is_chaotic { "the mean over time of a column changes" } else { "a column changes at any sample" };
+    let change =
+        if is_chaotic { "the mean over time of a column changes" } else { "a column changes in at least one sample" };
     let mut text = format!(
         "needed: without the effect, {change} by more than {most} of the largest |value| that the columns of the same probe \
          and unit have (--matters)\n"
     );
     if is_chaotic {
-        text += "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. Means over \
-                 time are compared, with the scatter of perturbed runs.\n";
+        text += "The scene is chaotic: a displacement of one grain by a millionth of its radius changes its probes. A mean over \
+                 time must also change by more than five times its largest change in perturbed runs.\n";
     }
     if !left_out.is_empty() {
-        text += &format!("no time was left for: {}; a larger --budget continues\n", left_out.join(", "));
+        text += &format!("no time was left for: {}; a larger --budget tests them\n", left_out.join(", "));
     }
     text
 }

@@ -3,8 +3,8 @@
 
 use super::exit::Fault;
 use super::select::CaseSelection;
-use grainbench::peers::STORED;
 use grainbench::reference::outside::ExternalProgram;
+use grainbench::reference::outside::STORED;
 use grainbench::reports::Report;
 use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::study::{Study, kept_text};
@@ -31,7 +31,7 @@ pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fa
 
 /// Reads the stored results of an external solver from the directory of its manifest.
 pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
-    let wrong = |found: ReadError| format!("--expect-stored: expected the output of `--update-stored`, found {found}");
+    let wrong = |found: ReadError| format!("--expect-stored: {found} (`--update-stored` writes the file)");
     read_json(&program.folder().join(STORED)).map_err(|found| Fault::input(wrong(found)))
 }
 

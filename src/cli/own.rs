@@ -85,7 +85,7 @@ impl Input<'_> {
         let window = self.window.map(|(from, to)| (from.max(0.0), to.min(duration)));
         match window {
             Some((from, to)) if from >= to => Err(Fault::input(format!(
-                "--window: expected a window within 0..{duration}, the duration of {}, found {from}..{to}",
+                "--window: expected a window within 0..{duration}, the duration of {}, found {from}..",
                 self.path
             ))),
             window => Ok(Self { window, path: self.path.clone(), words: self.words.clone(), ..*self }),

@@ -49,7 +49,7 @@ pub(crate) struct Arguments {
     /// list of `#rrggbb`.
     #[arg(long, value_name = "FILE.toml")]
     style: Option<PathBuf>,
-    /// Write each figure also as PDF, or as PNG with 300 pixels in an inch. Repeatable.
+    /// Write each figure also as PDF, or as PNG with 300 pixels in an inch; SVG is always written. Repeatable.
     #[arg(long, value_name = "FORMAT", value_enum)]
     figures: Vec<Format>,
 }
@@ -73,6 +73,10 @@ impl Arguments {
 /// For a plan, makes the report of the finished tasks.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if Plan::is_in(&arguments.dir) {
+        if arguments.style.is_some() || !arguments.figures.is_empty() {
+            let found = "found a plan, whose report is in its own directory";
+            return Err(Fault::input(format!("--style, --figures: expected the directory of a report, {found}")));
+        }
         return if arguments.progress {
             status(&arguments.dir, arguments.collect.json)
         } else {
@@ -131,7 +135,8 @@ fn publish<F: Borrow<Figure>>(
     }
     for (format, asked) in [(FigureFormat::Pdf, Format::Pdf), (FigureFormat::Png, Format::Png)] {
         if arguments.figures.contains(&asked) {
-            convert_figures(dir, format, style.font.as_deref()).map_err(|error| match error {
+            let names = figures.iter().map(|(name, _)| name.as_str());
+            convert_figures(dir, names, format, style.font.as_deref()).map_err(|error| match error {
                 SaveError::NoFont { .. } => Fault::input(error),
                 error => Fault::writing(error),
             })?;

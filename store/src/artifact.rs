@@ -7,6 +7,7 @@ use std::io;
 use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
+use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::SystemTime;
 
 use grainbench_scene::text::tamed;
@@ -93,7 +94,7 @@ pub fn parse_json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, R
     value.map_err(|(place, error)| {
         // The message of the parser ends with line and column, which the error states separately.
         let words = error.to_string();
-        let words = words.split(" at line ").next().unwrap_or_default();
+        let words = words.rsplit_once(" at line ").map_or(&*words, |(words, _)| words);
         let reason = match words.strip_prefix("EOF while parsing ") {
             Some(_) if bytes.trim_ascii().is_empty() => "expected JSON, found an empty file".to_owned(),
             Some(what) => format!("expected the rest of {what}, found the end of the file"),
@@ -148,8 +149,8 @@ pub fn read_listed(list: &Path, name: &str, hash: &str) -> Result<Vec<u8>, ReadE
     if found == hash { Ok(bytes) } else { Err(ReadError::other(&path, format!("the file with BLAKE3 {hash}"), found)) }
 }
 
-/// Kind of stored file.
-pub trait Kind {
+/// Stored file of one kind.
+pub trait Artifact {
     /// Stored value.
     type Value;
     /// File extension.
@@ -172,7 +173,7 @@ pub trait Kind {
 #[derive(Debug)]
 pub struct Json<T>(PhantomData<T>);
 
-impl<T: Serialize + DeserializeOwned> Kind for Json<T> {
+impl<T: Serialize + DeserializeOwned> Artifact for Json<T> {
     type Value = T;
     const ENDING: &'static str = "json";
 
@@ -190,10 +191,12 @@ impl<T: Serialize + DeserializeOwned> Kind for Json<T> {
 pub struct Directory {
     /// Path; `None` if nothing is stored.
     folder: Option<PathBuf>,
-    /// True to read no files of earlier processes.
+    /// True to ignore all stored files.
     is_fresh: bool,
     /// Directory for temporary files, created with the first written file.
     temporary: OnceLock<TempDir>,
+    /// Number of files written.
+    written: AtomicU64,
 }
 
 impl Directory {
@@ -204,18 +207,18 @@ impl Directory {
     pub fn open(folder: &Path, is_fresh: bool) -> Result<Self, WriteError> {
         let made = fs::create_dir_all(folder).and_then(|()| remove_leftovers(folder));
         made.map_err(|source| WriteError::new(folder, source))?;
-        Ok(Self { folder: Some(folder.to_owned()), is_fresh, temporary: OnceLock::new() })
+        Ok(Self { folder: Some(folder.to_owned()), is_fresh, temporary: OnceLock::new(), written: AtomicU64::new(0) })
     }
 
     /// Returns a directory that stores nothing.
     #[must_use]
     pub const fn none() -> Self {
-        Self { folder: None, is_fresh: true, temporary: OnceLock::new() }
+        Self { folder: None, is_fresh: true, temporary: OnceLock::new(), written: AtomicU64::new(0) }
     }
 
     /// Returns the path of the file of a key.
     #[must_use]
-    pub fn path<K: Kind>(&self, key: &str) -> PathBuf {
+    pub fn path<K: Artifact>(&self, key: &str) -> PathBuf {
         self.folder.as_deref().unwrap_or(Path::new("")).join(format!("{key}.{}", K::ENDING))
     }
 
@@ -223,7 +226,7 @@ impl Directory {
     ///
     /// # Errors
     /// When the file is absent, is ignored, is damaged, or has another format or key.
-    pub fn get<K: Kind>(&self, key: &str) -> Result<K::Value, ReadError> {
+    pub fn get<K: Artifact>(&self, key: &str) -> Result<K::Value, ReadError> {
         let path = self.path::<K>(key);
         if self.is_fresh {
             return Err(ReadError::Unreadable { path, source: io::ErrorKind::NotFound.into() });
@@ -235,7 +238,7 @@ impl Directory {
     ///
     /// # Errors
     /// When the value has no stored form, or the disk rejects the write.
-    pub fn put<K: Kind>(&self, key: &str, value: &K::Value) -> Result<(), WriteError> {
+    pub fn put<K: Artifact>(&self, key: &str, value: &K::Value) -> Result<(), WriteError> {
         let Some(folder) = &self.folder else { return Ok(()) };
         let path = self.path::<K>(key);
         let write = || -> io::Result<()> {
@@ -247,7 +250,9 @@ impl Directory {
                     self.temporary.get_or_init(|| made)
                 }
             };
-            let staged = temporary.path().join(path.file_name().unwrap_or_default());
+            // Two threads may store the same key.
+            let number = self.written.fetch_add(1, Ordering::Relaxed);
+            let staged = temporary.path().join(number.to_string());
             fs::write(&staged, bytes).and_then(|()| fs::rename(&staged, &path)).inspect_err(|_| {
                 // An incomplete file would occupy space that other files need.
                 let _ = fs::remove_file(&staged);
@@ -257,13 +262,13 @@ impl Directory {
     }
 
     /// Marks the file of a key as used now. If this fails, its last use stays the time of writing.
-    pub fn touch<K: Kind>(&self, key: &str) {
+    pub fn touch<K: Artifact>(&self, key: &str) {
         let file = fs::File::options().append(true).open(self.path::<K>(key));
         let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
     }
 
     /// Removes the least recently used files of a kind until the remaining ones do not exceed `most` bytes.
-    pub fn make_room<K: Kind>(&self, most: u64) {
+    pub fn make_room<K: Artifact>(&self, most: u64) {
         let file_entry = |entry: fs::DirEntry| {
             let is_of_kind = entry.path().extension().is_some_and(|ending| ending == K::ENDING);
             let about = entry.metadata().ok().filter(|_| is_of_kind)?;

@@ -17,7 +17,7 @@ use grainbench_solver::observer::{Observer, RunOptions};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
-use grainbench_store::artifact::{Directory, Kind};
+use grainbench_store::artifact::{Artifact, Directory};
 use grainbench_store::{ReadError, WriteError, key};
 use std::path::{Path, PathBuf};
 use std::sync::Arc;
@@ -46,9 +46,9 @@ pub fn run_words(solver: &str, scene: &Scene, resolution: &Resolution, read: &st
 }
 
 /// Records of finished runs.
-struct CachedRun;
+struct RunFile;
 
-impl Kind for CachedRun {
+impl Artifact for RunFile {
     type Value = Record;
     const ENDING: &'static str = "run";
 
@@ -123,10 +123,10 @@ impl RunCache {
 
     /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
     fn take(&self, name: &str) -> Option<Record> {
-        let record = self.runs.get::<CachedRun>(name).ok()?;
+        let record = self.runs.get::<RunFile>(name).ok()?;
         self.taken.fetch_add(1, Ordering::Relaxed);
         // The least recently used files are removed first.
-        self.runs.touch::<CachedRun>(name);
+        self.runs.touch::<RunFile>(name);
         Some(record)
     }
 
@@ -134,13 +134,13 @@ impl RunCache {
     /// can be repeated.
     fn put(&self, name: &str, record: &Record) {
         if record.cost.wall_seconds >= LEAST {
-            let _ = self.runs.put::<CachedRun>(name, record);
+            let _ = self.runs.put::<RunFile>(name, record);
         }
     }
 
     /// Removes the least recently used files until the remaining files do not exceed the maximum size.
     pub fn make_room(&self) {
-        self.runs.make_room::<CachedRun>(self.most);
+        self.runs.make_room::<RunFile>(self.most);
     }
 }
 

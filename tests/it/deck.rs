@@ -143,7 +143,6 @@ fn every_case_has_a_deck_or_a_reason() {
     assert!(written > 30, "{written}");
 }
 
-/// Returns the message about a changed scene that an external program does not support.
 /// The meshes of walls need room in the box, but not along a periodic axis, because the box is the period there. LIGGGHTS
 /// deletes triangles beyond it.
 #[test]
@@ -167,6 +166,7 @@ fn meshes_leave_the_period_as_it_is() {
     assert!(message.contains("extends beyond the periodic bounds along y, -1 m to 1 m"), "{message}");
 }
 
+/// Returns the message about a changed scene that an external program does not support.
 fn refusal(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> String {
     let case = by_name(case).unwrap();
     let mut scene = case.variant(variant).unwrap();

@@ -228,7 +228,7 @@ fn figures_have_the_style_of_a_file() {
     let formats = ["--figures", "pdf", "--figures", "png"];
     let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
     assert_eq!(answer.code, Some(2), "the family is not installed");
-    assert!(answer.err.contains("font: expected an installed family"), "{}", answer.err);
+    assert!(answer.err.contains("font: expected the name of an installed family"), "{}", answer.err);
     fs::write(path.join("style.toml"), "width = 86").unwrap();
     let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));

@@ -64,7 +64,7 @@ fn a_window_of_time_is_compared() {
     let [end, _] = estimate(&[]);
     assert!((end - mean).abs() > 0.1, "{end}");
     let outside = cost(&["--window", "0.6..0.7"]);
-    let expected = "--window: expected a window within 0..0.5, the duration of drop.toml, found 0.6..0.5";
+    let expected = "--window: expected a window within 0..0.5, the duration of drop.toml, found 0.6..";
     assert!(outside.code == Some(2) && outside.err.contains(expected), "{}", outside.err);
 }
 
@@ -75,7 +75,11 @@ fn a_stopped_study_continues() {
     let folder = tempfile::tempdir().unwrap();
     fs::copy(root("guide/scenes/heap.toml"), folder.path().join("heap.toml")).unwrap();
     for command in ["cost", "effects"] {
-        let runs = || fs::read_dir(folder.path().join(command).join("runs")).map_or(0, |files| files.count());
+        let is_run = |entry: &fs::DirEntry| entry.path().extension().is_some_and(|ending| ending == "json");
+        let runs = || {
+            let files = fs::read_dir(folder.path().join(command).join("runs")).into_iter().flatten().flatten();
+            files.filter(is_run).count()
+        };
         let arguments = [command, "heap.toml", "--solver", "dem", "--budget", "60s", "--out", command];
         let mut child = program()
             .args(arguments)
@@ -112,7 +116,8 @@ fn effects_of_a_folder_continue_within_a_larger_budget() {
     assert!(short.code == Some(1) && short.err.contains("expected a larger `--budget`"), "{}", short.err);
     let whole = grainbench(folder.path(), &["effects", "mine", "--out", "e"]);
     assert_eq!(whole.code, Some(0), "{}", whole.err);
-    assert!(whole.out.contains("gravity: needed") && whole.out.contains("needed: without the effect"), "{}", whole.out);
+    let is_needed = |line: &str| line.contains(" gravity ") && line.contains(" needed ");
+    assert!(whole.out.lines().any(is_needed) && whole.out.contains("needed: without the effect"), "{}", whole.out);
     // All effects are stored, so that no time is needed.
     let again = grainbench(folder.path(), &["effects", "mine", "--budget", "1s", "--out", "e"]);
     assert_eq!((again.code, again.out), (Some(0), whole.out), "{}", again.err);

@@ -54,7 +54,7 @@ const FOR_PREPARATION: Duration = Duration::from_secs(1800);
 /// Maximum size of a program's standard output (B).
 const MOST_PRINTED: u64 = 16 << 20;
 /// File of stored results next to the manifest, which `run --update-stored` writes.
-const KEPT: &str = "judged.json";
+pub const STORED: &str = "judged.json";
 /// Maximum number of files in the folder of a manifest and its subfolders.
 const MOST_FILES: usize = 10_000;
 /// Default resolution of the conformance tests: 1/50 of the critical time step.
@@ -239,7 +239,7 @@ impl ExternalProgram {
                 return Err(io::Error::other(message));
             }
         }
-        files.retain(|path| path.file_name().is_none_or(|name| name != KEPT));
+        files.retain(|path| path.file_name().is_none_or(|name| name != STORED));
         files.sort();
         files.extend(self.manifest.files.iter().map(|file| self.folder.join(file)));
         Ok(files)

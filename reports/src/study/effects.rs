@@ -31,7 +31,7 @@ impl EffectResult {
         match self {
             Self::Needed => "needed",
             Self::NotWorthSimulating => "does not matter",
-            Self::Untold => "untold",
+            Self::Untold => "not shown",
             Self::Inert => "inert",
             Self::NotInert => "not inert",
         }
@@ -105,7 +105,7 @@ pub(crate) fn render(ledger: &[Entry]) -> Markup {
             }
             p {
                 (count(EffectResult::Needed)) " needed, "
-                (count(EffectResult::NotWorthSimulating)) " without influence in scenes that enable them, "
+                (count(EffectResult::NotWorthSimulating)) " do not matter in scenes that enable them, "
                 (count(EffectResult::Inert)) " inert, " (count(EffectResult::NotInert)) " not inert."
             }
             h3 { "Scenes by effects" }

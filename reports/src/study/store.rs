@@ -25,6 +25,7 @@ pub const STUDY_FILE: &str = "study.json";
 #[derive(Serialize)]
 struct Results<'a> {
     provenance: &'a Provenance,
+    passed: bool,
     verdicts: [Verdict; 0],
     controls: [ControlResult; 0],
     points: Vec<&'a Point>,
@@ -52,6 +53,7 @@ struct Stability<'a> {
 pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
     let results = Results {
         provenance: &study.provenance,
+        passed: !study.is_red(),
         verdicts: [],
         controls: [],
         points: study.diagrams.iter().flat_map(|diagram| &diagram.points).collect(),

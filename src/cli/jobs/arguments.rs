@@ -78,7 +78,7 @@ impl Arguments {
     pub(crate) fn read(plan: &Plan) -> Result<Self, Fault> {
         plan.head.arguments.clone().try_into().map_err(|error: toml::de::Error| {
             let path = plan.path.display();
-            Fault::input(format!("{path}: expected arguments of a plan, found {}", error.message()))
+            Fault::input(format!("{path}: arguments: expected the table that this version writes: {}", error.message()))
         })
     }
 }

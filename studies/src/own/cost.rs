@@ -50,9 +50,6 @@ const FAILURES: [usize; 2] = [12, 6];
 /// Columns that count something. They change in jumps, and are target quantities only if the user names them.
 const COUNTS: [&str; 6] = ["slipping", "contacts", "slipping_contacts", "present", "entered", "left"];
 
-/// Ends of the names of columns that contain the energy of springs.
-const ELASTIC: [&str; 3] = [".elastic_energy", ".elastic", ".springs"];
-
 /// Scene, solvers and extent of a study.
 pub struct SceneStudy<'a> {
     /// Path of the scene.
@@ -455,13 +452,19 @@ impl<'a> Measurement<'a> {
             let others = perturbed_runs(&self.scene, &whole, MATTERS, &mut again)?;
             Ok((whole, others))
         });
-        let Ok((whole, others)) = found else {
-            if self.is_stopped() {
+        let (whole, others) = match found {
+            Ok(found) => found,
+            Err(_) if self.is_stopped() => return,
+            Err(error) => {
+                let reason = if within.0.is_cut() {
+                    "did not end within the budget".to_owned()
+                } else {
+                    format!("failed: {error}")
+                };
+                self.notes.push(format!("The test for chaos {reason}."));
+                self.perturbed = Some(Vec::new());
                 return;
             }
-            self.notes.push("The test for chaos did not end within the budget.".to_owned());
-            self.perturbed = Some(Vec::new());
-            return;
         };
         let mut perturbed = Perturbed::new();
         if !others.is_empty() {
@@ -564,13 +567,15 @@ impl<'a> Measurement<'a> {
 
     fn quantities(&self, reduction: Reduction) -> Vec<Quantity> {
         let mut found: Vec<Quantity> = Vec::new();
-        for column in self.runs.iter().flat_map(|run| &run.stored.columns) {
+        for (run, column) in self.runs.iter().flat_map(|run| run.stored.columns.iter().map(move |column| (run, column)))
+        {
             let is_known = found.iter().any(|known| known.name == column.name);
-            if is_known || !self.is_wanted(column) {
+            if is_known || !self.is_wanted(column) || self.ladders[run.solver].lacks(&column.name) {
                 continue;
             }
             // Scales are those of the finest run of the first solver.
-            let levels = self.runs.iter().filter(|run| run.purpose == Purpose::Level);
+            let is_level = |run: &&Run| run.purpose == Purpose::Level && !self.ladders[run.solver].lacks(&column.name);
+            let levels = self.runs.iter().filter(is_level);
             let named = |run: &&Run| run.stored.columns.iter().any(|other| other.name == column.name);
             let first = levels.clone().find(named).map_or(0, |run| run.solver);
             let own = levels.filter(|run| run.solver == first);
@@ -601,7 +606,7 @@ impl<'a> Measurement<'a> {
 
     /// Adds the reference value and the points of a solver to a quantity. Differences up to `rounding` are rounding errors.
     fn estimate(&self, at: usize, (reduction, rounding): (Reduction, f64), quantity: &mut Quantity) {
-        if self.is_unsupported(at, &quantity.name) {
+        if self.ladders[at].lacks(&quantity.name) {
             return;
         }
         let value = |run: &Run| {
@@ -666,16 +671,10 @@ impl<'a> Measurement<'a> {
         });
     }
 
-    /// Returns true if the method of a solver has no such quantity: rigid contacts store no elastic energy.
-    fn is_unsupported(&self, at: usize, column: &str) -> bool {
-        let ladder = &self.ladders[at];
-        !ladder.has_cells() && !ladder.has_steps() && ELASTIC.iter().any(|end| column.ends_with(end))
-    }
-
     /// Returns a note about the target quantities that the method of a solver does not have.
     fn unsupported(&self, at: usize) -> Option<String> {
         let columns = self.own(at).next()?.stored.columns.iter();
-        let names = columns.filter(|column| self.is_wanted(column) && self.is_unsupported(at, &column.name));
+        let names = columns.filter(|column| self.is_wanted(column) && self.ladders[at].lacks(&column.name));
         let names: Vec<&str> = names.map(|column| column.name.as_str()).collect();
         (!names.is_empty()).then(|| {
             format!("{}: unsupported, because its contacts are rigid: {}.", self.study.names[at], names.join(", "))

@@ -52,7 +52,8 @@ impl Importance<'_> {
                 format!("Effects were left out: their runs need about {}. {command}", number::seconds(seconds));
             return Ok((Vec::new(), Some(reason)));
         }
-        let id = key_of_run(&self.study.program, name, self.study.scene, &resolution, "effects of a scene");
+        let program = self.study.program.clone() + &self.study.solvers.edition(name);
+        let id = key_of_run(&program, name, self.study.scene, &resolution, "effects of a scene");
         if let Ok(entries) = self.study.cache.get::<Json<_>>(&id) {
             return Ok((entries, None));
         }

@@ -38,7 +38,15 @@ pub struct Ladder {
     dimensions: usize,
 }
 
+/// Ends of the names of columns that contain the energy of springs.
+const ELASTIC: [&str; 3] = [".elastic_energy", ".elastic", ".springs"];
+
 impl Ladder {
+    /// Returns true if the method does not have the quantity of a column: the contacts of a rigid-body engine have no springs.
+    pub(super) fn lacks(&self, column: &str) -> bool {
+        !self.has_cells() && !self.has_steps() && ELASTIC.iter().any(|end| column.ends_with(end))
+    }
+
     /// Returns the levels of a solver for a scene. A scene without contacts has no critical time step, so that its levels
     /// have time steps in seconds.
     #[must_use]

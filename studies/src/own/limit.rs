@@ -185,7 +185,7 @@ fn bisect(
     let linearised = exact.filter(|_| !scene.laws.iter().flatten().all(is_linear));
     let exact = exact.filter(|_| scene.laws.iter().flatten().all(is_linear));
     let (detail, is_whole) = match found {
-        Err(Stop::Cannot(why)) => (why, Instant::now() < deadline),
+        Err(Stop::Cannot(why)) => (why, !within.0.is_cut()),
         Err(Stop::Unstable(how)) => (format!("unstable already at {:.3}: {how}", parameter.range()[0]), true),
         Ok(bracket) => {
             limit.found = Some(bracket.stable);

@@ -59,6 +59,8 @@ pub(super) fn columns(record: &Record, window: Option<(f64, f64)>) -> Vec<Stored
             });
             if last > first {
                 areas.sum::<f64>() / (last - first)
+            } else if window.is_some() {
+                f64::NAN
             } else {
                 values.first().map_or(f64::NAN, |v| part(*v))
             }
