@@ -40,8 +40,8 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines of
-/// Rust sources do not change the hash. A package does not contain these folders; the result is then the version of the
+/// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines and test
+/// modules of Rust sources do not change the hash. A package does not contain these folders; the result is then the version of the
 /// package, because checksums in its lock file identify the sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
@@ -71,13 +71,22 @@ fn fingerprint(root: &Path, folders: &[&str]) -> String {
     hasher.finalize().to_hex()[..16].to_owned()
 }
 
-/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation.
+/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation and without the module of
+/// its tests, which ends with a brace at the start of a line.
 fn code(file: &Path) -> Vec<u8> {
     let bytes = fs::read(file).unwrap_or_default();
     match (file.extension(), str::from_utf8(&bytes)) {
         (Some(end), Ok(text)) if end == "rs" => {
-            let lines = text.lines().map(str::trim).filter(|line| !line.is_empty() && !line.starts_with("//"));
-            lines.collect::<Vec<_>>().join("\n").into_bytes()
+            let (mut lines, mut is_test, mut before) = (Vec::new(), false, "");
+            for line in text.lines() {
+                is_test |= before == "#[cfg(test)]" && line.starts_with("mod ") && line.ends_with('{');
+                if !is_test && !line.trim().is_empty() && !line.trim().starts_with("//") {
+                    lines.push(line.trim());
+                }
+                is_test &= line != "}";
+                before = line;
+            }
+            lines.join("\n").into_bytes()
         }
         _ => bytes,
     }

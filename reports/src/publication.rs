@@ -61,8 +61,9 @@ pub fn write_figures<F: Borrow<Figure>>(
     Ok(())
 }
 
-/// Converts each `dir/figures/NAME.svg` to `NAME.pdf` or `NAME.png`. A film is already a PNG picture, so its file stays. `families` are the font families of a style, which must be installed;
-/// without them, the letters are those of DejaVu Sans on every machine.
+/// Converts each `dir/figures/NAME.svg` to `NAME.pdf` or `NAME.png`. A film is already a PNG picture, so its file stays.
+/// `families` are the font families of a style, which must be installed; without them, the letters are those of DejaVu Sans
+/// on every machine.
 ///
 /// # Errors
 /// When no font family is installed, or when a file cannot be read, converted or written.

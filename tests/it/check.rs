@@ -286,7 +286,7 @@ fn a_time_between_two_steps_is_red() {
         assert_eq!((code, count(&rows, "fail")), (Some(1), 1), "{off}: {rows:#?}");
         assert!(rows[0]["detail"].as_str().unwrap().contains("is not a whole number of steps"), "{rows:#?}");
         let (code, rows) = checked(&["--partial"]);
-        assert_eq!((code, count(&rows, "known")), (Some(0), 1), "{off}: {rows:#?}");
+        assert_eq!((code, count(&rows, "no-reference")), (Some(0), 1), "{off}: {rows:#?}");
     }
 }
 

@@ -217,7 +217,7 @@ fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
     let (code, _, row) = flow("dem:lammps", &["contacts.g.friction=.1"]);
     assert_eq!((code, &row["verdict"]), (Some(1), &"fail".into()), "{row}");
     let detail = row["detail"].as_str().unwrap();
-    assert!(detail.contains("larger than the mean of our runs, which lie between"), "{detail}");
+    assert!(detail.contains("larger than the mean of our runs, whose means lie between"), "{detail}");
     let allowed = row["allowed"].as_f64().unwrap();
     assert!((0.02..0.15).contains(&allowed), "{allowed}");
 }

@@ -122,7 +122,7 @@ mod tests {
             ("é = 1", "1:1: a key of letters, digits, `_` and `-`, `é`"),
             ("a = 1\na = 2\n", "2:1: each key only once, `a`"),
             ("[a\nb = 1", "1:3: `]` after the name of the table, the end of the line"),
-            ("[a] b = 2", "1:7: the end of the line, `=`"),
+            ("[a] b = 2", "1:5: the end of the line, `b`"),
             ("a = 1_", "1:6: a number such as 20, 0.5 or 1e-3, `_`"),
             ("a = 01", "1:5: a number such as 20, 0.5 or 1e-3, `0`"),
         ] {

@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Motion;
-use grainbench_scene::scene::{Scene, Wall, WallShape};
+use grainbench_scene::scene::{Scene, Wall};
 use nalgebra::{Unit, Vector3};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
@@ -192,11 +192,9 @@ fn with_periods(
         let room = PRINTED * (high[axis] - low[axis]);
         let is_beyond = |corner: &Vector3<f64>| corner[axis] < low[axis] - room || corner[axis] > high[axis] + room;
         if let Some(mesh) = meshes.iter().find(|mesh| mesh.triangles.iter().flatten().any(is_beyond)) {
-            let is_plane = matches!(mesh.wall.shape, WallShape::Plane { .. });
             return Err(format!(
-                "wall `{}`{} extends beyond the periodic bounds along {}, {} m to {} m, where LIGGGHTS deletes its triangles",
+                "wall `{}` extends beyond the periodic bounds along {}, {} m to {} m, where LIGGGHTS deletes its triangles",
                 mesh.wall.name,
-                if is_plane { ", an oblique plane and therefore a mesh for LIGGGHTS," } else { "" },
                 ['x', 'y', 'z'][axis],
                 low[axis],
                 high[axis]
