@@ -85,6 +85,6 @@ impl Solver for Rigid {
 fn main() -> Result<(), Box<dyn std::error::Error>> {
     let judgement = grainbench::judge(Rigid, &["incline-disc", "incline-sphere", "backspin"])?;
     println!("{judgement}");
-    judgement.require()?; // If a claim fails or none passes, the program ends with exit code 1.
+    judgement.require()?; // If a claim fails or none is judged, the program ends with exit code 1.
     Ok(())
 }

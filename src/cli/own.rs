@@ -52,7 +52,8 @@ impl Options {
             return Ok(());
         }
         Err(Fault::input(
-            "--budget, --quantity, --window: expected a scene without exact claims, found cases or claims, which set their own levels",
+            "--budget, --quantity, --window: expected a scene without exact claims, found cases or claims, which set their own \
+             levels",
         ))
     }
 
