@@ -41,8 +41,8 @@ fn main() -> Result<(), Failure> {
 }
 
 /// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines and test
-/// modules of Rust sources do not change the hash. A package does not contain these folders; the result is then the version
-/// of the package, because checksums in its lock file identify the sources.
+/// modules of Rust sources do not change the hash. A package does not contain these folders. The result is then the package
+/// version, because checksums in the lock file identify the sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
         return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
