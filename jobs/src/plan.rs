@@ -2,7 +2,8 @@
 
 use crate::fault::Fault;
 use crate::shard;
-use crate::task::{self, Task};
+use crate::task::Task;
+use grainbench_scene::text::tamed;
 use grainbench_store::artifact::{read_text, read_toml};
 use grainbench_store::results::RESULTS;
 use grainbench_store::{StagedDir, WriteError, is_scratch, key};
@@ -129,7 +130,7 @@ impl Plan {
     /// When the directory has other contents, or the disk rejects a write.
     pub fn write(path: &Path, mut head: Head, tasks: Vec<Task>) -> Result<Self, Fault> {
         check_place(path)?;
-        let text = task::lines(&tasks)?;
+        let text = lines(&tasks)?;
         head.tasks = tasks.len();
         head.hash = hash(&text);
         head.seconds = tasks.iter().map(|task| task.seconds).sum();
@@ -160,7 +161,7 @@ impl Plan {
         if hash(&text) != head.hash {
             return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
         }
-        let tasks = task::read(&file, &text)?;
+        let tasks = read_tasks(&file, &text)?;
         Ok(Self { path: path.to_owned(), head, tasks })
     }
 
@@ -216,6 +217,43 @@ impl Plan {
     }
 }
 
+/// Reads tasks from text, one per line.
+///
+/// # Errors
+/// When a line is not a task, or its expected time is negative or not finite. The error names the file and the line.
+fn read_tasks(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
+    let mut tasks = Vec::new();
+    for (at, line) in text.lines().enumerate() {
+        let task: Task = serde_json::from_str(line).map_err(|error| {
+            let found = tamed(&error.to_string(), |_| false);
+            Fault::expected(
+                format!("{}:{}", path.display(), at + 1),
+                "a task in the form that `--plan DIR` writes",
+                found,
+            )
+        })?;
+        if !(task.seconds.is_finite() && task.seconds >= 0.0) {
+            let place = format!("{}:{}", path.display(), at + 1);
+            return Err(Fault::expected(place, "`seconds` of zero or more", task.seconds));
+        }
+        tasks.push(task);
+    }
+    Ok(tasks)
+}
+
+/// Returns tasks as JSON, one per line.
+///
+/// # Errors
+/// When a task cannot be written as JSON, which does not occur for tasks of this project.
+fn lines(tasks: &[Task]) -> Result<String, Fault> {
+    let mut text = String::with_capacity(300 * tasks.len());
+    for task in tasks {
+        text.push_str(&serde_json::to_string(task).map_err(|error| Fault::Input(error.to_string()))?);
+        text.push('\n');
+    }
+    Ok(text)
+}
+
 /// Checks that a directory can take a plan: it must be new, empty, or already have a plan.
 ///
 /// # Errors
@@ -237,4 +275,29 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
 
 fn hash(text: &str) -> String {
     blake3::hash(text.as_bytes()).to_hex().to_string()
+}
+
+#[cfg(test)]
+mod tests {
+    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
+    use super::*;
+    use crate::task::Id;
+    use serde_json::Value;
+
+    #[test]
+    fn a_wrong_line_is_named() {
+        let task = Task {
+            scene: "squash".to_owned(),
+            set: BTreeMap::from([("a.b".to_owned(), Value::from(0.1))]),
+            solver: "dem".to_owned(),
+            level: "dt=.1".to_owned(),
+            ..Task::new(Id::of_words("", &[]), 0.5)
+        };
+        let text = lines(&[task.clone(), task.clone()]).unwrap();
+        assert_eq!(read_tasks(Path::new("t"), &text).unwrap(), [task.clone(), task]);
+        for wrong in [&text[..text.len() - 9], &(text.clone() + "\n"), &text.replace("0.5", "-1"), "{}", "\0"] {
+            let message = read_tasks(Path::new("t"), wrong).unwrap_err().to_string();
+            assert!(message.starts_with("t:") && message.contains("expected"), "{message}");
+        }
+    }
 }

@@ -1,12 +1,9 @@
-//! Tasks of a plan. The file of tasks has one task per line.
+//! Tasks of a plan.
 
-use crate::fault::Fault;
-use grainbench_scene::text::tamed;
 pub use grainbench_store::key::Id;
 use serde::{Deserialize, Serialize};
 use serde_json::Value;
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Run or measurement of a plan, with the inputs that determine its result.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
@@ -49,66 +46,6 @@ impl Task {
             repetitions: 1,
             seconds,
             group: None,
-        }
-    }
-}
-
-/// Reads tasks from text, one per line.
-///
-/// # Errors
-/// When a line is not a task, or its expected time is negative or not finite. The error names the file and the line.
-pub fn read(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
-    let mut tasks = Vec::new();
-    for (at, line) in text.lines().enumerate() {
-        let task: Task = serde_json::from_str(line).map_err(|error| {
-            let found = tamed(&error.to_string(), |_| false);
-            Fault::expected(
-                format!("{}:{}", path.display(), at + 1),
-                "a task in the form that `--plan DIR` writes",
-                found,
-            )
-        })?;
-        if !(task.seconds.is_finite() && task.seconds >= 0.0) {
-            let place = format!("{}:{}", path.display(), at + 1);
-            return Err(Fault::expected(place, "`seconds` of zero or more", task.seconds));
-        }
-        tasks.push(task);
-    }
-    Ok(tasks)
-}
-
-/// Returns tasks as JSON, one per line.
-///
-/// # Errors
-/// When a task cannot be written as JSON, which does not occur for tasks of this project.
-pub fn lines(tasks: &[Task]) -> Result<String, Fault> {
-    let mut text = String::with_capacity(300 * tasks.len());
-    for task in tasks {
-        text.push_str(&serde_json::to_string(task).map_err(|error| Fault::Input(error.to_string()))?);
-        text.push('\n');
-    }
-    Ok(text)
-}
-
-#[cfg(test)]
-mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-    use super::*;
-
-    #[test]
-    fn a_wrong_line_is_named() {
-        let task = Task {
-            scene: "squash".to_owned(),
-            set: BTreeMap::from([("a.b".to_owned(), Value::from(0.1))]),
-            solver: "dem".to_owned(),
-            level: "dt=.1".to_owned(),
-            ..Task::new(Id::of_words("", &[]), 0.5)
-        };
-        let text = lines(&[task.clone(), task.clone()]).unwrap();
-        assert_eq!(read(Path::new("t"), &text).unwrap(), [task.clone(), task]);
-        for wrong in [&text[..text.len() - 9], &(text.clone() + "\n"), &text.replace("0.5", "-1"), "{}", "\0"] {
-            let message = read(Path::new("t"), wrong).unwrap_err().to_string();
-            assert!(message.starts_with("t:") && message.contains("expected"), "{message}");
         }
     }
 }
