@@ -90,10 +90,10 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
         for claim in &claims {
             let (verdict, control) = runner.judge_and_control(claim, true);
             judgement.controls.extend(control);
-            rows.push(Some(verdict));
+            rows.push(verdict);
         }
-        mistake::explain(case, &all, &claims, &mut rows);
-        judgement.verdicts.extend(rows.into_iter().flatten());
+        mistake::explain(case, &all, &claims.iter().collect::<Vec<_>>(), &mut rows);
+        judgement.verdicts.extend(rows);
     }
     Ok(judgement)
 }

@@ -4,7 +4,6 @@ use crate::share::share;
 use crate::task::Task;
 use grainbench_store::WriteError;
 use grainbench_store::log::State;
-use grainbench_store::results::TaskResult;
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::any::Any;
@@ -64,11 +63,9 @@ pub trait Watch: Sync {
 
 impl Watch for () {}
 
-/// Result of a finished task, or the message of its panic.
-pub type Finished<T> = Result<T, String>;
-/// Function that stores the result of a task. Its arguments are the index of the task, its state, its duration (s) and its
-/// result.
-pub type Store<'a, T> = dyn Fn(usize, State, f64, Finished<T>) -> Result<(), WriteError> + Sync + 'a;
+/// Function that stores the result of a task. Its arguments are the index of the task, its state, its duration (s), and
+/// its result or the message of its panic.
+pub type Store<'a, T> = dyn Fn(usize, State, f64, Result<T, String>) -> Result<(), WriteError> + Sync + 'a;
 
 /// Receiver of results.
 pub struct ResultSink<'a, T> {
@@ -105,7 +102,7 @@ impl<'a, T> ResultSink<'a, T> {
     }
 
     /// Stores the result of a task that took `seconds`. After an error of the disk, no further task is started.
-    pub fn leave(&self, place: usize, state: State, seconds: f64, result: Finished<T>) {
+    pub fn leave(&self, place: usize, state: State, seconds: f64, result: Result<T, String>) {
         if !self.watch.are_results_valid() {
             return;
         }
@@ -165,18 +162,19 @@ pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sin
 }
 
 /// Performs all tasks in memory on up to `at_once` threads, in the order `order` of their indices. Calls `observe` with each
-/// result. Returns the results in the order of the list.
+/// result. Returns the results in the order of the list; `None` for a task that was not started, and the message of a panic
+/// as an error.
 pub fn in_memory<L: TaskList>(
     list: &L,
     order: &[usize],
     at_once: usize,
     watch: &dyn Watch,
     observe: &(dyn Fn(&L::Output) + Sync),
-) -> Vec<TaskResult<L::Output>> {
-    let results: Vec<Mutex<TaskResult<L::Output>>> = order.iter().map(|_| Mutex::new(TaskResult::Nothing)).collect();
-    let store = |place: usize, _: State, _: f64, result: Finished<L::Output>| {
+) -> Vec<Option<Result<L::Output, String>>> {
+    let results: Vec<Mutex<Option<Result<L::Output, String>>>> = order.iter().map(|_| Mutex::default()).collect();
+    let store = |place: usize, _: State, _: f64, result: Result<L::Output, String>| {
         result.iter().for_each(observe);
-        *locked(&results[place]) = result.map_or_else(TaskResult::Crash, TaskResult::Out);
+        *locked(&results[place]) = Some(result);
         Ok(())
     };
     watch.begins(order.len());

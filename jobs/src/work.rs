@@ -1,12 +1,12 @@
 //! Worker. It runs the tasks of a shard that are neither finished nor leased to another worker, until the whole shard
 //! is finished.
 
-use crate::execute::{Finished, ResultSink, TaskList, Watch, execute, groups, locked};
+use crate::execute::{ResultSink, TaskList, Watch, execute, groups, locked};
 use crate::fault::Fault;
 use crate::lease::{Lease, LeaseContents};
 use crate::plan::Plan;
 use crate::shard::{self, Shard};
-use grainbench_store::log::{Line, Log, State, Worker};
+use grainbench_store::log::{Entry, Log, State, Worker};
 use grainbench_store::results::{FinishedTasks, RESULTS};
 use grainbench_store::{WriteError, machine};
 use std::collections::BTreeSet;
@@ -58,14 +58,14 @@ struct ResultFile<'a> {
 impl ResultFile<'_> {
     fn add(&self, place: usize, state: State, seconds: f64, json: &str) -> Result<(), WriteError> {
         let load = if self.plan.head.timed { machine::load() } else { None };
-        let line = Line { id: self.plan.tasks[place].id, state, seconds, load, json };
+        let (id, entry) = (self.plan.tasks[place].id, Entry::new(state, seconds, load, json));
         let mut log = locked(&self.log);
         if let Some(log) = &mut *log {
-            return log.add(&line);
+            return log.add(id, &entry);
         }
         let folder = self.plan.path.join(RESULTS);
         fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
-        log.insert(Log::new(&folder, self.worker)?).add(&line)
+        log.insert(Log::new(&folder, self.worker)?).add(id, &entry)
     }
 
     fn sync(&self) -> Result<(), WriteError> {
@@ -100,7 +100,7 @@ pub fn work<L: TaskList>(
     };
     let mut summary = Summary { tasks: range.len(), ..Summary::default() };
     let file = ResultFile { plan, worker, log: Mutex::new(None) };
-    let store = |place: usize, state: State, seconds: f64, result: Finished<L::Output>| match result
+    let store = |place: usize, state: State, seconds: f64, result: Result<L::Output, String>| match result
         .and_then(|output| serde_json::to_string(&output).map_err(|error| error.to_string()))
     {
         Ok(json) => file.add(place, state, seconds, &json),

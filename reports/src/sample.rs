@@ -58,6 +58,7 @@ fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) ->
 
 fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {
     RunCost {
+        key: String::new(),
         variant: String::new(),
         solver: solver.into(),
         resolution: resolution.into(),
@@ -151,6 +152,7 @@ fn backspin() -> Section {
             "One contact only: neighbour search and history transfer are not tested. The final speed does not depend \
                on μ; only **t\\*** depends on it."
                 .into(),
+        omitted: None,
         figures: vec![
             Figure {
                 name: "convergence".into(),
@@ -248,6 +250,7 @@ fn nine_discs() -> Section {
         claim: "Nine discs between four walls carry the load of the paper's first test, contact by contact.".into(),
         derivation: "The expected forces are those that the paper prints.".into(),
         weak: "Three digits were printed.".into(),
+        omitted: None,
         figures: vec![Figure {
             name: "forces".into(),
             title: "Contact forces at the end".into(),

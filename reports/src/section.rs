@@ -23,6 +23,9 @@ pub struct Section {
     pub weak: String,
     /// Figures in the order in which they are shown.
     pub figures: Vec<Figure>,
+    /// Error message if the figures could not be drawn.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub omitted: Option<String>,
     /// Results in the order of the claims.
     pub verdicts: Vec<Verdict>,
     /// Negative controls.
@@ -31,9 +34,30 @@ pub struct Section {
     pub runs: Vec<RunCost>,
 }
 
+impl Section {
+    /// Adds the results of a task of the same case.
+    pub fn add(&mut self, task: Self) {
+        self.figures.extend(task.figures);
+        self.omitted = self.omitted.take().or(task.omitted);
+        self.verdicts.extend(task.verdicts);
+        self.controls.extend(task.controls);
+        self.runs.extend(task.runs);
+    }
+
+    /// Sorts the runs by their keys, keeps each run once and removes the keys.
+    pub fn finish_runs(&mut self) {
+        self.runs.sort_by(|a, b| a.key.cmp(&b.key));
+        self.runs.dedup_by(|later, first| later.key == first.key);
+        self.runs.iter_mut().for_each(|run| run.key.clear());
+    }
+}
+
 /// Computing cost of a run of a claim.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct RunCost {
+    /// Key of the run among the runs of its case; empty in a finished report.
+    #[serde(default, skip_serializing_if = "String::is_empty")]
+    pub key: String,
     /// Variant of the scene.
     pub variant: String,
     /// Solver and contact convention, such as `dem:lammps`.

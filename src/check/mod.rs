@@ -159,12 +159,12 @@ fn section(
     };
     let mut verdicts = vec![covered.row(outputs, row("time of the last sample".to_owned(), "s"))];
     let judge = |claim| exact(claim, candidate, outputs, observed, covered, &row);
-    let mut of_claims: Vec<Option<Verdict>> = candidate.claims.iter().map(|claim| Some(judge(claim))).collect();
+    let mut of_claims: Vec<Verdict> = candidate.claims.iter().map(judge).collect();
     if let Some(case) = subject.as_stored() {
         let solvers: Arc<dyn Solvers> = Arc::new(Registry);
-        mistake::explain(case, &solvers, &candidate.claims, &mut of_claims);
+        mistake::explain(case, &solvers, &candidate.claims.iter().collect::<Vec<_>>(), &mut of_claims);
     }
-    verdicts.extend(of_claims.into_iter().flatten());
+    verdicts.extend(of_claims);
     let amber = |reason: String| (Outcome::NoReference, reason);
     let unknown = || amber("the files do not contain the time step (--time-step sets it)".to_owned());
     let plan = steps.ok_or_else(unknown).and_then(|steps| Plan::new(observed, steps));

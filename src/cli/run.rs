@@ -1,7 +1,7 @@
 //! `grainbench run`: judges the claims of cases and writes the report.
 
 use super::cache;
-use super::claims::tasks::{ClaimTasks, Part};
+use super::claims::tasks::ClaimTasks;
 use super::claims::{ClaimOptions, narrow, report, words};
 use super::cores::at_once;
 use super::earlier::EarlierReport;
@@ -20,8 +20,7 @@ use grainbench::harness::data::{Data, SceneDataError};
 use grainbench::jobs::execute::in_memory;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::judged::ExternalResults;
-use grainbench::reports::{Report, line};
-use grainbench::store::results::TaskResult;
+use grainbench::reports::{Report, Section, line};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -115,7 +114,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let keeping = if options.update_stored { Some(keep::program(selected)?) } else { None };
     let start = Instant::now();
     let results = perform(&tasks, options);
-    let left = results.iter().filter(|result| matches!(result, TaskResult::Nothing)).count();
+    let left = results.iter().filter(|result| result.is_none()).count();
     let sections = tasks.sections(results);
     let mut words = words(cases, options);
     if left > 0 {
@@ -198,10 +197,10 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
 }
 
 /// Performs all tasks in this process. A task that was omitted because of an interrupt has no result.
-fn perform(tasks: &ClaimTasks, options: &ClaimOptions) -> Vec<TaskResult<Part>> {
+fn perform(tasks: &ClaimTasks, options: &ClaimOptions) -> Vec<Option<Result<Section, String>>> {
     let follower = Follower::new("checks");
-    let tell = |part: &Part| {
-        for row in part.section.verdicts.iter().filter(|_| options.verbose) {
+    let tell = |finished: &Section| {
+        for row in finished.verdicts.iter().filter(|_| options.verbose) {
             follower.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));
         }
     };

@@ -69,33 +69,42 @@ impl State {
     }
 }
 
-/// Line of a result file.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Line<'a> {
-    /// Id of the finished task.
-    pub id: Id,
+/// Result of a task, and its line in a result file.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Entry {
     /// Final state of the task.
     pub state: State,
     /// Duration (s).
     pub seconds: f64,
-    /// Average number of runnable processes when the task ended; `None` if unknown.
+    /// Average number of runnable processes on the machine when the task ended; `None` if the task is not timed or the
+    /// system reports no load.
     pub load: Option<f64>,
-    /// Result as JSON; for a crashed task, the error message as a JSON string.
-    pub json: &'a str,
+    /// Result as JSON; for a crashed task, the error message as a JSON string. Empty if results were not requested.
+    pub json: Box<str>,
+    /// Index of the worker among all workers of a directory. It is not part of the line.
+    pub worker: usize,
+    /// Number of further results, which are ignored because the first result was successful. It is not part of the line.
+    pub repeats: usize,
 }
 
-impl<'a> Line<'a> {
-    /// Returns the text of the line, with its newline.
+impl Entry {
+    /// Returns the result of a task that has just ended.
     #[must_use]
-    pub fn written(&self) -> String {
-        let load = self.load.map_or_else(|| "-".to_owned(), |load| load.to_string());
-        let head = format!("{} {} {:.6} {load}", self.id, self.state.word(), self.seconds);
-        format!("{head} {} {}\n", sum(&head, self.json), self.json)
+    pub fn new(state: State, seconds: f64, load: Option<f64>, json: &str) -> Self {
+        Self { state, seconds, load, json: json.into(), worker: 0, repeats: 0 }
     }
 
-    /// Reads a line without its newline; returns `None` if it is damaged.
+    /// Returns the line of task `id`, with its newline.
     #[must_use]
-    pub fn read(text: &'a str) -> Option<Self> {
+    pub fn written(&self, id: Id) -> String {
+        let load = self.load.map_or_else(|| "-".to_owned(), |load| load.to_string());
+        let head = format!("{id} {} {:.6} {load}", self.state.word(), self.seconds);
+        format!("{head} {} {}\n", sum(&head, &self.json), self.json)
+    }
+
+    /// Reads a line without its newline; returns `None` if it is damaged. The JSON is kept only if `with_result` is set.
+    #[must_use]
+    pub fn read(text: &str, with_result: bool) -> Option<(Id, Self)> {
         let mut ends = text.match_indices(' ').map(|(at, _)| at);
         let head = &text[..ends.nth(3)?];
         let end = ends.next()?;
@@ -106,7 +115,7 @@ impl<'a> Line<'a> {
         let mut words = head.split(' ');
         let (id, state) = (words.next()?.parse().ok()?, State::from_word(words.next()?)?);
         let (seconds, load) = (words.next()?.parse().ok()?, words.next()?.parse().ok());
-        Some(Self { id, state, seconds, load, json })
+        Some((id, Self::new(state, seconds, load, if with_result { json } else { "" })))
     }
 }
 
@@ -148,12 +157,12 @@ impl Log {
         Ok(log)
     }
 
-    /// Adds a line. If the write fails, the file is truncated to the end of its last complete line.
+    /// Adds the line of task `id`. If the write fails, the file is truncated to the end of its last complete line.
     ///
     /// # Errors
     /// When the disk rejects the write.
-    pub fn add(&mut self, line: &Line<'_>) -> Result<(), WriteError> {
-        self.append(&line.written())?;
+    pub fn add(&mut self, id: Id, entry: &Entry) -> Result<(), WriteError> {
+        self.append(&entry.written(id))?;
         if self.synced.elapsed() > SYNC { self.sync() } else { Ok(()) }
     }
 
@@ -193,21 +202,21 @@ mod tests {
     fn a_line_is_read_as_it_is_written_and_not_when_it_is_damaged() {
         let id = Id::of_words("", &["a"]);
         for load in [None, Some(0.25)] {
-            let line = Line { id, state: State::Failed, seconds: 0.5, load, json: "{\"a b\": 1}" };
-            let text = line.written();
+            let entry = Entry::new(State::Failed, 0.5, load, "{\"a b\": 1}");
+            let text = entry.written(id);
             let text = text.trim_end();
-            assert_eq!(Line::read(text), Some(line));
+            assert_eq!(Entry::read(text, true), Some((id, entry)));
             for end in 0..text.len() {
-                assert_eq!(Line::read(&text[..end]), None, "cut off at {end}");
+                assert_eq!(Entry::read(&text[..end], true), None, "cut off at {end}");
             }
             for at in 0..text.len() {
                 let mut bytes = text.as_bytes().to_vec();
                 bytes[at] ^= 1;
-                assert_eq!(Line::read(std::str::from_utf8(&bytes).unwrap()), None, "a bit at {at}");
+                assert_eq!(Entry::read(std::str::from_utf8(&bytes).unwrap(), true), None, "a bit at {at}");
             }
         }
         for foreign in ["", " ", "     ", "{}", "é é é é é é"] {
-            assert_eq!(Line::read(foreign), None, "{foreign}");
+            assert_eq!(Entry::read(foreign, true), None, "{foreign}");
         }
     }
 }

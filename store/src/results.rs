@@ -1,7 +1,7 @@
 //! Results of finished tasks, from the result files of all workers.
 
 use crate::key::Id;
-use crate::log::{self, ENDING, Line, State, Worker};
+use crate::log::{self, ENDING, Entry, State, Worker};
 use crate::write::WriteError;
 use serde::de::DeserializeOwned;
 use std::collections::HashMap;
@@ -10,35 +10,6 @@ use std::path::{Path, PathBuf};
 
 /// Directory of result files.
 pub const RESULTS: &str = "results";
-
-/// Result of a task.
-#[derive(Clone, Debug, PartialEq)]
-pub struct Entry {
-    /// Final state of the task.
-    pub state: State,
-    /// Duration (s).
-    pub seconds: f64,
-    /// Average number of runnable processes on the machine when the task ended; `None` if the task is not timed or the
-    /// system reports no load.
-    pub load: Option<f64>,
-    /// Index of the worker in [`FinishedTasks::workers`].
-    pub worker: usize,
-    /// Result as JSON; empty unless results were requested.
-    pub json: Box<str>,
-    /// Number of further results, which are ignored because the first result was successful.
-    pub repeats: usize,
-}
-
-/// Result of a task, deserialised from its JSON text.
-#[derive(Clone, Debug, PartialEq)]
-pub enum TaskResult<T> {
-    /// The task has no result yet.
-    Nothing,
-    /// Result of a finished task.
-    Out(T),
-    /// Error message: our program crashed, or the stored result cannot be read.
-    Crash(String),
-}
 
 /// All finished tasks whose results are in a directory.
 #[derive(Clone, Debug, Default)]
@@ -93,19 +64,17 @@ impl FinishedTasks {
         Ok(finished)
     }
 
-    /// Returns the result of a task, deserialised from its JSON text. [`Self::read`] must have been called with
-    /// `with_results`.
+    /// Returns the result of a task, deserialised from its JSON text; `None` if the task is not finished. The error is the
+    /// message of a crash of our program, or the reason why the stored result cannot be read. [`Self::read`] must have
+    /// been called with `with_results`.
     #[must_use]
-    pub fn result<T: DeserializeOwned>(&self, id: Id) -> TaskResult<T> {
-        let Some(entry) = self.entries.get(&id) else { return TaskResult::Nothing };
+    pub fn result<T: DeserializeOwned>(&self, id: Id) -> Option<Result<T, String>> {
+        let entry = self.entries.get(&id)?;
         if entry.state == State::Crashed {
             let words = serde_json::from_str(&entry.json);
-            return TaskResult::Crash(words.unwrap_or_else(|_| "our program failed".to_owned()));
+            return Some(Err(words.unwrap_or_else(|_| "our program failed".to_owned())));
         }
-        match serde_json::from_str(&entry.json) {
-            Ok(result) => TaskResult::Out(result),
-            Err(error) => TaskResult::Crash(format!("its result cannot be read: {error}")),
-        }
+        Some(serde_json::from_str(&entry.json).map_err(|error| format!("its result cannot be read: {error}")))
     }
 
     fn add(&mut self, bytes: &[u8], with_results: bool) {
@@ -124,26 +93,20 @@ impl FinishedTasks {
         while let Some(line) = lines.next() {
             // The text after the last newline is empty or an incomplete line.
             let is_last = lines.peek().is_none();
-            match Line::read(line).filter(|_| !is_last) {
-                Some(line) => self.take(&line, place, with_results),
+            match Entry::read(line, with_results).filter(|_| !is_last) {
+                Some((id, entry)) => self.take(id, Entry { worker: place, ..entry }),
                 None if is_last && line.is_empty() => {}
                 None => self.damaged += 1,
             }
         }
     }
 
-    /// Adds the result in a line. If the task has a successful result already, the new result is ignored. A failed or
+    /// Adds a result. If the task has a successful result already, the new result is ignored. A failed or
     /// crashed result is replaced.
-    fn take(&mut self, line: &Line<'_>, worker: usize, with_results: bool) {
-        let Line { id, state, seconds, load, json } = *line;
-        let json = if with_results { json } else { "" };
-        let entry = || Entry { state, seconds, load, worker, json: json.into(), repeats: 0 };
+    fn take(&mut self, id: Id, entry: Entry) {
         match self.entries.get_mut(&id) {
-            None => {
-                self.entries.insert(id, entry());
-            }
-            Some(known) if known.state != State::Done => *known = entry(),
-            Some(known) => known.repeats += 1,
+            Some(known) if known.state == State::Done => known.repeats += 1,
+            _ => drop(self.entries.insert(id, entry)),
         }
     }
 }
@@ -176,11 +139,11 @@ mod tests {
             };
             let mut log = Log::new(&directory.path().join(RESULTS), &worker).unwrap();
             for (id, state, json) in results {
-                log.add(&Line { id, state, seconds: 1.0, load: None, json }).unwrap();
+                log.add(id, &Entry::new(state, 1.0, None, json)).unwrap();
             }
         }
         let finished = FinishedTasks::read(directory.path(), true).unwrap();
-        assert_eq!([a, b].map(|id| finished.result::<u32>(id)), [TaskResult::Out(3), TaskResult::Out(2)]);
+        assert_eq!([a, b].map(|id| finished.result::<u32>(id)), [Some(Ok(3)), Some(Ok(2))]);
         // Repeats are counted for each task, because the directory may hold results of tasks outside a plan.
         assert_eq!([a, b].map(|id| finished.entries[&id].repeats), [1, 2]);
         remove(directory.path()).unwrap();

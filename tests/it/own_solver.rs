@@ -136,9 +136,9 @@ fn a_control_does_not_explain_a_defect_of_our_own_solver() {
     let claims: Vec<Claim> = (case.claims)().into_iter().filter(|claim| claim.runs[0].variant == "thrown").collect();
     let spoiled: Arc<dyn Solvers> = Arc::new(Spoiled);
     let runner = Runner::new(case, Arc::clone(&spoiled));
-    let mut rows: Vec<_> = claims.iter().map(|claim| Some(runner.judge(claim))).collect();
-    mistake::explain(case, &spoiled, &claims, &mut rows);
-    let row = rows[0].take().unwrap();
+    let mut rows: Vec<_> = claims.iter().map(|claim| runner.judge(claim)).collect();
+    mistake::explain(case, &spoiled, &claims.iter().collect::<Vec<_>>(), &mut rows);
+    let row = rows.remove(0);
     assert_eq!(row.outcome, Outcome::Fail, "{row:?}");
     assert!(row.detail.is_none_or(|detail| !detail.contains("as if")));
 }

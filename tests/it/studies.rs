@@ -6,7 +6,7 @@ use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
 use grainbench::reports::study::stability::Hardness;
 use grainbench::scene::effect::Effect;
-use grainbench::store::log::Line;
+use grainbench::store::log::Entry;
 use grainbench::studies::effects::ledger::Ledger;
 use grainbench::studies::stability::assembly;
 use grainbench::studies::stability::hard;
@@ -157,15 +157,15 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
 /// Sets the times of all finished points: fixed times multiplied by a factor.
 fn retime(out: &Path, factor: f64) {
     let retimed = |text: &str| {
-        let line = Line::read(text).unwrap();
-        let mut result: Value = serde_json::from_str(line.json).unwrap();
+        let (id, entry) = Entry::read(text, true).unwrap();
+        let mut result: Value = serde_json::from_str(&entry.json).unwrap();
         let point = &mut result["Point"];
         point["wall_seconds"] = 1e-3.into();
         for (at, timing) in point["repetitions"].as_array_mut().unwrap().iter_mut().enumerate() {
             timing["cpu"] = (factor * 1e-3 * (1.0 + 0.02 * at as f64)).into();
             timing["reference"] = 1e-3.into();
         }
-        Line { json: &result.to_string(), ..line }.written()
+        Entry { json: result.to_string().into(), ..entry }.written(id)
     };
     for entry in fs::read_dir(out.join("results")).unwrap() {
         let path = entry.unwrap().path();

@@ -74,26 +74,20 @@ struct Candidate {
 ///
 /// `rows` are the results of `claims`, in the same order. All results of scenes with a failed result are examined. A
 /// mistake is not named if it contradicts at least as many of them as it explains.
-pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[Claim], rows: &mut [Option<Verdict>]) {
+pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[&Claim], rows: &mut [Verdict]) {
     let hints = hints(case, solvers, claims, rows);
     for (row, hint) in rows.iter_mut().zip(hints) {
-        if let (Some(row), Some(hint)) = (row, hint) {
+        if let Some(hint) = hint {
             let detail = row.detail.take().map_or_else(String::new, |detail| format!("{detail}; "));
             row.detail = Some(format!("{detail}as if: {hint}"));
         }
     }
 }
 
-fn hints(
-    case: &'static Case,
-    solvers: &Arc<dyn Solvers>,
-    claims: &[Claim],
-    rows: &[Option<Verdict>],
-) -> Vec<Option<String>> {
+fn hints(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[&Claim], rows: &[Verdict]) -> Vec<Option<String>> {
     let failed = |row: &Verdict| row.outcome == Outcome::Fail && row.error.is_some();
     let scenes = |claim: &Claim| claim.runs.iter().map(Run::scene_words).collect::<BTreeSet<String>>();
-    let judged: Vec<ClaimResult<'_>> =
-        claims.iter().zip(rows).filter_map(|(claim, row)| Some(ClaimResult { claim, row: row.as_ref()? })).collect();
+    let judged: Vec<ClaimResult<'_>> = claims.iter().zip(rows).map(|(claim, row)| ClaimResult { claim, row }).collect();
     let in_question: BTreeSet<String> =
         judged.iter().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
     let judged: Vec<ClaimResult<'_>> = judged
@@ -120,7 +114,7 @@ fn hints(
         let named: Vec<&str> = best.iter().filter(|(score, ..)| *score == top).map(|(.., words)| *words).collect();
         Some(named[..named.len().min(MOST_NAMED)].join(", or "))
     };
-    rows.iter().map(|row| row.as_ref().and_then(hint_of)).collect()
+    rows.iter().map(hint_of).collect()
 }
 
 fn distance(error: Option<f64>, row: &Verdict) -> f64 {

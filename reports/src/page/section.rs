@@ -101,6 +101,7 @@ impl Render for CaseSection<'_> {
                         @for control in green_controls { li { (line::control_in_section(control)) } }
                     }
                 }
+                @if let Some(error) = &section.omitted { p.note { "The figures are omitted: " (error) } }
                 (figures::render(figures))
                 @for Details { id, class, summary, part } in details {
                     details id=[id.as_ref()] class=(class) { summary { (summary) } (part) }

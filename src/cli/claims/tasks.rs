@@ -4,22 +4,21 @@ use super::ClaimOptions;
 use super::conformance::{self as conform, ConformingSolver};
 use crate::cli::select::CaseSelection;
 use crate::cli::{cache, exit};
+use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::mistake;
 use grainbench::harness::run::{FinishedRun, Run, Set};
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
-use grainbench::harness::verdict::{self, ControlResult, Verdict};
+use grainbench::harness::verdict;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::{RunCost, Section};
 use grainbench::solver::failure::RunError;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::run_cache::RunCache;
-use serde::{Deserialize, Serialize};
-use std::collections::{BTreeMap, HashSet};
+use std::collections::HashSet;
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
 
@@ -52,16 +51,6 @@ pub(crate) enum ClaimTask {
     Figures(usize),
     /// Conformance properties of a solver.
     Conformance(usize),
-}
-
-/// Result of a task: part of a section, and the keys by which its runs are ordered.
-#[derive(Serialize, Deserialize)]
-pub(crate) struct Part {
-    keys: Vec<String>,
-    pub(crate) section: Section,
-    /// Error message if the figures could not be drawn.
-    #[serde(default, skip_serializing_if = "Option::is_none")]
-    without: Option<String>,
 }
 
 impl ClaimTasks {
@@ -169,87 +158,55 @@ impl ClaimTasks {
         runner.threads(self.threads)
     }
 
-    /// Returns the sections of a report from the results of its tasks.
-    pub(crate) fn sections(&self, results: Vec<TaskResult<Part>>) -> Vec<Section> {
-        let mut cases: Vec<CaseResults> = self.selected.iter().map(CaseResults::new).collect();
-        let (mut verdicts, mut controls) = (Vec::new(), Vec::new());
+    /// Returns the sections of a report from the results of its tasks. The detail of a failed result names a known mistake
+    /// that gives the same error, if there is one.
+    pub(crate) fn sections(&self, results: Vec<Option<Result<Section, String>>>) -> Vec<Section> {
+        let mut cases: Vec<(Section, Vec<&Claim>)> =
+            self.selected.iter().map(|selected| (blank(selected), Vec::new())).collect();
+        let mut conformance = conform::section_of(Vec::new(), Vec::new());
         for (&task, result) in self.all.iter().zip(results) {
-            let part = match (result, task) {
-                (TaskResult::Out(part), _) => part,
-                (TaskResult::Nothing, _) => continue,
-                (TaskResult::Crash(detail), ClaimTask::Claim(case, claim)) => {
+            let finished = match (result, task) {
+                (None, _) => continue,
+                (Some(Ok(finished)), _) => finished,
+                (Some(Err(detail)), ClaimTask::Claim(case, claim)) => {
                     let row = self.runner(case).crashed(&self.selected[case].claims[claim], detail);
-                    cases[case].verdicts[claim] = Some(row);
-                    continue;
+                    Section { verdicts: vec![row], ..Section::default() }
                 }
-                (TaskResult::Crash(detail), _) => {
+                (Some(Err(detail)), _) => {
                     exit::say("warning", &format!("figures or conformance properties are omitted: {detail}"));
                     continue;
                 }
             };
-            let Part { keys, section, without } = part;
-            let case = match task {
-                ClaimTask::Conformance(_) => {
-                    verdicts.extend(section.verdicts);
-                    controls.extend(section.controls);
-                    continue;
-                }
-                ClaimTask::Figures(case) => case,
+            match task {
+                ClaimTask::Conformance(_) => conformance.add(finished),
+                ClaimTask::Figures(case) => cases[case].0.add(finished),
                 ClaimTask::Claim(case, claim) => {
-                    cases[case].verdicts[claim] = section.verdicts.into_iter().next();
-                    cases[case].controls.extend(section.controls);
-                    case
+                    let (section, judged) = &mut cases[case];
+                    judged.extend(finished.verdicts.iter().map(|_| &self.selected[case].claims[claim]));
+                    section.add(finished);
                 }
-            };
-            if let Some(error) = without {
-                let name = self.selected[case].case.name;
-                exit::say("warning", &format!("{name}: its figures are omitted: {error}"));
             }
-            cases[case].figures.extend(section.figures);
-            cases[case].runs.extend(keys.into_iter().zip(section.runs));
         }
-        let finished =
-            self.selected.iter().zip(cases).map(|(selected, results)| results.section(selected, &self.solvers));
-        let mut sections: Vec<Section> = finished.collect();
-        if !verdicts.is_empty() {
-            sections.push(conform::section_of(verdicts, controls));
+        let mut sections = Vec::new();
+        for (selected, (mut section, judged)) in self.selected.iter().zip(cases) {
+            if let Some(error) = &section.omitted {
+                exit::say("warning", &format!("{}: its figures are omitted: {error}", selected.case.name));
+            }
+            mistake::explain(selected.case, &self.solvers, &judged, &mut section.verdicts);
+            section.finish_runs();
+            sections.push(section);
+        }
+        if !conformance.verdicts.is_empty() {
+            sections.push(conformance);
         }
         sections
     }
 }
 
-/// Results of one case, in the order of its claims.
-struct CaseResults {
-    verdicts: Vec<Option<Verdict>>,
-    controls: Vec<ControlResult>,
-    figures: Vec<Figure>,
-    runs: BTreeMap<String, RunCost>,
-}
-
-impl CaseResults {
-    fn new(selected: &CaseSelection) -> Self {
-        let verdicts = selected.claims.iter().map(|_| None).collect();
-        Self { verdicts, controls: Vec::new(), figures: Vec::new(), runs: BTreeMap::new() }
-    }
-
-    /// Returns the section of the case. The detail of a failed result names a known mistake that gives the same error,
-    /// if there is one.
-    fn section(mut self, selected: &CaseSelection, solvers: &Arc<dyn Solvers>) -> Section {
-        mistake::explain(selected.case, solvers, &selected.claims, &mut self.verdicts);
-        Section {
-            figures: self.figures,
-            verdicts: self.verdicts.into_iter().flatten().collect(),
-            controls: self.controls,
-            runs: self.runs.into_values().collect(),
-            ..blank(selected)
-        }
-    }
-}
-
 impl TaskList for ClaimTasks {
-    type Output = Part;
+    type Output = Section;
 
-    fn perform(&self, place: usize, sink: &ResultSink<'_, Part>) -> (State, Part) {
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Section>) -> (State, Section) {
         let task = self.all[place];
         sink.now(&self.name(task));
         match task {
@@ -257,8 +214,7 @@ impl TaskList for ClaimTasks {
             ClaimTask::Figures(case) => self.figures(case),
             ClaimTask::Conformance(solver) => {
                 let (verdicts, controls) = conform::judge(&self.conforming[solver], &self.solvers);
-                let section = Section { title: String::new(), ..conform::section_of(verdicts, controls) };
-                (State::Done, in_short(Part { keys: Vec::new(), section, without: None }))
+                (State::Done, Section { verdicts, controls, ..Section::default() })
             }
         }
     }
@@ -266,50 +222,35 @@ impl TaskList for ClaimTasks {
 
 impl ClaimTasks {
     /// Judges a claim and its negative control.
-    fn claim(&self, case: usize, claim: usize) -> (State, Part) {
-        let (selected, runner) = (&self.selected[case], self.runner(case));
-        let claim = &selected.claims[claim];
+    fn claim(&self, case: usize, claim: usize) -> (State, Section) {
+        let (claim, runner) = (&self.selected[case].claims[claim], self.runner(case));
         let (verdict, control) = runner.judge_and_control(claim, self.controls);
         // A solver that is not installed now may be installed later, so the task can be repeated.
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
-        let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
-        part.section.verdicts.push(verdict);
-        part.section.controls.extend(control);
         let keys: HashSet<String> = claim.runs.iter().map(Run::key).collect();
-        part.add_runs(runner, |key| keys.contains(key));
-        (if is_failed { State::Failed } else { State::Done }, in_short(part))
+        let (verdicts, controls) = (vec![verdict], control.into_iter().collect());
+        let runs = runs(runner, |key| keys.contains(key));
+        (
+            if is_failed { State::Failed } else { State::Done },
+            Section { verdicts, controls, runs, ..Section::default() },
+        )
     }
 
-    fn figures(&self, case: usize) -> (State, Part) {
-        let (selected, runner) = (&self.selected[case], self.runner(case));
-        let mut part = Part { keys: Vec::new(), section: blank(selected), without: None };
-        match draw(selected, runner) {
-            Ok(figures) => part.section.figures = figures,
-            Err(error) => part.without = Some(error.to_string()),
-        }
-        part.add_runs(runner, |_| true);
-        (if part.without.is_some() { State::Failed } else { State::Done }, in_short(part))
-    }
-}
-
-impl Part {
-    /// Adds the cost of the finished runs that `is_meant` selects by their keys.
-    fn add_runs(&mut self, runner: &Runner, is_meant: impl Fn(&str) -> bool) {
-        for (run, done) in runner.done() {
-            let key = run.key();
-            if is_meant(&key) {
-                self.keys.push(key);
-                self.section.runs.push(cost(&run, &done));
-            }
-        }
+    fn figures(&self, case: usize) -> (State, Section) {
+        let runner = self.runner(case);
+        let (figures, omitted) = match draw(&self.selected[case], runner) {
+            Ok(figures) => (figures, None),
+            Err(error) => (Vec::new(), Some(error.to_string())),
+        };
+        let state = if omitted.is_some() { State::Failed } else { State::Done };
+        (state, Section { figures, omitted, runs: runs(runner, |_| true), ..Section::default() })
     }
 }
 
-/// Removes the texts that the report can copy from the case.
-fn in_short(part: Part) -> Part {
-    let nothing = String::new;
-    let section = Section { claim: nothing(), derivation: nothing(), weak: nothing(), ..part.section };
-    Part { section, ..part }
+/// Returns the cost of the finished runs that `is_meant` selects by their keys.
+fn runs(runner: &Runner, is_meant: impl Fn(&str) -> bool) -> Vec<RunCost> {
+    let runs = runner.done().into_iter().map(|(run, done)| cost(&run, &done));
+    runs.filter(|run| is_meant(&run.key)).collect()
 }
 
 /// Draws the figures of a case for the selected claims.
@@ -344,6 +285,7 @@ fn blank(selected: &CaseSelection) -> Section {
 fn cost(run: &Run, done: &FinishedRun) -> RunCost {
     let (provenance, cost) = (&done.record.provenance, &done.record.cost);
     RunCost {
+        key: run.key(),
         variant: run.scene_words(),
         solver: provenance.solver.clone(),
         resolution: run.resolution.to_string(),

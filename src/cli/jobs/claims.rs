@@ -4,7 +4,7 @@
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, is_plan};
 use crate::cli::cache;
-use crate::cli::claims::tasks::{ClaimTask, ClaimTasks, Part};
+use crate::cli::claims::tasks::{ClaimTask, ClaimTasks};
 use crate::cli::claims::{self, ClaimOptions};
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::filter::Filters;
@@ -25,9 +25,9 @@ use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::{Kind, Plan};
 use grainbench::jobs::task::{Id, Task};
+use grainbench::reports::Section;
 use grainbench::store::key;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::cost::knobs::nominal_seconds;
 use std::collections::{BTreeMap, HashMap};
 use std::path::PathBuf;
@@ -193,9 +193,9 @@ impl Tasks for ClaimStudy {
 }
 
 impl TaskList for ClaimStudy {
-    type Output = Part;
+    type Output = Section;
 
-    fn perform(&self, place: usize, sink: &ResultSink<'_, Part>) -> (State, Part) {
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Section>) -> (State, Section) {
         self.tasks.perform(place, sink)
     }
 }
@@ -209,7 +209,7 @@ impl Drop for ClaimStudy {
 }
 
 impl Study for ClaimStudy {
-    fn report(&self, results: Vec<TaskResult<Part>>, how: &ReportOptions<'_>) -> Outcome {
+    fn report(&self, results: Vec<Option<Result<Section, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let sections = self.tasks.sections(results);
         let words = self.words.iter().chain(&how.words).cloned().collect();
         let mut report = claims::report(provenance(words, how.seconds), sections, self.is_whole)?;

@@ -17,7 +17,6 @@ use grainbench::reports::study::points_of;
 use grainbench::reports::study::step::Model;
 use grainbench::store::key;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::ProgressObserver;
 use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
@@ -172,7 +171,7 @@ impl TaskList for CostStudy {
 }
 
 impl Study for CostStudy {
-    fn report(&self, results: Vec<TaskResult<Measured>>, how: &ReportOptions<'_>) -> Outcome {
+    fn report(&self, results: Vec<Option<Result<Measured, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose().map_err(Fault::input)?;
         let (results, has_crash) = outputs(results, how);
         let mut words = self.arguments.command_words("cost");

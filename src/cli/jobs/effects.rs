@@ -11,7 +11,6 @@ use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::effects::Entry;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use std::sync::{Mutex, PoisonError};
 
@@ -75,7 +74,7 @@ impl TaskList for EffectStudy {
 }
 
 impl Study for EffectStudy {
-    fn report(&self, results: Vec<TaskResult<Option<Entry>>>, how: &ReportOptions<'_>) -> Outcome {
+    fn report(&self, results: Vec<Option<Result<Option<Entry>, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
         let mut study = how.study(self.arguments.command_words("effects"));
         study.ledger.extend(results.into_iter().flatten().flatten());

@@ -14,7 +14,6 @@ use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::stability::{HardCaseResult, Limit};
 use grainbench::scene::scene::Scene;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::stability::assembly::{self, Assembly};
 use grainbench::studies::stability::hard::{self, HardCase};
 use grainbench::studies::stability::limit;
@@ -132,7 +131,7 @@ impl TaskList for StabilityStudy {
 }
 
 impl Study for StabilityStudy {
-    fn report(&self, results: Vec<TaskResult<Tested>>, how: &ReportOptions<'_>) -> Outcome {
+    fn report(&self, results: Vec<Option<Result<Tested, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
         let mut study = how.study(self.arguments.command_words("stability"));
         for tested in results.into_iter().flatten() {

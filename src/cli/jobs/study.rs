@@ -12,7 +12,7 @@ use grainbench::jobs::task::Task;
 use grainbench::jobs::work::{Summary, WorkRequest, work};
 use grainbench::reports::study::{Study as Report, write_study};
 use grainbench::store::log::Worker;
-use grainbench::store::results::{FinishedTasks, TaskResult};
+use grainbench::store::results::FinishedTasks;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
@@ -45,8 +45,9 @@ pub(super) fn is_plan(plan: &Plan, is_same: bool) -> Result<(), Fault> {
 
 /// Kind of work.
 pub(crate) trait Study: Tasks + TaskList {
-    /// Writes the report of the finished tasks. `results` has an entry for each task.
-    fn report(&self, results: Vec<TaskResult<Self::Output>>, how: &ReportOptions<'_>) -> Outcome;
+    /// Writes the report of the finished tasks. `results` has an entry for each task: `None` if it is not finished, an
+    /// error if it crashed.
+    fn report(&self, results: Vec<Option<Result<Self::Output, String>>>, how: &ReportOptions<'_>) -> Outcome;
 }
 
 /// Kind of work whose results have any type.
@@ -131,19 +132,14 @@ impl ReportOptions<'_> {
 }
 
 /// Returns the results of a study. A task whose result is missing has no entry; a crash is reported.
-pub(super) fn outputs<T>(results: Vec<TaskResult<T>>, how: &ReportOptions<'_>) -> (Vec<Option<T>>, bool) {
+pub(super) fn outputs<T>(results: Vec<Option<Result<T, String>>>, how: &ReportOptions<'_>) -> (Vec<Option<T>>, bool) {
     let mut has_crash = false;
-    let output = |result: TaskResult<T>| match result {
-        TaskResult::Out(output) => Some(output),
-        TaskResult::Nothing => None,
-        TaskResult::Crash(detail) => {
-            has_crash = true;
-            if !how.is_draft {
-                exit::say("warning", &format!("a task crashed and is omitted: {detail}"));
-            }
-            None
+    let mut note = |detail: &String| {
+        has_crash = true;
+        if !how.is_draft {
+            exit::say("warning", &format!("a task crashed and is omitted: {detail}"));
         }
     };
-    let outputs = results.into_iter().map(output).collect();
+    let outputs = results.into_iter().map(|result| result?.inspect_err(&mut note).ok()).collect();
     (outputs, has_crash)
 }

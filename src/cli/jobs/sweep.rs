@@ -16,7 +16,6 @@ use grainbench::reports::sweep::{PointOutput, QuantityResult, counts, sweep_json
 use grainbench::solver::Solver;
 use grainbench::store::key;
 use grainbench::store::log::State;
-use grainbench::store::results::TaskResult;
 use grainbench::studies::run_cache::RunCache;
 use std::collections::BTreeMap;
 use std::path::Path;
@@ -111,19 +110,15 @@ impl Drop for SweepStudy {
 }
 
 impl Study for SweepStudy {
-    fn report(&self, results: Vec<TaskResult<PointOutput>>, how: &ReportOptions<'_>) -> Outcome {
+    fn report(&self, results: Vec<Option<Result<PointOutput, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
-        let crashed = results.iter().any(|result| matches!(result, TaskResult::Crash(_)));
-        let left = |result: TaskResult<PointOutput>| match result {
-            TaskResult::Nothing => None,
-            TaskResult::Out(left) => Some(left),
-            TaskResult::Crash(detail) => {
-                let looked = QuantityResult::without_value(verdict::Outcome::Broken, None);
-                Some(PointOutput { looked: vec![looked], detail: Some(detail), ..PointOutput::default() })
-            }
+        let crashed = results.iter().any(|result| matches!(result, Some(Err(_))));
+        let crashed_point = |detail| {
+            let looked = vec![QuantityResult::without_value(verdict::Outcome::Broken, None)];
+            PointOutput { looked, detail: Some(detail), ..PointOutput::default() }
         };
-        let left = results.into_iter().map(left).collect();
+        let left = results.into_iter().map(|result| Some(result?.unwrap_or_else(crashed_point))).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
         write_sweep(how.out, &report).map_err(Fault::writing)?;
         let [within, outside, amber, unjudged] = counts(&report.points);
