@@ -17,7 +17,7 @@ const RIGID: &[Row] =
     &[Row { variant: "disc", rolls: true, lifts: None }, Row { variant: "sphere", rolls: true, lifts: None }];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BACKSPIN };
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BACKSPIN };
 
 const SOURCE: Source =
     Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");

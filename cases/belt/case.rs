@@ -23,7 +23,7 @@ const STOPPED: Source = Source::Derived(
 );
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BELT };
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BELT };
 
 struct Belt {
     grain: OneGrain,

@@ -7,13 +7,8 @@ use grainbench_harness::prelude::*;
 /// Time step of the impact in the paper (Dosta et al. 2024).
 const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: |_| Ok(Vec::new()),
-    ..crate::registry::heads::BULK_PAIRS
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::BULK_PAIRS };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];

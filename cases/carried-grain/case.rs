@@ -9,7 +9,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 const STEP: Level = LEVELS[2];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::CARRIED_GRAIN };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::CARRIED_GRAIN };
 
 /// Parameters of motion, springs and run that determine the exact position of the carried grain.
 struct Motion {
@@ -113,8 +113,4 @@ fn spin() -> Claim {
             scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
         }))
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

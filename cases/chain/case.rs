@@ -24,7 +24,7 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::CHAIN };
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::CHAIN };
 
 fn run(level: Level) -> Run {
     Run::new(PLAIN, "dem", level.resolution)

@@ -29,7 +29,7 @@ const RESTITUTION: Source = Source::Derived("damped oscillator in δ^{5/4}: v′
 const SLIDING: Source = Source::Derived("a contact that slides throughout has the impulse μ(1+e) m v_n (derivation)");
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::CHUNG_OOI };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::CHUNG_OOI };
 
 fn claims() -> Vec<Claim> {
     let mut claims = [elastic(), restitution(), oblique(), rigid(), turning::claims(), fair::claims()].concat();

@@ -11,7 +11,7 @@ const STRENGTH: Source = Source::Derived(
 );
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::COHESIVE_DISC };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::COHESIVE_DISC };
 
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {

@@ -13,7 +13,7 @@ const FINEST: Level = LEVELS[3];
 const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-zeta.2"];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::COLLISION };
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::COLLISION };
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();

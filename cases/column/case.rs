@@ -18,7 +18,7 @@ const DISPLACEMENT: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::COLUMN };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::COLUMN };
 
 /// Height (m), density (kg/m³), modulus (Pa) and gravity (m/s²).
 struct Column {

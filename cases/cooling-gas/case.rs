@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::COOLING_GAS };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::COOLING_GAS };
 
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.

@@ -30,7 +30,7 @@ const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::DISK_CHAINS };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::DISK_CHAINS };
 
 /// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {

@@ -21,7 +21,7 @@ use zones::{COUNTED, ZONES};
 const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) }];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::DRUM_MIXING };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::DRUM_MIXING };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];

@@ -23,7 +23,7 @@ const RADIAL: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::EXPANDING_RING };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::EXPANDING_RING };
 
 /// Breathing mode of a ring, U(r) = σ_Y(b) J₁(kr) − σ_J(b) Y₁(kr). σ_J(b) and σ_Y(b) are the stresses σ_rr of J₁(kr)
 /// and Y₁(kr) at the outer radius b.

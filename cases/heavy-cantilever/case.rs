@@ -17,7 +17,7 @@ const SINKING: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::HEAVY_CANTILEVER };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::HEAVY_CANTILEVER };
 
 /// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]

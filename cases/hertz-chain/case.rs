@@ -15,7 +15,7 @@ const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 const BEADS: f64 = 40.0;
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::HERTZ_CHAIN };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::HERTZ_CHAIN };
 
 /// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave. The time
 /// step is adapted to the contact stiffness at the overlap of the wave: Δt ∝ v^{-1/5}. The critical time step refers to

@@ -39,7 +39,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    ..crate::registry::heads::IMPACT_BED
+    ..crate::heads::IMPACT_BED
 };
 
 /// Time step of most claims.

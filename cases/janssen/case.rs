@@ -17,7 +17,7 @@ const LEVELS: &[Level] = &[
 ];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::JANSSEN };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::JANSSEN };
 
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");

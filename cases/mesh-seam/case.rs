@@ -15,7 +15,7 @@ const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::MESH_SEAM };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::MESH_SEAM };
 
 fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> =
@@ -140,8 +140,4 @@ fn liggghts(floor: &'static str) -> Claim {
     row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
         worst(done, &AXES, done[0].scene.grains[0].radius)
     })
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

@@ -22,7 +22,7 @@ const fn level(name: &'static str, cells: f64) -> Level {
 }
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::MMS_VORTEX };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::MMS_VORTEX };
 
 /// Ends the run at 0.5 s, when the rotation is largest.
 fn half(scene: &mut Scene) {

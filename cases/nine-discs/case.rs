@@ -34,7 +34,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::NINE_DISCS
+    ..crate::heads::NINE_DISCS
 };
 
 fn claims() -> Vec<Claim> {

@@ -24,7 +24,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::PHOTOELASTIC_PACKING
+    ..crate::heads::PHOTOELASTIC_PACKING
 };
 
 /// Packings with the parameters of each table of the paper. Eleven packings were tried for each table. The lists

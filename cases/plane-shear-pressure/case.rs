@@ -17,13 +17,8 @@ const LEVELS: &[Level] = &[
     Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
 ];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::PLANE_SHEAR_PRESSURE
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::PLANE_SHEAR_PRESSURE };
 
 /// Variants, each with its approximate inertial number.
 const RATES: [(&str, &str); 5] =

@@ -14,7 +14,7 @@ const LEVELS: &[Level] = &[
 ];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::PLANE_SHEAR };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::PLANE_SHEAR };
 
 /// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";

@@ -39,7 +39,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::POLYDISPERSE_SHEAR
+    ..crate::heads::POLYDISPERSE_SHEAR
 };
 
 fn claims() -> Vec<Claim> {

@@ -23,7 +23,7 @@ const SPEED: f64 = 0.001;
 const TIME: f64 = 20.0;
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::PRESSED_BLOCK };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::PRESSED_BLOCK };
 
 /// Means over the points in the middle half of the block at the end. All points have the same mass.
 #[derive(Default)]

@@ -6,8 +6,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROCKING };
+pub(crate) static CASE: Case = Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROCKING };
 
 /// Parameters of a sphere that rolls to rest.
 struct RollToRest {
@@ -129,8 +128,4 @@ fn between(variant: &'static str) -> Claim {
             scene.change_laws(|law| law.rolling_friction *= 1.05);
         }))
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

@@ -6,7 +6,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 const STEP: Level = LEVELS[1];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROLLING_OFF };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROLLING_OFF };
 
 /// Fixed ball and rolling ball.
 struct Balls {
@@ -129,10 +129,6 @@ fn kept(
         .within(off(variant, 1.0))
         .refuses(control)
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }
 
 #[cfg(test)]

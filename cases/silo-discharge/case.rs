@@ -11,13 +11,8 @@ const LEVELS: &[Level] = &[
     Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) },
 ];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SILO_DISCHARGE
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SILO_DISCHARGE };
 
 /// Variant with the small orifice.
 const SMALL: &str = "small";

@@ -11,7 +11,7 @@ const LAWS: [&str; 3] = ["hypoelastic", "metal", "rubber"];
 const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain (derivation)");
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::SPINNING_RING };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::SPINNING_RING };
 
 /// Ring that rotates about its centre.
 #[derive(Clone, Copy, Debug)]

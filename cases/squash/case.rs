@@ -24,7 +24,7 @@ const FORCES: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::SQUASH };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SQUASH };
 
 fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)

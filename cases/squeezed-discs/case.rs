@@ -18,13 +18,8 @@ const SOURCE: Source = Source::Derived(
                      (derivation)",
 );
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SQUEEZED_DISCS
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::SQUEEZED_DISCS };
 
 /// Returns the distance by which each wall moves in (m).
 fn squeeze(scene: &Scene) -> f64 {

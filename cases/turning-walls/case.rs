@@ -9,7 +9,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fra
 const STEP: Level = LEVELS[1];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::TURNING_WALLS };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::TURNING_WALLS };
 
 /// Returns the angular velocity of the walls (rad/s).
 fn spin(scene: &Scene) -> Vector3<f64> {
@@ -156,8 +156,4 @@ fn clamped() -> Claim {
             scene.walls[1].motion.phases.iter_mut().for_each(|phase| phase.spin *= 0.99);
         }))
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

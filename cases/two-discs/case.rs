@@ -10,7 +10,7 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 const TOUCH: f64 = 3.0 - SQRT_2;
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::TWO_DISCS };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::TWO_DISCS };
 
 /// Courant number: time step divided by the transit time of a wave through a cell. It is smaller than usual because of
 /// the contact springs and the waves of an impact.

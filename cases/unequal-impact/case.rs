@@ -7,13 +7,8 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.02", 0.02), fraction("dt=.005", 0.005)];
 const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::UNEQUAL_IMPACT
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::UNEQUAL_IMPACT };
 
 /// Parameters and exact values of the impact.
 struct Impact {
@@ -139,8 +134,4 @@ fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
         ))
         .refuses(if along { heavier } else { stronger_friction() })
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

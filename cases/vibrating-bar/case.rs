@@ -43,7 +43,7 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::registry::heads::VIBRATING_BAR };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::VIBRATING_BAR };
 
 /// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
 pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
