@@ -353,8 +353,8 @@ fn kick() -> Claim {
             "overlap/R, for a lever arm between R and R − overlap; in units of the velocity of \
                                 LIGGGHTS",
         ))
-        .refuses(Control::ours("a dashpot along the belt × 1.05 in ours", |scene| {
-            scene.change_laws(|law| law.tangential_damping *= 1.05);
+        .refuses(Control::our_contact_law("a dashpot along the belt × 1.05 in ours", |law| {
+            law.tangential_damping *= 1.05
         }))
 }
 

@@ -45,9 +45,7 @@ fn force(variant: &'static str, about: &str) -> Claim {
         "rounding only, because both programs use the same integration cycle; in units of the \
                                  largest force",
     );
-    let control = Control::ours("E* × 1.00001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.00001));
-    });
+    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
     row(&format!("force, {about}, worst"), "N", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];
         rate(done, &["a.vx", "a.vz"], grain.mass)
@@ -61,9 +59,7 @@ fn torque(variant: &'static str, about: &str) -> Claim {
         "rounding only, because both programs use the same integration cycle; in units of the \
                                  largest torque",
     );
-    let control = Control::ours("μ × 1.00001 in ours", |scene| {
-        scene.change_laws(|law| law.friction *= 1.00001);
-    });
+    let control = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
     row(&format!("torque, {about}, worst"), "N m", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];
         rate(done, &["a.omega_y"], grain.inertia)

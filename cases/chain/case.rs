@@ -78,9 +78,7 @@ fn claims() -> Vec<Claim> {
             "the force oscillates about the impedance by √(2/π) x^(−3/2), x = 2ω₀t; the mean from x = 20 to 40 \
              contains at most one uncancelled half wave, 2√(2/π) 20^(−5/2)",
         ))
-        .refuses(Control::scene("contacts 2 % too stiff", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.02));
-        }))
+        .refuses(Control::contact_law("contacts 2 % too stiff", |law| law.scale_normal(1.02)))
         .fair_to_any();
     // Rigid beads have no dispersion. If many beads are in contact at once, the solution is not unique.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")

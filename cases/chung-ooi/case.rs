@@ -105,7 +105,7 @@ fn elastic() -> Vec<Claim> {
                 Ok(Measurement::new(read(&done[0])?, exact, exact))
             })
             .within(estimated(1e-6, "discretisation of the impact by about a thousand steps"))
-            .refuses(Control::scene("E* 1 % too large", |scene| scene.change_laws(|law| law.scale_normal(1.01))))
+            .refuses(Control::contact_law("E* 1 % too large", |law| law.scale_normal(1.01)))
     };
     let mut claims = Vec::new();
     for variant in ELASTIC {
@@ -164,14 +164,11 @@ fn late(variant: &str, restitution: f64) -> Tolerance {
 fn restitution() -> Vec<Claim> {
     let restitution_claims = |variant: &'static str, restitution: f64| {
         let (tolerance, control) = if restitution == 1.0 {
-            let more = Control::scene("a little damping, e = .99", |scene| {
-                scene.change_laws(|law| law.damping_ratio = damping_ratio(0.99));
-            });
+            let more = Control::contact_law("a little damping, e = .99", |law| law.damping_ratio = damping_ratio(0.99));
             (estimated(1e-6, "discretisation of the impact by about a thousand steps, without a dashpot"), more)
         } else {
-            let more = Control::scene("the factor √(5/6) left out", |scene| {
-                scene.change_laws(|law| law.damping_ratio *= (6.0_f64 / 5.0).sqrt());
-            });
+            let more =
+                Control::contact_law("the factor √(5/6) left out", |law| law.damping_ratio *= (6.0_f64 / 5.0).sqrt());
             (late(variant, restitution), more)
         };
         claim(format!("rebound velocity over impact velocity, e = {restitution}"), "1")
@@ -218,7 +215,7 @@ fn force_that_moves() -> Claim {
             "rounding relative to one step: 2 ε R of positions over the displacement v Δt = 1e-5 R, and ε t of times \
              over Δt, with t up to 2e4 Δt",
         ))
-        .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.damping_ratio *= 1.001)))
+        .refuses(Control::contact_law("damping × 1.001", |law| law.damping_ratio *= 1.001))
 }
 
 fn at_angle(variant: &'static str, degrees: f64) -> Run {
@@ -273,7 +270,7 @@ fn oblique() -> Vec<Claim> {
 }
 
 fn more_friction() -> Control {
-    Control::scene("friction × 1.2", |scene| scene.change_laws(|law| law.friction *= 1.2))
+    Control::contact_law("friction × 1.2", |law| law.friction *= 1.2)
 }
 
 /// Returns the claims on the solver `rigid`, which has no overlap and no contact duration, but an exact restitution.
@@ -293,9 +290,7 @@ fn rigid() -> Vec<Claim> {
             .run(rigid(with_restitution(DAMPED[0], 0.8)))
             .equals(RESTITUTION, |done| Ok(Measurement::new(rebound(&done[0])?, 0.8, 1.0)))
             .within(rounding())
-            .refuses(Control::scene("e = .79", |scene| {
-                scene.change_laws(|law| law.damping_ratio = damping_ratio(0.79))
-            })),
+            .refuses(Control::contact_law("e = .79", |law| law.damping_ratio = damping_ratio(0.79))),
         claim("tangential restitution at 60° with friction μ m v_n", "1")
             .run(oblique())
             .equals(

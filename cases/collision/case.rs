@@ -114,7 +114,7 @@ fn force_that_moves() -> Claim {
             "rounding: 4ε relative to the displacement v Δt = 2e-4 per step, and ε of up to 500 steps, times the \
              dashpot force c v = .2 of the largest force; 8ε of k times a radius",
         ))
-        .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
+        .refuses(Control::contact_law("damping × 1.001", |law| law.stiffness_damping *= 1.001))
 }
 
 /// Returns the claim on the contact force that LAMMPS or LIGGGHTS outputs. The program evaluates the contact again at

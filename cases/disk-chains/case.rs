@@ -102,9 +102,7 @@ fn exact(variant: &'static str, first: usize) -> Claim {
             "(ωΔt)²/24 of central differences at ωΔt = .02 for the fastest mode of a chain; displacements of 2e-6 R \
              turn the normals",
         ))
-        .refuses(Control::scene("contacts 1 % too stiff", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.01));
-        }))
+        .refuses(Control::contact_law("contacts 1 % too stiff", |law| law.scale_normal(1.01)))
 }
 
 /// Returns the claim on the force between the first two discs of the sticking chain, until a contact of the assembly
@@ -127,9 +125,7 @@ fn glued() -> Claim {
             "central differences at ω₀Δt = .01; contacts with a tension below a hundredth of the striker's \
              displacement count as closed; in units of V√(k m)",
         ))
-        .refuses(Control::scene("tangential springs 1 % too soft", |scene| {
-            scene.change_laws(|law| law.scale_tangential(0.99));
-        }))
+        .refuses(Control::contact_law("tangential springs 1 % too soft", |law| law.scale_tangential(0.99)))
 }
 
 /// Returns the claim that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the

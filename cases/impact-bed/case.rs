@@ -228,7 +228,7 @@ fn at_rest() -> Control {
 }
 
 fn smooth() -> Control {
-    Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
+    Control::contact_law("no friction", |law| law.friction = 0.0)
 }
 
 /// Returns a negative control in which contacts with ball and walls have the contact law of the grains.

@@ -133,9 +133,7 @@ fn held(at: &'static SeamPosition) -> Claim {
 /// Returns the claim that the position of the sphere agrees with LIGGGHTS on the same triangles.
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
-    let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1.001));
-    });
+    let control = Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001));
     let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
     row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
         worst(done, &AXES, done[0].scene.grains[0].radius)

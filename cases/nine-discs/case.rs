@@ -200,14 +200,11 @@ fn without_geometry(done: &[FinishedRun]) -> Result<Vec<InwardDisplacements>, Mi
 fn discrete() -> Vec<Claim> {
     let discrete_claim = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
-            let control = Control::scene("stiffness off by 1e-8", |scene| {
-                scene.change_laws(|law| law.scale_normal(1.0 + 1e-8));
-            });
+            let control = Control::contact_law("stiffness off by 1e-8", |law| law.scale_normal(1.0 + 1e-8));
             (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounded(variant), control)
         } else {
-            let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
-                scene.change_laws(|law| law.scale_tangential(1.0 + 1e-7));
-            });
+            let control =
+                Control::contact_law("tangential stiffness off by 1e-7", |law| law.scale_tangential(1.0 + 1e-7));
             let remainder = computed(over_radius(variant).powi(3), "remainder of the extrapolation, (δ/R)³");
             (SPEEDS.map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
         };
@@ -475,9 +472,9 @@ const TURN: usize = 1500;
 fn slip_in_compression() -> Vec<Claim> {
     let slip_claim = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {
-            (8.0, Control::scene("friction × 3", |scene| scene.change_laws(|law| law.friction *= 3.0)))
+            (8.0, Control::contact_law("friction × 3", |law| law.friction *= 3.0))
         } else {
-            (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
+            (0.0, Control::contact_law("friction halved", |law| law.friction *= 0.5))
         };
         claim("most contacts slipping at once in slow compression", "1")
             .run(Run::new(variant, "dem:1979", LEVELS[0].resolution))
@@ -540,12 +537,10 @@ fn distortion() -> Vec<Claim> {
                 |done| Ok(largest_turning(&done[0])? / largest_turning(&done[1])?),
             )
             .within(exactly("only the order is printed"))
-            .refuses(Control::scene("κ = 1/10 where it should be 1", |scene| {
-                scene.change_laws(|law| {
-                    if law.tangential_stiffness() >= law.normal_stiffness() {
-                        law.scale_tangential(0.1);
-                    }
-                });
+            .refuses(Control::contact_law("κ = 1/10 where it should be 1", |law| {
+                if law.tangential_stiffness() >= law.normal_stiffness() {
+                    law.scale_tangential(0.1);
+                }
             })),
         claim("30°: F_n in the end over its largest, κ = 1", "1")
             .runs(runs(&[3]))
@@ -561,7 +556,7 @@ fn distortion() -> Vec<Claim> {
                 "the paper states only a decrease; a decrease by a thousandth differs from a force that grows to the \
                              end",
             ))
-            .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
+            .refuses(Control::contact_law("no slip: friction × 10", |law| law.friction *= 10.0)),
         claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
             .runs(runs(&[0, 1, 2, 3]))
             .at_most(

@@ -234,10 +234,8 @@ fn perturbed(variant: &'static str, disc: usize) -> Run {
 /// Returns the claims that our solver agrees with LAMMPS and LIGGGHTS from the same initial state, with dashpots that
 /// both programs support. Samples are compared up to the predictability horizon, and F_H/F_V at the stages afterwards.
 fn programs() -> Vec<Claim> {
-    let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-    });
-    let smooth = || Control::ours("friction .1 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
+    let softer = Control::our_contact_law("stiffness off by 1e-6 in ours", |law| law.scale_normal(1.0 + 1e-6));
+    let smooth = || Control::our_contact_law("friction .1 in ours", |law| law.friction = 0.1);
     let [lammps, liggghts] = PAIRS;
     let program_runs = |pair: [&'static str; 2]| {
         let perturbed = [Run::new("first", lammps[0], STEP).slow().aside(), perturbed("first", 0).aside()];

@@ -243,8 +243,8 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
 fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
-    let control = Control::ours("friction 0 between grains in ours", |scene| {
-        scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
+    let control = Control::our_contact_law("friction 0 between grains in ours", |law| {
+        law.friction = if law.friction > 1.0 { law.friction } else { 0.0 }
     });
     row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
         Ok(Measurement::new(read(&done[0])?, read(&done[1])?, scale))

@@ -56,7 +56,7 @@ fn long(solver: &'static str) -> Run {
 const PARTING: DivergenceColumns = DivergenceColumns { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
-    let friction = Control::ours("friction .1 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
+    let friction = Control::our_contact_law("friction .1 for .5 in ours", |law| law.friction = 0.1);
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], LEVELS[0].resolution);

@@ -68,7 +68,7 @@ pub(super) fn claims() -> Vec<Claim> {
                            sums; an energy has twice the relative error of velocities",
             ),
             runs,
-            Control::ours("friction .29 for .3 in ours", |scene| scene.change_laws(|law| law.friction = 0.29)),
+            Control::our_contact_law("friction .29 for .3 in ours", |law| law.friction = 0.29),
             |done| {
                 let energy = "all.kinetic_energy";
                 worst(done, &[energy], largest(done[1].column(energy)?))

@@ -66,9 +66,7 @@ fn back() -> Claim {
             "compliance of the tangential spring, k_r/k_tR²; its vibration at the start; turning points between \
              samples, (ω_rΔt)²/8",
         ))
-        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.1);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .fair_to_any_springs()
 }
 
@@ -83,9 +81,7 @@ fn way() -> Claim {
             number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
             "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
-        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.1);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .fair_to_any_springs()
 }
 
@@ -124,8 +120,6 @@ fn between(variant: &'static str) -> Claim {
             "lever arms differ by up to the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 \
              of a velocity; relative to ω₀",
         ))
-        .refuses(Control::scene("rolling resistance × 1.05", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.05);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.05", |law| law.rolling_friction *= 1.05))
         .fair_to_any_springs()
 }

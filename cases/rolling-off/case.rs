@@ -118,7 +118,7 @@ fn kept(
     let control = if variant == "rough" {
         Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25)
     } else {
-        Control::scene("friction × 1.05", |scene| scene.change_laws(|law| law.friction *= 1.05))
+        Control::contact_law("friction × 1.05", |law| law.friction *= 1.05)
     };
     claim(format!("{quantity}, {variant}"), unit)
         .run(Run::new(variant, "dem", STEP.resolution))

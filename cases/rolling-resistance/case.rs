@@ -31,7 +31,7 @@ fn claims() -> Vec<Claim> {
     let lammps =
         claim("refusal of a damped rolling spring", "1").run(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
             "LAMMPS limits the sum of spring and dashpot; LIGGGHTS and `dem` limit the spring alone",
-            Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
+            Control::contact_law("no dashpot", |law| law.rolling_damping = 0.0),
         );
     let rolls_off = |variant| programs::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
     let ours = FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]);
@@ -74,9 +74,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
             ))
             .refuses(control)
     };
-    let more = Control::scene("rolling resistance × 1.01", |scene| {
-        scene.change_laws(|law| law.rolling_friction *= 1.01);
-    });
+    let more = Control::contact_law("rolling resistance × 1.01", |law| law.rolling_friction *= 1.01);
     vec![
         rolling_claim("deceleration on a flat plane", more, false),
         rolling_claim(
@@ -121,7 +119,7 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
                 },
             )
             .within(allowed)
-            .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.rolling_friction *= by)))
+            .refuses(Control::contact_law(wrong, move |law| law.rolling_friction *= by))
     };
     let comes_to_rest = computed(
         CASE.variant(variant).map_or(f64::NAN, |scene| {

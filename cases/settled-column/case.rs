@@ -89,9 +89,7 @@ fn claims() -> Vec<Claim> {
                         "in units of the 99 % interval of the difference of two columns, from the spread of four \
                          starts",
                     ))
-                    .refuses(Control::ours("friction .05 for .5 in ours", |scene| {
-                        scene.change_laws(|law| law.friction = 0.05);
-                    })),
+                    .refuses(Control::our_contact_law("friction .05 for .5 in ours", |law| law.friction = 0.05)),
             );
         }
     }

@@ -127,7 +127,7 @@ fn claims() -> Vec<Claim> {
     let beginning = "position of a grain of a small silo over .6 ms, worst";
     claims.push(bulk::beginning(beginning, in_the_funnel("funnel-beginning", "dem:liggghts")));
     claims.extend(["dem:liggghts", "dem"].map(|ours| {
-        let control = Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0));
+        let control = Control::our_contact_law("no friction in ours", |law| law.friction = 0.0);
         let runs = in_the_funnel("funnel", ours).map(Run::slow);
         let momentum = ("all.momentum_z", 0.03);
         bulk::mean("mean momentum of a small silo from .03 to .12 s", "kg m/s", momentum, runs, control)

@@ -79,7 +79,7 @@ fn claims() -> Vec<Claim> {
                         "discretisation at this resolution, deformation of the plane, and the uncertainty of the \
                          reference",
                     ))
-                    .refuses(Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))),
+                    .refuses(Control::contact_law("half the friction", |law| law.friction *= 0.5)),
             );
         }
         for (solver, cited) in slope.papers {

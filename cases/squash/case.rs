@@ -100,9 +100,7 @@ fn claims() -> Vec<Claim> {
                     "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 \
                      R",
                 ))
-                .refuses(Control::scene("damping of 1e-6 of critical", |scene| {
-                    scene.change_laws(|law| law.normal_damping = 2e-6);
-                }))
+                .refuses(Control::contact_law("damping of 1e-6 of critical", |law| law.normal_damping = 2e-6))
                 .drawn(&FORCES, contact),
         );
     }

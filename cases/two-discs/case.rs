@@ -178,7 +178,7 @@ fn oblique() -> Vec<Claim> {
             run("oblique", "mpm"),
             "ΩR/v₀ after an oblique impact, μ = .9",
             "discretisation at this resolution, and the uncertainty of the prototype",
-            Control::scene("a third of the friction", |scene| scene.change_laws(|law| law.friction /= 3.0)).coarser(grid(4.0)),
+            Control::contact_law("a third of the friction", |law| law.friction /= 3.0).coarser(grid(4.0)),
         ),
         spin_claim(
             Run::new("oblique", "mpm", grid(16.0)).slow().known(

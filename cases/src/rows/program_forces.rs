@@ -12,9 +12,7 @@ const BECAUSE: &str = "rounding only, because both programs use the same integra
                        in units of the largest force";
 
 fn stiffer() -> Control {
-    Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-    })
+    Control::our_contact_law("stiffness off by 1e-6 in ours", |law| law.scale_normal(1.0 + 1e-6))
 }
 
 /// Returns the claims that the forces in `columns` equal those of LAMMPS and of LIGGGHTS. `unit` returns the unit of

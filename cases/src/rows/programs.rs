@@ -54,9 +54,7 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
 /// Returns a negative control with a tangential stiffness 0.1 % too large. The stiffness affects when a grain starts to
 /// slip and how a grain starts to roll.
 fn telling() -> Control {
-    Control::ours("tangential stiffness × 1.001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1.001));
-    })
+    Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001))
 }
 
 fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
@@ -80,11 +78,9 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
     for &variant in variants {
         for pair in PAIRS {
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
-            let control = Control::ours("damping ×1.001 in ours", |scene| {
-                scene.change_laws(|law| {
-                    law.normal_damping *= 1.001;
-                    law.stiffness_damping *= 1.001;
-                });
+            let control = Control::our_contact_law("damping ×1.001 in ours", |law| {
+                law.normal_damping *= 1.001;
+                law.stiffness_damping *= 1.001;
             });
             let allowed = rounding(
                 1.0,
@@ -126,9 +122,7 @@ pub fn nine_discs(
                 let run = Run::new(variant, solver, resolution);
                 if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
             });
-            let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-                scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-            });
+            let control = Control::our_contact_law("stiffness off by 1e-6 in ours", |law| law.scale_normal(1.0 + 1e-6));
             let allowed = rounded(variant);
             let quantity = "position over all cycles, worst";
             claims.push(row(quantity, "m", allowed, runs, control, move |done| {
@@ -191,9 +185,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
                                      the velocity before",
         );
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
-        let control = Control::ours("E* × 1.00001 in ours", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.00001));
-        });
+        let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
         claims.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
         }));
@@ -203,9 +195,7 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
                 "rounding only, because both programs use the same integration cycle; relative \
                                          to the velocity before over the radius",
             );
-            let control = Control::ours("G* × 1.00001 in ours", |scene| {
-                scene.change_laws(|law| law.scale_tangential(1.00001));
-            });
+            let control = Control::our_contact_law("G* × 1.00001 in ours", |law| law.scale_tangential(1.00001));
             claims.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
                 let grain = &done[0].scene.grains[0];
                 worst(done, &["a.omega_y"], grain.velocity.norm() / grain.radius)
@@ -223,9 +213,8 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
         let same = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
         let allowed = if pair[1] == "lammps" { same } else { ahead.clone() };
         let runs = pair.map(|solver| Run::new(variant, solver, step));
-        let control = Control::ours("rolling resistance × 1.00001 in ours", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.00001);
-        });
+        let control =
+            Control::our_contact_law("rolling resistance × 1.00001 in ours", |law| law.rolling_friction *= 1.00001);
         row("position over 1 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
     };
     PAIRS.map(rolling_rows).to_vec()
@@ -237,8 +226,8 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
     let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
     let runs = PAIRS[1].map(tilted);
-    let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
-        scene.change_laws(|law| law.rolling_damping *= 0.999);
+    let control = Control::our_contact_law("the dashpot of the rolling spring × .999 in ours", |law| {
+        law.rolling_damping *= 0.999
     });
     row("position over 4 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
 }
@@ -255,9 +244,7 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
                 "rounding only, because both programs use the same integration cycle; relative \
                                          to the velocity before",
             );
-            let control = Control::ours("friction ×1.001 in ours", |scene| {
-                scene.change_laws(|law| law.friction *= 1.001);
-            });
+            let control = Control::our_contact_law("friction ×1.001 in ours", |law| law.friction *= 1.001);
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())

@@ -290,11 +290,9 @@ pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<M
             1.0,
             "rapier applies −e times the approach velocity once, at the end of the step of the impact",
         ))
-        .refuses(Control::scene("damping ×1.05", |scene| {
-            scene.change_laws(|law| {
-                law.stiffness_damping *= 1.05;
-                law.normal_damping *= 1.05;
-            });
+        .refuses(Control::contact_law("damping ×1.05", |law| {
+            law.stiffness_damping *= 1.05;
+            law.normal_damping *= 1.05;
         }))
 }
 

@@ -141,12 +141,10 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
         Dashpots::OfStiffness => "set down, damping by stiffness",
     };
     let run = || Run::new(variant, "dem:lammps", STEP).adjusted(name, move |scene| set_down(scene, dashpots));
-    let weaker = Control::scene("dashpots a tenth too weak", |scene| {
-        scene.change_laws(|law| {
-            law.normal_damping *= 0.9;
-            law.tangential_damping *= 0.9;
-            law.stiffness_damping *= 0.9;
-        });
+    let weaker = Control::contact_law("dashpots a tenth too weak", |law| {
+        law.normal_damping *= 0.9;
+        law.tangential_damping *= 0.9;
+        law.stiffness_damping *= 0.9;
     });
     let overlap = || {
         claim("overlap while it rings, largest deviation", "m")

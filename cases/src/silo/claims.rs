@@ -70,14 +70,12 @@ const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the diffe
 
 /// Returns a negative control with half the friction.
 fn half_the_friction() -> Control {
-    Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
+    Control::contact_law("friction .25 for .5", |law| law.friction = 0.25)
 }
 
 /// Returns a negative control with tangential springs a millionth as stiff.
 pub(crate) fn no_springs() -> Control {
-    Control::scene("tangential springs a millionth as stiff", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1e-6))
-    })
+    Control::contact_law("tangential springs a millionth as stiff", |law| law.scale_tangential(1e-6))
 }
 
 /// Returns a negative control that reads tan φ, the ratio of shear to normal stress, instead of sin φ.
@@ -311,8 +309,8 @@ impl Silo {
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
         let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
-        let control = Control::ours("tangential springs a millionth as stiff in ours", |scene| {
-            scene.change_laws(|law| law.scale_tangential(1e-6));
+        let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {
+            law.scale_tangential(1e-6)
         });
         let because = format!("because of chaos the two runs are independent samples after .8 τ; {PACKINGS}");
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
@@ -332,8 +330,7 @@ impl Silo {
             "order of sums: the difference grows by e every .033 τ, up to .2 τ; an energy has twice the relative error \
              of velocities",
         );
-        let control =
-            Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));
+        let control = Control::our_contact_law("friction .25 for .5 in ours", |law| law.friction = 0.25);
         let words = format!("kinetic energy up to {time} τ, worst");
         row(&words, "m g d", allowed, [run("dem:lammps"), run("lammps")], control, |done| {
             worst(done, &[ENERGY], largest(done[1].column(ENERGY)?))
