@@ -382,8 +382,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Checks that displacement and velocity equal those of `backspin` with the initial surface speed R Ω₀ = V.

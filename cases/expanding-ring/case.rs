@@ -234,8 +234,6 @@ fn claims() -> Vec<Claim> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Returns σ_rr at the outer radius, divided by M u/r. The function integrates by Runge-Kutta from the inner

@@ -574,7 +574,6 @@ fn distortion() -> Vec<Claim> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     /// Checks that each value of `PHASE_ERRORS` is the computed phase error, rounded up by less than 10 %.

@@ -179,8 +179,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Checks the velocities after slip during the whole impact: 4 − μ·2 v_n (m/s) along the wall, and R |ω| = 2 μ·2

@@ -133,8 +133,6 @@ fn kept(
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Checks that the integration reproduces the closed form of the rough ball.
