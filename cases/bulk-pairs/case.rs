@@ -5,7 +5,7 @@ use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
 /// Time step of the impact in the paper (Dosta et al. 2024).
-const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
+const LEVELS: &[Level] = &[time_step("dt=5e-7 s", 5e-7)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::BULK_PAIRS };

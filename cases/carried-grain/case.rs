@@ -42,7 +42,7 @@ impl Motion {
             start: carried.position,
             radius: carried.radius,
             time: scene.duration.seconds().unwrap_or(f64::NAN),
-            step: STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step),
+            step: STEP.step(scene),
         }
     }
 

@@ -146,15 +146,15 @@ fn rebound(done: &FinishedRun) -> Result<f64, MissingData> {
 
 /// Returns the tolerance of a coefficient of restitution. It is the error due to a dashpot that is half a step late.
 fn late(variant: &str, restitution: f64) -> Tolerance {
-    let error = |scene: Scene| {
-        let ((k, mass, speed), (overlap, ..)) = (impact(&scene), hertz(&scene));
-        let step = STEP.resolution.steps(&scene).map_or(f64::NAN, |(step, _)| step);
+    let error = |scene: &Scene| {
+        let ((k, mass, speed), (overlap, ..)) = (impact(scene), hertz(scene));
+        let step = STEP.step(scene);
         let (phase, zeta) = ((1.5 * k * overlap.sqrt() / mass).sqrt() * step, no_tension_ratio(restitution));
         let touch = 1.25 * zeta * (speed * step / overlap).powf(1.25);
         restitution * (no_tension_lag(zeta) * phase + touch)
     };
     computed(
-        CASE.variant(variant).map_or(f64::NAN, error),
+        CASE.number(variant, error),
         "the dashpot is half a step late, so ζ is larger by the factor 1 + ζωΔt/2: e ζ² [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 \
          − ζ²)] ωΔt with the frequency at the largest overlap; the start of contact costs up to half a step of the \
          dashpot's force, e (5/4) ζ (v Δt/δ_max)^{5/4}; the release adds no error, because the force is zero there",

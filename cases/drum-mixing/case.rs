@@ -18,7 +18,7 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use zones::{COUNTED, ZONES};
 
-const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) }];
+const LEVELS: &[Level] = &[time_step("dt=3e-6 s", 3e-6)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::DRUM_MIXING };

@@ -17,10 +17,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 use published::{BEDS, Spread};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=2e-6 s", resolution: Resolution::TimeStep(2e-6) },
-    Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) },
-];
+const LEVELS: &[Level] = &[time_step("dt=2e-6 s", 2e-6), time_step("dt=5e-7 s", 5e-7)];
 
 /// Derivation, followed by the description of the published data.
 const DERIVATION: &str = {

@@ -11,10 +11,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use std::f64::consts::PI;
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=6e-4 s", resolution: Resolution::TimeStep(6e-4) },
-    Level { name: "dt=3e-4 s", resolution: Resolution::TimeStep(3e-4) },
-];
+const LEVELS: &[Level] = &[time_step("dt=6e-4 s", 6e-4), time_step("dt=3e-4 s", 3e-4)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::JANSSEN };

@@ -75,18 +75,18 @@ fn friction(scene: &Scene) -> f64 {
 /// dashpot's force is added or lost. The dashpot is half a step late, as in the collision of two discs. The remainder
 /// is of second order.
 fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
-    let step_error = |scene: Scene| {
+    let step_error = |scene: &Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
         let omega = (law.normal_stiffness() / grain.mass).sqrt();
-        let phase = omega * LEVELS[2].resolution.steps(&scene).map_or(f64::NAN, |(step, _)| step);
+        let phase = omega * LEVELS[2].step(scene);
         let zeta = 0.5 * law.normal_damping / omega;
-        let (before, after) = (across(&scene), exact(&scene).across);
+        let (before, after) = (across(scene), exact(scene).across);
         let impulse = zeta * phase * (before + after) + lag(zeta) * phase * after + phase * phase * before;
         let (along, overlap) = (impulse + 2.0 * zeta * phase * before, before / omega / grain.radius);
-        allowed(&StepErrors { impulse, along, overlap }, &exact(&scene), &scene).abs()
+        allowed(&StepErrors { impulse, along, overlap }, &exact(scene), scene).abs()
     };
     computed(
-        CASE.variant(variant).map_or(f64::NAN, step_error),
+        CASE.number(variant, step_error),
         "normal velocity: start and end of contact within a step, ζ ωΔt (v + v′); dashpot half a step late, π ζ²/(2 (1 \
          − ζ²)^{3/2}) ωΔt v′; second order, (ωΔt)² v. Along the wall: μ times that, and a step until the spring \
          reaches the Coulomb limit of the first dashpot force, 2ζ ωΔt v. Spin: the same as the impulse, and a lever \

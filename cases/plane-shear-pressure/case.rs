@@ -12,10 +12,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::scene::{Duration, Piston, Sampling};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=2e-3 s", resolution: Resolution::TimeStep(2e-3) },
-    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
-];
+const LEVELS: &[Level] = &[time_step("dt=2e-3 s", 2e-3), time_step("dt=1e-3 s", 1e-3)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::PLANE_SHEAR_PRESSURE };

@@ -8,10 +8,7 @@ use grainbench_harness::compare::pointwise::{difference, largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_solver::perturbed::move_one;
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
-    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
-];
+const LEVELS: &[Level] = &[time_step("dt=1e-3 s", 1e-3), time_step("dt=1e-4 s", 1e-4)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::PLANE_SHEAR };

@@ -28,7 +28,7 @@ const fn grid(cells: f64) -> Resolution {
 }
 
 const LEVELS: &[Level] = &[
-    Level { name: "dt=.05", resolution: Resolution::CriticalFraction(0.05) },
+    fraction("dt=.05", 0.05),
     Level { name: "L/75", resolution: grid(75.0) },
     Level { name: "L/150", resolution: grid(150.0) },
     Level { name: "L/300", resolution: grid(300.0) },

@@ -4,7 +4,7 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::material::{Constitutive, Deformable};
 
 /// Resolution of the negative controls.
-const COARSE: Resolution = Resolution::Grid { cells: 4.0, points: 2, courant: Resolution::COURANT };
+const COARSE: Resolution = Resolution::grid(4.0, 2);
 const LEVELS: &[Level] = &[cells("L/8", 8.0, 2), cells("L/16", 16.0, 2)];
 
 /// Bulk modulus of the scene (Pa). The tolerances need this and the next values before a scene exists.

@@ -30,7 +30,7 @@ impl RollToRest {
         let soft = rolling / (law.tangential_stiffness() * radius * radius);
         let swing =
             2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
-        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let step = STEP.step(scene);
         // Samples are ten steps apart, so the turning points of the oscillation, 2Rθ apart, lie between samples.
         let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
         Self { radius, yields, way, off: [soft + phase + swing * way / (radius * yields), 2.0 * swing + soft] }
@@ -42,10 +42,6 @@ fn turning_points(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     let places = done.column("grain.x")?;
     let farthest = (0..places.len()).max_by(|&a, &b| places[a].total_cmp(&places[b])).unwrap_or(0);
     Ok([places[farthest], places[farthest..].iter().copied().fold(f64::INFINITY, f64::min)])
-}
-
-fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
-    CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
 }
 
 fn claims() -> Vec<Claim> {
@@ -62,7 +58,7 @@ fn back() -> Claim {
             Ok(Measurement::new(stop - back, exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
+            CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
             "compliance of the tangential spring, k_r/k_tR²; its vibration at the start; turning points between \
              samples, (ω_rΔt)²/8",
         ))
@@ -78,7 +74,7 @@ fn way() -> Claim {
             Ok(Measurement::new(turning_points(&done[0])?[0], exact, exact))
         })
         .within(computed(
-            number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
+            CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
             "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
@@ -100,7 +96,7 @@ fn rocks(scene: &Scene) -> [f64; 2] {
     let stiffness: f64 = scene.grains.iter().skip(1).filter(touches).map(each).sum();
     let rate = (stiffness / grain.inertia).sqrt();
     let phase = rate * scene.duration.seconds().unwrap_or(f64::NAN);
-    let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    let step = STEP.step(scene);
     let overlap = 1e-3;
     [rate, phase * (0.5 * overlap / grain.radius + (rate * step).powi(2) / 24.0) + (rate * step).powi(2) / 8.0]
 }
@@ -116,7 +112,7 @@ fn between(variant: &'static str) -> Claim {
             |done| done.scene.grains[0].spin.z,
         )
         .within(computed(
-            number(variant, |scene| rocks(scene)[1]),
+            CASE.number(variant, |scene| rocks(scene)[1]),
             "lever arms differ by up to the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 \
              of a velocity; relative to ω₀",
         ))

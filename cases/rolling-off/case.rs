@@ -33,7 +33,7 @@ impl Balls {
         let swing = 2.0 / 7.0 * gravity * angle.sin() / (3.5 * law.tangential_stiffness() / ball.mass).sqrt();
         let fast = (gravity * distance * 10.0 / 17.0).sqrt();
         let overlap = ball.mass * gravity / law.normal_stiffness();
-        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let step = STEP.step(scene);
         let off = (swing + gravity * step) / fast + overlap / distance + overlap / ball.radius;
         Self { gravity, friction: law.friction, radius: ball.radius, distance, angle, off }
     }
@@ -86,7 +86,7 @@ fn claims() -> Vec<Claim> {
 
 fn off(variant: &str, times: f64) -> Tolerance {
     computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::from_scene(&scene).off),
+        CASE.number(variant, |scene| times * Balls::from_scene(scene).off),
         "vibration of the spring at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, relative to the velocity; \
          overlap over the distance and over the radius",
     )

@@ -42,10 +42,9 @@ fn claims() -> Vec<Claim> {
 fn beside_programs(variant: &'static str) -> Vec<Claim> {
     let time_step: f64 = 2e-5;
     let ahead = computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| {
-            let frequency = OneGrain::from_scene(&scene).rolling_frequency(rolling_friction(&scene));
-            frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(&scene)
-                / scene.grains[0].radius
+        CASE.number(variant, |scene| {
+            let frequency = OneGrain::from_scene(scene).rolling_frequency(rolling_friction(scene));
+            frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(scene) / scene.grains[0].radius
         }),
         "the program counts one step of rolling in its evaluation of forces at the start. The moment k_r ωΔt then \
          decelerates by ω_r² v Δt for half a step or a whole step. A grain that starts at rest (on the slopes) is not \
@@ -68,7 +67,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
                 Ok(Measurement::new(slowing(&done[0], of_spin)?, exact, exact))
             })
             .within(computed(
-                CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).rung(0.5)),
+                CASE.number(variant, |scene| OneGrain::from_scene(scene).rung(0.5)),
                 "the moment is constant once the rolling spring has yielded, and friction approaches its value as \
                  exp(−λt): remainder after half a second (derivation)",
             ))
@@ -122,9 +121,7 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
             .refuses(Control::contact_law(wrong, move |law| law.rolling_friction *= by))
     };
     let comes_to_rest = computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| {
-            OneGrain::from_scene(&scene).rolled(rolling_friction(&scene), 0.5 * seconds(&scene))
-        }),
+        CASE.number(variant, |scene| OneGrain::from_scene(scene).rolled(rolling_friction(scene), 0.5 * seconds(scene))),
         "remainder of the critically damped motion of the rolling spring after half the time (derivation); in units of \
          μ_r g/(1 + i)",
     );

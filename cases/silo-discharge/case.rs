@@ -6,10 +6,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 use grainbench_reference::round_robin::{EARLY, SILO, STEADY, course};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=6e-6 s", resolution: Resolution::TimeStep(6e-6) },
-    Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) },
-];
+const LEVELS: &[Level] = &[time_step("dt=6e-6 s", 6e-6), time_step("dt=3e-6 s", 3e-6)];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SILO_DISCHARGE };

@@ -44,7 +44,7 @@ impl Impact {
             (before[0] / rate, std::f64::consts::PI / rate)
         };
         let turned = before[1] * time / (radii[0] + radii[1]);
-        let step = LEVELS[1].resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let step = LEVELS[1].step(scene);
         let phase = law.springs.stiffness(overlap, effective).0 / reduced * step * step / 8.0;
         let off = turned * (1.0 + before[1] / before[0]) + 0.5 * overlap / radii[0] + phase;
         let impulse = [normal, law.friction * normal];
@@ -115,8 +115,8 @@ fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
     let flat = variant == "discs";
     let spins = quantity.column.ends_with("omega");
     let column = if spins && !flat { format!("{}_z", quantity.column) } else { quantity.column.to_owned() };
-    let allowed = CASE.variant(variant).map_or(f64::NAN, |scene| {
-        let impact = Impact::from_scene(&scene);
+    let allowed = CASE.number(variant, |scene| {
+        let impact = Impact::from_scene(scene);
         impact.off * ((quantity.given)(&impact) / (quantity.exact)(&impact)).abs()
     });
     let along = quantity.column.ends_with("vx");

@@ -1,6 +1,6 @@
 //! Names that the definition of a case needs.
 
-pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction};
+pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction, time_step};
 pub use crate::claim::{Claim, Measure, claim};
 pub use crate::control::Control;
 pub use crate::course::{ClaimFigure, from_start, samples};

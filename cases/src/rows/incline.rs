@@ -144,7 +144,7 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
-    let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).slips_from());
+    let slips_from = case.number(slope.variant, |scene| OneGrain::from_scene(scene).slips_from());
     let error = |done: &FinishedRun| end(done, OneGrain::compliant_incline, |state| state.x);
     vec![
         claim("displacement at 1 s, undamped, against the elastic answer", "m")

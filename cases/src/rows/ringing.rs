@@ -139,7 +139,7 @@ impl FreeVibration {
         let exact = Source::Derived(self.source);
         let softened = |cells| {
             computed(
-                case.variant(self.variant).map_or(f64::NAN, |scene| self.softened(scene, cells)),
+                case.number(self.variant, |scene| self.softened(scene.clone(), cells)),
                 "springs between surfaces are as soft as .4 cells of material: under F/2a they yield by .4 h F/(2a \
                  E'), which is π h/5a of F/(πE') at every contact; the relative change of the frequency is half that \
                  of the compliance",

@@ -45,10 +45,7 @@ pub(crate) struct Silo {
 }
 
 /// Levels of resolution of silos. The claims use the first.
-pub(crate) const LEVELS: &[Level] = &[
-    Level { name: "dt=2.5e-4 s", resolution: Resolution::TimeStep(2.5e-4) },
-    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
-];
+pub(crate) const LEVELS: &[Level] = &[time_step("dt=2.5e-4 s", 2.5e-4), time_step("dt=1e-4 s", 1e-4)];
 
 /// Limitations of these cases.
 pub(crate) const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
