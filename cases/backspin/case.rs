@@ -166,7 +166,7 @@ fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let halfway = 0.5 * sliding(&grain);
     let (t, state) = nearest(done, halfway)?;
     let exact = grain.rigid_backspin(t).v;
-    Ok(Measurement::new(state.v, exact, exact))
+    Ok(Measurement::relative(state.v, exact))
 }
 
 fn final_motion(variant: &'static str) -> Vec<Claim> {
@@ -179,7 +179,7 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
                 let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.backspin_velocity(arm);
-                Ok(Measurement::new(state.v, exact, exact))
+                Ok(Measurement::relative(state.v, exact))
             })
             .within(incline::come_to_roll(&CASE, variant, sliding))
             .refuses(other)

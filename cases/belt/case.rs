@@ -125,7 +125,7 @@ fn claims() -> Vec<Claim> {
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let exact = pick(Belt::from_scene(&done.scene).rigid(t));
-    Ok(Measurement::new(pick(state), exact, exact))
+    Ok(Measurement::relative(pick(state), exact))
 }
 
 /// Compares the velocity at half the time of sliding with the rigid solution.
@@ -133,7 +133,7 @@ fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let belt = Belt::from_scene(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
     let exact = belt.rigid(t).v;
-    Ok(Measurement::new(state.v, exact, exact))
+    Ok(Measurement::relative(state.v, exact))
 }
 
 /// Returns grain and belt of a variant with the spring stiffness of the nearly rigid runs, and their time step (s).
@@ -234,7 +234,7 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
                 let grain = belt.grain;
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = belt.rolling_at(arm);
-                Ok(Measurement::new(state.v, exact, exact))
+                Ok(Measurement::relative(state.v, exact))
             })
             .within(rounding())
             .refuses(other)

@@ -105,8 +105,7 @@ fn spin() -> Claim {
     claim("spin after a turn, axis across the normals", "rad/s")
         .run(Run::new("across", "dem", STEP.resolution))
         .equals(Source::Derived("the torques of both contacts are opposite (derivation)"), |done| {
-            let rate = Motion::from_scene(&done[0].scene).spin.norm();
-            Ok(Measurement::new(done[0].last("carried.omega")?, rate, rate))
+            Ok(Measurement::relative(done[0].last("carried.omega")?, Motion::from_scene(&done[0].scene).spin.norm()))
         })
         .within(computed(allowed, "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + θ)²"))
         .refuses(Control::scene("the drivers run on and do not spin", |scene| {

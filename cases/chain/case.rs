@@ -71,7 +71,7 @@ fn claims() -> Vec<Claim> {
             let force = done[0].column("driver.force_x")?;
             let half = &force[force.len() / 2..];
             let mean = half.iter().sum::<f64>() / half.len() as f64;
-            Ok(Measurement::new(-mean, speed * impedance, speed * impedance))
+            Ok(Measurement::relative(-mean, speed * impedance))
         })
         .within(computed(
             2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),

@@ -262,7 +262,7 @@ fn at_the_limit() -> Claim {
             let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
             // Friction turns both discs clockwise.
             let expected = -limit * grain.radius / grain.inertia;
-            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
         })
         .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
         .refuses(Control::without(Effect::Friction))
@@ -299,7 +299,7 @@ fn coulomb() -> Vec<Claim> {
             let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
             let impulse = law.friction * pushes * done[0].record.provenance.time_step;
             let expected = -impulse * grain.radius / grain.inertia;
-            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
         },
     )
     .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))

@@ -83,9 +83,7 @@ fn interval() -> f64 {
 fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
         .run(run)
-        .equals(COOLING_RATE.source(), |done| {
-            Ok(Measurement::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
-        })
+        .equals(COOLING_RATE.source(), |done| Ok(Measurement::relative(cooling_rate(&done[0])?, COOLING_RATE.value)))
         .within(computed(
             interval() + in_contact(stiffness),
             "t s √(1 + 1/24) with Student's t = 2.81 and s of 24 seeds, and ω t_c for the duration of contacts",
@@ -142,7 +140,7 @@ fn claims() -> Vec<Claim> {
         let runs = pair.map(|solver| run(PLAIN, solver));
         claims.push(row("cooling rate", "1/(s √J)", allowed, runs, Control::ours(LIVELIER, livelier), |done| {
             let theirs = cooling_rate(&done[1])?;
-            Ok(Measurement::new(cooling_rate(&done[0])?, theirs, theirs))
+            Ok(Measurement::relative(cooling_rate(&done[0])?, theirs))
         }));
         let allowed = rounding(
             2.0,

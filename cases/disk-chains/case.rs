@@ -95,7 +95,7 @@ fn exact(variant: &'static str, first: usize) -> Claim {
             let scene = &done[0].scene;
             let modes = Modes::from_scene(scene);
             let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
-            Ok(Measurement::new(arrival(&done[0], first)?, exact, exact))
+            Ok(Measurement::relative(arrival(&done[0], first)?, exact))
         })
         .within(computed(
             0.02_f64.powi(2) / 24.0 + 2e-6,
@@ -156,7 +156,7 @@ fn rigid() -> Claim {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
             let exact = Modes::from_scene(scene).moving(pair(scene, 3)[1], speed, duration(scene));
-            Ok(Measurement::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
+            Ok(Measurement::relative(first_above(&done[0], "fourth.vx", speed)?, exact))
         })
         .within(judged(1e-3, "accuracy of a solver with springs"))
         .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution))

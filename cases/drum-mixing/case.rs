@@ -120,7 +120,7 @@ fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -
                 .map(|[time, mean, half]| {
                     let count = counted(&done[0], time)?;
                     let code = if count > mean { mean - half } else { mean + half };
-                    Ok(Measurement::new(count, code, code))
+                    Ok(Measurement::relative(count, code))
                 })
                 .collect();
             Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))

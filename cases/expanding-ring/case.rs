@@ -167,7 +167,7 @@ fn claims() -> Vec<Claim> {
             .equals(SOURCE, |done| {
                 // The expected value belongs to the ring of the claim, also under a control.
                 let exact = 2.0 * PI / mode(&done[0])?.frequency();
-                Ok(Measurement::new(period(&done[0])?, exact, exact))
+                Ok(Measurement::relative(period(&done[0])?, exact))
             })
             .within(tolerance)
             .refuses(control)

@@ -94,7 +94,7 @@ fn claims() -> Vec<Claim> {
                 .equals(SOURCE, |done| {
                     let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| MissingData("a strip".to_owned()))?;
                     let exact = -length * Elastica::under(weight).sinking;
-                    Ok(Measurement::new(done[0].last("tip.uy")?, exact, exact))
+                    Ok(Measurement::relative(done[0].last("tip.uy")?, exact))
                 })
                 .within(computed(
                     allowed(level),

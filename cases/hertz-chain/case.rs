@@ -79,7 +79,7 @@ fn claims() -> Vec<Claim> {
     let of_speed = claim("coefficient of the speed", "1")
         .run(strike(1.0))
         .equals(Source::Derived("travelling wave of the discrete chain (derivation)"), |done| {
-            Ok(Measurement::new(coefficient(&done[0])?, COEFFICIENT, COEFFICIENT))
+            Ok(Measurement::relative(coefficient(&done[0])?, COEFFICIENT))
         })
         .within(estimated(2e-5, "discretisation of the pulse; the long-wave limit has an error of 1.2 %"))
         .refuses(Control::contact_law("E* 1 % too large", |law| law.scale_normal(1.01)));

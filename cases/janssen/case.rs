@@ -208,7 +208,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
         .equals(JANSSEN, |done| {
             let middle = MiddleMeans::from_run(&done[0])?;
             let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
-            Ok(Measurement::new(on_floor(&done[0])?, expected, expected))
+            Ok(Measurement::relative(on_floor(&done[0])?, expected))
         })
         .within(required(0.1, "required in advance: K is constant in the law but differs at the ends of the column"))
         .refuses(Control::misread(TWICE, twice))

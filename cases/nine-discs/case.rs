@@ -372,7 +372,7 @@ fn speed_of_loading() -> Vec<Claim> {
             claim(format!("frequency, slow over fast loading, {figure}"), "1")
                 .runs(pair(fast, slow))
                 .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
-                    Ok(Measurement::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
+                    Ok(Measurement::relative(frequency(&done[1])? / frequency(&done[0])?, 1.0))
                 })
                 .within(spectrum())
                 .refuses(Control::scene("stiffness × 1.05 under slow loading", |scene| {
@@ -388,7 +388,7 @@ fn speed_of_loading() -> Vec<Claim> {
                     let omega = Modal::from_scene(&done[0].scene).frequencies()[0];
                     let step = done[0].record.provenance.time_step;
                     let seen = 2.0 * (0.5 * omega * step).asin() / step;
-                    Ok(Measurement::new(frequency(&done[0])?, seen, seen))
+                    Ok(Measurement::relative(frequency(&done[0])?, seen))
                 })
                 .within(spectrum())
                 .refuses(Control::forgets_history()),
@@ -412,7 +412,7 @@ fn damping() -> Vec<Claim> {
                     printed("Fig. 6 and the text: damping does not affect the equilibrium value of the force"),
                     |done| {
                         let (mean, _) = residual(&done[0], "centre-edge.normal_force")?;
-                        Ok(Measurement::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
+                        Ok(Measurement::relative(mean / done[1].last("centre-edge.normal_force")?, 1.0))
                     },
                 )
                 .within(computed(
@@ -432,7 +432,7 @@ fn damping() -> Vec<Claim> {
                 .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
                     let expected =
                         Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
-                    Ok(Measurement::new(decay(&done[0])?, expected, expected))
+                    Ok(Measurement::relative(decay(&done[0])?, expected))
                 })
                 .within(judged(5e-5, "geometry, first order in δ/R: 1.3e-3 for stiff discs and 1.1e-2 for soft discs"))
                 .refuses(Control::without(Effect::ContactDamping)),

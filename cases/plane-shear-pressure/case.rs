@@ -160,7 +160,7 @@ fn normal(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
-            Ok(Measurement::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
+            Ok(Measurement::relative(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
@@ -190,7 +190,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
-            Ok(Measurement::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
+            Ok(Measurement::relative(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::misread("tangential forces with the wrong sign in the stress", turned))

@@ -55,7 +55,7 @@ fn back() -> Claim {
             let [stop, back] = turning_points(&done[0])?;
             let rest = RollToRest::from_scene(&done[0].scene);
             let exact = 2.0 * rest.radius * rest.yields;
-            Ok(Measurement::new(stop - back, exact, exact))
+            Ok(Measurement::relative(stop - back, exact))
         })
         .within(computed(
             CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
@@ -70,8 +70,7 @@ fn way() -> Claim {
     claim("way to rest", "m")
         .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("(7/10) m v₀² = μ_r m g (x_s/R − θ_y/2) R (derivation)"), |done| {
-            let exact = RollToRest::from_scene(&done[0].scene).way;
-            Ok(Measurement::new(turning_points(&done[0])?[0], exact, exact))
+            Ok(Measurement::relative(turning_points(&done[0])?[0], RollToRest::from_scene(&done[0].scene).way))
         })
         .within(computed(
             CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),

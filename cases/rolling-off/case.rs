@@ -101,7 +101,7 @@ fn angle() -> Claim {
             let balls = Balls::from_scene(&done[0].scene);
             let surface = done[0].last("ball.omega_y")? * balls.radius;
             let exact = 10.0 / 17.0 * balls.angle.cos();
-            Ok(Measurement::new(surface * surface / (balls.gravity * balls.distance), exact, exact))
+            Ok(Measurement::relative(surface * surface / (balls.gravity * balls.distance), exact))
         })
         .within(off("rough", 2.0))
         .refuses(Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25))
@@ -123,8 +123,7 @@ fn kept(
     claim(format!("{quantity}, {variant}"), unit)
         .run(Run::new(variant, "dem", STEP.resolution))
         .equals(Source::Derived("Newton's law with Coulomb's, by Runge and Kutta's method (derivation)"), move |done| {
-            let exact = exact(&Balls::from_scene(&done[0].scene));
-            Ok(Measurement::new(done[0].last(column)?, exact, exact))
+            Ok(Measurement::relative(done[0].last(column)?, exact(&Balls::from_scene(&done[0].scene))))
         })
         .within(off(variant, 1.0))
         .refuses(control)

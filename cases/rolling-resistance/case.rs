@@ -63,8 +63,7 @@ fn flat(variant: &'static str) -> Vec<Claim> {
         claim(quantity, "m/s²")
             .run(Run::new(variant, "dem", STEP.resolution))
             .equals(Source::Derived("dv/dt = g (sin θ − μ_r cos θ)/(1 + i) (derivation)"), move |done| {
-                let exact = acceleration(&done[0].scene);
-                Ok(Measurement::new(slowing(&done[0], of_spin)?, exact, exact))
+                Ok(Measurement::relative(slowing(&done[0], of_spin)?, acceleration(&done[0].scene)))
             })
             .within(computed(
                 CASE.number(variant, |scene| OneGrain::from_scene(scene).rung(0.5)),

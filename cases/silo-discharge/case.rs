@@ -116,7 +116,7 @@ fn claims() -> Vec<Claim> {
             .runs([low(), half_the_step()])
             .agrees(Source::Ourselves("half the time step"), |done| {
                 let fine = rate(&done[1], EARLY)?;
-                Ok(Measurement::new(rate(&done[0], EARLY)?, fine, fine))
+                Ok(Measurement::relative(rate(&done[0], EARLY)?, fine))
             })
             .within(judged(0.01, "a fifth of the tolerance of the rates"))
             .refuses(smooth()),

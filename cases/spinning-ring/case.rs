@@ -89,8 +89,7 @@ fn claims() -> Vec<Claim> {
                 claim(format!("growth of the second moment, mean over a turn, {law}"), "1")
                 .run(run(law))
                 .equals(SOURCE, |done| {
-                    let exact = ring(&done[0].scene)?.growth();
-                    Ok(Measurement::new(mean_growth(&done[0])?, exact, exact))
+                    Ok(Measurement::relative(mean_growth(&done[0])?, ring(&done[0].scene)?.growth()))
                 })
                 .within(computed(
                     0.01 + 2.0 * growth,

@@ -65,7 +65,7 @@ fn claims() -> Vec<Claim> {
         claims.push(
             claim(format!("energy after over before, {cells} cells a radius"), "1")
                 .run(run.clone())
-                .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
+                .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
                 .within(required(5e-3, "damping by the grid, and half a step between velocities and springs"))
                 .refuses(energetic()),
         );
@@ -124,7 +124,7 @@ fn claims() -> Vec<Claim> {
                     .known("contact ends as soon as the bodies separate, for any traction: each release adds energy")
                     .up_to(0.2),
             )
-            .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
+            .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
             .within(required(5e-3, "accuracy of springs at the surface"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
     );
@@ -227,7 +227,7 @@ fn touching() -> Vec<Claim> {
                 let force = done[0].column("contact.normal_force")?;
                 let at =
                     force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
-                Ok(Measurement::new(done[0].series().time[at], TOUCH, TOUCH))
+                Ok(Measurement::relative(done[0].series().time[at], TOUCH))
             })
             .within(computed(
                 2.0 * STEP / TOUCH,

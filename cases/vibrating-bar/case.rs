@@ -209,8 +209,10 @@ fn claims() -> Vec<Claim> {
             claim(format!("period, {} cells", level.name), "s")
                 .run(run(level))
                 .equals(DISPERSED, move |done| {
-                    let exact = 2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared));
-                    Ok(Measurement::new(period(&done[0])?, exact, exact))
+                    Ok(Measurement::relative(
+                        period(&done[0])?,
+                        2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared)),
+                    ))
                 })
                 .within(computed(rest(squared, strain), REST))
                 .refuses(softer())
@@ -222,10 +224,7 @@ fn claims() -> Vec<Claim> {
             .run(Run::new(HELD, "mpm", LEVELS[1].resolution))
             .equals(
                 Source::Derived("u_tt = ((K + 4G/3)/ρ) u_xx, fixed-free, slowed by the grid's dispersion (derivation)"),
-                move |done| {
-                    let exact = HELD_PERIOD * (1.0 + slower(squared));
-                    Ok(Measurement::new(period(&done[0])?, exact, exact))
-                },
+                move |done| Ok(Measurement::relative(period(&done[0])?, HELD_PERIOD * (1.0 + slower(squared)))),
             )
             .within(computed(rest(squared, strain), REST))
             .refuses(Control::scene("free sides: the period of E/(1 − ν²)", |scene| {

@@ -135,7 +135,7 @@ pub fn end(
 ) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let expected = pick(exact(&OneGrain::from_scene(&done.scene), t));
-    Ok(Measurement::new(pick(state), expected, expected))
+    Ok(Measurement::relative(pick(state), expected))
 }
 
 /// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
@@ -315,7 +315,7 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
                 let grain = OneGrain::from_scene(&done[0].scene);
                 let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
                 let exact = grain.rolling_velocity(t, arm);
-                Ok(Measurement::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
+                Ok(Measurement::relative(if of_spin { state.omega * arm } else { state.v }, exact))
             })
             .within(come_to_roll(case, slope.variant, |_| 0.0))
             .refuses(if at_contact {

@@ -67,7 +67,7 @@ fn subject(
             let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let (t, state) = last(done)?;
             let expected = exact(&OneGrain::from_scene(&done.scene), t).x;
-            Ok(Measurement::new(state.x, expected, expected))
+            Ok(Measurement::relative(state.x, expected))
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
     }

@@ -76,7 +76,7 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
             .equals(RIGID_SOURCE, move |done| {
                 let (t, state) = last(&done[0])?;
                 let expected = pick(exact(&OneGrain::from_scene(&done[0].scene), t));
-                Ok(Measurement::new(pick(state), expected, expected))
+                Ok(Measurement::relative(pick(state), expected))
             })
             .within(tolerance)
             .refuses(control)
@@ -205,7 +205,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
             |done| {
                 let (t, state) = last(&done[0])?;
                 let exact = rolling(&OneGrain::from_scene(&done[0].scene), t);
-                Ok(Measurement::new(state.v, exact, exact))
+                Ok(Measurement::relative(state.v, exact))
             },
         )
         .within(computed(
