@@ -44,11 +44,7 @@ fn bead(done: &FinishedRun, n: usize, column: &str) -> Result<Measurement, Missi
 }
 
 fn claims() -> Vec<Claim> {
-    let heavier = || {
-        Control::scene("beads half a percent too heavy", |scene: &mut Scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.005);
-        })
-    };
+    let heavier = || Control::grains("beads half a percent too heavy", |grain| grain.mass *= 1.005);
     let at_bead = |(n, column): (usize, &'static str)| {
         claim(format!("velocity of bead {n} at 20/ω₀"), "m/s")
             .run(run(FINEST))

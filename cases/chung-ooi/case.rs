@@ -256,9 +256,7 @@ fn oblique() -> Vec<Claim> {
                         Ok(Measurement::relative(done[0].last("a.omega_y")?, sliding(&done[0].scene).1))
                     })
                     .within(estimated(5e-5, ENDS))
-                    .refuses(Control::scene("a disc's inertia in a sphere", |scene| {
-                        scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.5 / 0.4);
-                    })),
+                    .refuses(Control::grains("a disc's inertia in a sphere", |grain| grain.inertia *= 0.5 / 0.4)),
             );
         }
     }

@@ -184,9 +184,7 @@ fn sliding(run: &Run) -> [Claim; 2] {
 }
 
 fn wrong_inertia() -> Control {
-    Control::scene("discs' inertia in spheres", |scene| {
-        scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.5 / 0.4);
-    })
+    Control::grains("discs' inertia in spheres", |grain| grain.inertia *= 0.5 / 0.4)
 }
 
 /// Returns the claim on the impulse of friction with a strong dashpot, divided by μ times the impulse that stops the

@@ -59,9 +59,7 @@ fn rolls(floor: &'static str) -> Claim {
             Ok(Measurement::relative(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact))
         })
         .within(rounding(1.0, "angular momentum about the contact determines the value once the spring is at rest"))
-        .refuses(Control::scene("the inertia of a disc", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 1.25);
-        }))
+        .refuses(Control::grains("the inertia of a disc", |grain| grain.inertia *= 1.25))
 }
 
 /// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates of

@@ -233,9 +233,7 @@ fn geometry() -> Claim {
             over_radius("kappa-1"),
             "next power of δ/R with a coefficient of the same size: δ/R of the largest value",
         ))
-        .refuses(Control::scene("mass off by a thousandth", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
-        }))
+        .refuses(Control::grains("mass off by a thousandth", |grain| grain.mass *= 1.001))
 }
 
 /// Sets a ramp of the same duration for each time step of the run: 40 steps of 0.1 of the critical step. The run ends
@@ -269,11 +267,7 @@ fn modal_error(done: &[FinishedRun]) -> Result<Measurement, MissingData> {
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {
-    let lighter = || {
-        Control::scene("mass 2 % too small", |scene: &mut Scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 0.98);
-        })
-    };
+    let lighter = || Control::grains("mass 2 % too small", |grain| grain.mass *= 0.98);
     let mut claims = Vec::new();
     for variant in MODAL {
         for (level, allowed) in LEVELS.iter().copied().zip(PHASE_ERRORS) {

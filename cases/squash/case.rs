@@ -75,8 +75,8 @@ fn claims() -> Vec<Claim> {
                         (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
                             scene.grains[1].position.x -= 1e-6;
                         }),
-                        (3, _) => Control::scene("the mass of the discs off by a millionth", |scene| {
-                            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.0 + 1e-6);
+                        (3, _) => Control::grains("the mass of the discs off by a millionth", |grain| {
+                            grain.mass *= 1.0 + 1e-6
                         }),
                         (_, "C") => late("the right wall starts one cycle late", 1),
                         _ => late("the left wall starts one cycle late", 0),

@@ -233,9 +233,7 @@ fn touching() -> Vec<Claim> {
                 2.0 * STEP / TOUCH,
                 "two steps of .3 h/c = .0065 s: a contact is detected in the step after the surfaces touch",
             ))
-            .refuses(Control::scene("five per cent slower", |scene| {
-                scene.grains.iter_mut().for_each(|grain| grain.velocity *= 0.95);
-            })),
+            .refuses(Control::grains("five per cent slower", |grain| grain.velocity *= 0.95)),
     ]
 }
 

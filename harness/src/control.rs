@@ -4,7 +4,7 @@ use crate::reading::Table;
 use crate::run::{Change, Set};
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::effect::Effect;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Grain, Scene};
 use grainbench_solver::Defect;
 use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
@@ -99,6 +99,12 @@ impl Control {
     #[must_use]
     pub fn contact_law(name: &'static str, change: impl Fn(&mut ContactLaw) + Send + Sync + 'static) -> Self {
         Self::scene(name, move |scene| scene.change_laws(&change))
+    }
+
+    /// Returns a control with wrong grains.
+    #[must_use]
+    pub fn grains(name: &'static str, change: impl Fn(&mut Grain) + Send + Sync + 'static) -> Self {
+        Self::scene(name, move |scene| scene.grains.iter_mut().for_each(&change))
     }
 
     /// Returns a control that switches off an effect of the scene.

@@ -324,9 +324,7 @@ pub fn angular_momentum(
             "normal and lever arms are taken at the start of the step, and the grains have moved when the impulse \
              acts: ∝ v Δt, in units of m v R",
         ))
-        .refuses(Control::scene("the inertia of spheres", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
-        }))
+        .refuses(Control::grains("the inertia of spheres", |grain| grain.inertia *= 0.8))
 }
 
 /// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number of
