@@ -114,7 +114,7 @@ fn over_packings(
     (held, because): PackingReduction,
     bound: f64,
     control: Control,
-    read: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    read: impl RunsReader<f64>,
 ) -> Claim {
     let each = runs.len() / PACKINGS.len();
     claim(format!("{quantity}, 5 packings"), "1")

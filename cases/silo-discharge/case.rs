@@ -141,7 +141,7 @@ fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
 fn near(
     quantity: grainbench_harness::claim::Quantity,
     cited: CitedNumber,
-    value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    value: impl RunsReader<f64>,
 ) -> grainbench_harness::claim::ClaimWithTolerance {
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }

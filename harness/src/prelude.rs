@@ -1,7 +1,7 @@
 //! Names that the definition of a case needs.
 
 pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction, time_step};
-pub use crate::claim::{Claim, Measure, claim};
+pub use crate::claim::{Claim, Measure, RunsReader, claim};
 pub use crate::control::Control;
 pub use crate::course::{ClaimFigure, from_start, samples};
 pub use crate::expect::{Bound, ExpectedValue, Measurement};
