@@ -1,6 +1,6 @@
 //! All material pairs of the round robin of bulk processes, against LIGGGHTS.
 
-use crate::rows::programs::row;
+use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
@@ -40,11 +40,7 @@ fn runs(variant: &'static str) -> [Run; 2] {
 
 /// Returns the claim on the force m Δv/Δt on the first grain of a pair, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(
-        1.0,
-        "rounding only, because both programs use the same integration cycle; in units of the \
-                                 largest force",
-    );
+    let allowed = same_cycle("in units of the largest force");
     let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
     row(&format!("force, {about}, worst"), "N", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];
@@ -54,11 +50,7 @@ fn force(variant: &'static str, about: &str) -> Claim {
 
 /// Returns the claim on the torque I Δω/Δt on the first grain of a pair, over all steps.
 fn torque(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(
-        1.0,
-        "rounding only, because both programs use the same integration cycle; in units of the \
-                                 largest torque",
-    );
+    let allowed = same_cycle("in units of the largest torque");
     let control = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
     row(&format!("torque, {about}, worst"), "N m", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];

@@ -3,7 +3,7 @@
 #[path = "floors.rs"]
 mod floors;
 
-use crate::rows::programs::row;
+use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::nalgebra::Vector3;
@@ -132,7 +132,7 @@ fn held(at: &'static SeamPosition) -> Claim {
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
     let control = Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001));
-    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
+    let allowed = same_cycle("in units of R");
     row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
         worst(done, &AXES, done[0].scene.grains[0].radius)
     })
