@@ -77,6 +77,12 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
+fn without_spin() -> Control {
+    Control::scene("the drivers run on and do not spin", |scene| {
+        scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
+    })
+}
+
 fn after_a_turn(variant: &'static str) -> Claim {
     let allowed = motion(variant).map_or(f64::NAN, |motion| motion.off(variant == "across") / motion.start.norm());
     claim(format!("place after a turn, axis {variant} the normals, off"), "m")
@@ -91,9 +97,7 @@ fn after_a_turn(variant: &'static str) -> Claim {
             "time step (second order), d (ΩΔt)² (1 + θ)² and 2 d (Ω/ω)² ωT (ωΔt)²/24; curvature of the surfaces, 2 d \
              (Ω/ω)² c (1/2 + ωT/4); across the normals, lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
         ))
-        .refuses(Control::scene("the drivers run on and do not spin", |scene| {
-            scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
-        }))
+        .refuses(without_spin())
         .fair_to_any_springs()
 }
 
@@ -108,8 +112,6 @@ fn spin() -> Claim {
             Ok(Measurement::relative(done[0].last("carried.omega")?, Motion::from_scene(&done[0].scene).spin.norm()))
         })
         .within(computed(allowed, "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + θ)²"))
-        .refuses(Control::scene("the drivers run on and do not spin", |scene| {
-            scene.driven.iter_mut().for_each(|driven| driven.spin = Vector3::zeros());
-        }))
+        .refuses(without_spin())
         .fair_to_any_springs()
 }

@@ -1,7 +1,7 @@
 //! A disc hits a frictional wall at an angle and slips during the whole impact. The final velocities have exact values.
 
 use crate::exact::dashpot::lag;
-use crate::rows::incline::stronger_friction;
+use crate::rows::on_plane::stronger_friction;
 use crate::rows::programs;
 use grainbench_harness::prelude::*;
 

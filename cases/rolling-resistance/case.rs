@@ -1,7 +1,7 @@
 //! Rolling resistance: deceleration on a flat plane, and the largest slope at which a grain rests.
 
 use crate::exact::one_grain::{OneGrain, State, course};
-use crate::rows::incline::wrong_inertia;
+use crate::rows::on_plane::wrong_inertia;
 use crate::rows::programs;
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;

@@ -4,7 +4,8 @@
 #[path = "backspin.rs"]
 mod backspin;
 
-use crate::exact::one_grain::{OneGrain, last};
+use crate::exact::one_grain::OneGrain;
+use crate::rows::elastic::excess;
 use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contact_2001};
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
@@ -47,12 +48,6 @@ const SLOPES: [Slope; 2] = [
         papers: [("mpm:2000", nodal_contact_2000::SPHERE_SLIPS_60), ("mpm:2001", nodal_contact_2001::SPHERE_SLIPS_60)],
     },
 ];
-
-/// Returns the last displacement divided by that of a rigid sphere, minus one.
-fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
-    let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
-}
 
 /// Returns the run without relaxation. As in Bardenhagen et al. (2001), the sphere starts in contact and is released.
 fn set_down(variant: &'static str, solver: &'static str) -> Run {

@@ -1,7 +1,7 @@
 //! A small grain hits a large one at an angle and slips during the whole impact. The velocities and spins of both
 //! grains have exact values.
 
-use crate::rows::incline::stronger_friction;
+use crate::rows::on_plane::stronger_friction;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.02", 0.02), fraction("dt=.005", 0.005)];

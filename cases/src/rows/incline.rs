@@ -1,10 +1,7 @@
 //! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
 //! Each case has its own scene, slopes and elastic body.
 
-pub use super::on_plane::{
-    DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, other_inertia, stronger_friction,
-    wrong_inertia,
-};
+use super::on_plane::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
 use super::rigid::{self, Row};
 use super::set_down::{self, Dashpots};
 use super::{label, programs};
@@ -307,18 +304,17 @@ fn elsewhere(scene: &Scene) -> State {
 /// each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
-        let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
             .run(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
             .equals(Source::Derived("v(1 + i(R/a)²) = g_t t with arm a (derivation)"), move |done| {
                 let (t, state) = last(&done[0])?;
                 let grain = OneGrain::from_scene(&done[0].scene);
-                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
+                let arm = grain.arm(solver);
                 let exact = grain.rolling_velocity(t, arm);
                 Ok(Measurement::relative(if of_spin { state.omega * arm } else { state.v }, exact))
             })
             .within(come_to_roll(case, slope.variant, |_| 0.0))
-            .refuses(if at_contact {
+            .refuses(if solver == "dem:liggghts" {
                 Control::solver("torque arm R", "dem:lammps")
             } else {
                 Control::solver("torque arm R − overlap/2", "dem:liggghts")

@@ -16,7 +16,7 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::on_plane::{other_inertia, stronger_friction};
+use crate::rows::on_plane::{other_inertia, stronger_friction, touching};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;
@@ -48,13 +48,7 @@ pub struct Row {
     pub lifts: Option<[f64; 2]>,
 }
 
-/// Places the grain exactly in contact, because a rigid contact has no static overlap.
-fn touching(scene: &mut Scene) {
-    let axis = scene.dimension.count() - 1;
-    let grain = &mut scene.grains[0];
-    grain.position[axis] = grain.radius;
-}
-
+/// Returns a run of the grain in contact without overlap, because a rigid contact has no static overlap.
 fn run(variant: &'static str, resolution: Resolution) -> Run {
     Run::new(variant, RIGID, resolution).adjusted("touching", touching)
 }

@@ -75,19 +75,6 @@ pub(crate) fn no_springs() -> Control {
     Control::contact_law("tangential springs a millionth as stiff", |law| law.scale_tangential(1e-6))
 }
 
-/// Returns a negative control that reads tan φ, the ratio of shear to normal stress, instead of sin φ.
-fn tangent_for_sine() -> Control {
-    Control::misread("tan φ taken for sin φ", |tables| {
-        for table in tables {
-            for (column, values) in table.columns.iter().zip(&mut table.values) {
-                if column == "sine_of_friction" {
-                    values.iter_mut().for_each(|sine| *sine /= (1.0 - *sine * *sine).sqrt());
-                }
-            }
-        }
-    })
-}
-
 /// Returns a negative control with gravity rotated by ten degrees about y.
 fn turned_gravity() -> Control {
     Control::scene("gravity turned by 10°", |scene| {
@@ -201,7 +188,7 @@ impl Silo {
             .run(self.run.clone())
             .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
             .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
-            .refuses(tangent_for_sine())
+            .refuses(Control::misread("tan φ taken for sin φ", ensemble::tangent))
     }
 
     /// Returns the claims on two correlations over elements: of two measures of friction, and of two strain rates. The
