@@ -92,7 +92,6 @@ pub fn lines(tasks: &[Task]) -> Result<String, Fault> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     #[test]
