@@ -3,12 +3,12 @@
 #[path = "elastic.rs"]
 mod elastic;
 
-use crate::exact::one_grain::{OneGrain, State, course, last, nearest, rest_at_overlap};
-use crate::rows::incline::{
+use crate::exact::one_grain::{OneGrain, State, course, nearest, rest_at_overlap};
+use crate::rows::on_plane::{
     self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
 };
-use crate::rows::programs;
 use crate::rows::rigid::{self, Row};
+use crate::rows::{incline, programs};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -17,7 +17,7 @@ const RIGID: &[Row] =
     &[Row { variant: "disc", rolls: true, lifts: None }, Row { variant: "sphere", rolls: true, lifts: None }];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BACKSPIN };
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BACKSPIN };
 
 const SOURCE: Source =
     Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");
@@ -166,28 +166,14 @@ fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let halfway = 0.5 * sliding(&grain);
     let (t, state) = nearest(done, halfway)?;
     let exact = grain.rigid_backspin(t).v;
-    Ok(Measurement::new(state.v, exact, exact))
+    Ok(Measurement::relative(state.v, exact))
 }
 
+/// Returns the claims on the final velocity of rolling for the lever arm of each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
-    let speed_claim = |solver: &'static str, quantity: &str, other| {
-        let at_contact = solver == "dem:liggghts";
-        claim(quantity, "m/s")
-            .run(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
-            .equals(Source::Derived("v = iR²Ω₀a/(a² + iR²) with arm a (derivation)"), move |done| {
-                let (_, state) = last(&done[0])?;
-                let grain = OneGrain::from_scene(&done[0].scene);
-                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
-                let exact = grain.backspin_velocity(arm);
-                Ok(Measurement::new(state.v, exact, exact))
-            })
-            .within(incline::come_to_roll(&CASE, variant, sliding))
-            .refuses(other)
-    };
-    vec![
-        speed_claim("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        speed_claim("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
-    ]
+    let source = Source::Derived("v = iR²Ω₀a/(a² + iR²) with arm a (derivation)");
+    let exact = |scene: &Scene, arm| OneGrain::from_scene(scene).backspin_velocity(arm);
+    on_plane::final_velocity(variant, source, exact, &incline::come_to_roll(&CASE, variant, sliding))
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -60,7 +60,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .run(run("disc", "mpm", 8.0))
             .equals(Source::Derived("rolling without slip"), |done| {
                 let (v, surface) = rolling(&done[0])?;
-                Ok(Measurement::new(surface / v, 1.0, 1.0))
+                Ok(Measurement::relative(surface / v, 1.0))
             })
             .within(computed(
                 flattened(8.0),

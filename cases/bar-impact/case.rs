@@ -17,7 +17,7 @@ const VELOCITY: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::BAR_IMPACT };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::BAR_IMPACT };
 
 /// Impact velocity (m/s), wave speed (m/s), length (m) and density (kg/m³).
 struct Impact {

@@ -1,7 +1,9 @@
 //! A grain placed on a moving belt slides until it rolls.
 
 use crate::exact::one_grain::{OneGrain, State, course, last, nearest, rest_at_overlap};
-use crate::rows::incline::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
+use crate::rows::on_plane::{
+    self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction, touching,
+};
 use crate::rows::programs;
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
@@ -23,7 +25,7 @@ const STOPPED: Source = Source::Derived(
 );
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::BELT };
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BELT };
 
 struct Belt {
     grain: OneGrain,
@@ -125,7 +127,7 @@ fn claims() -> Vec<Claim> {
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let exact = pick(Belt::from_scene(&done.scene).rigid(t));
-    Ok(Measurement::new(pick(state), exact, exact))
+    Ok(Measurement::relative(pick(state), exact))
 }
 
 /// Compares the velocity at half the time of sliding with the rigid solution.
@@ -133,40 +135,26 @@ fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let belt = Belt::from_scene(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
     let exact = belt.rigid(t).v;
-    Ok(Measurement::new(state.v, exact, exact))
+    Ok(Measurement::relative(state.v, exact))
 }
 
-/// Returns grain and belt of a variant with the spring stiffness of the nearly rigid runs, and their time step (s).
-fn stiff(variant: &'static str) -> (Belt, f64) {
-    let Ok(mut scene) = CASE.variant(variant) else {
-        return (Belt { grain: NO_GRAIN, speed: f64::NAN, stop: f64::NAN }, f64::NAN);
-    };
-    rest_at_overlap(&mut scene, NEARLY_RIGID, DAMPING);
-    let belt = Belt::from_scene(&scene);
-    let Resolution::CriticalFraction(fraction) = STEP else { return (belt, f64::NAN) };
-    let step = fraction * 2.0 * (belt.grain.mass / belt.grain.normal_stiffness).sqrt();
-    (belt, step)
+/// Returns a number computed from grain and belt of a variant with the spring stiffness of the nearly rigid runs, and from
+/// their time step (s).
+fn stiff(variant: &str, value: impl FnOnce(&Belt, f64) -> f64) -> f64 {
+    CASE.number(variant, |scene| {
+        let mut scene = scene.clone();
+        rest_at_overlap(&mut scene, NEARLY_RIGID, DAMPING);
+        let belt = Belt::from_scene(&scene);
+        let Resolution::CriticalFraction(fraction) = STEP else { return f64::NAN };
+        let step = fraction * 2.0 * (belt.grain.mass / belt.grain.normal_stiffness).sqrt();
+        value(&belt, step)
+    })
 }
-
-const NO_GRAIN: OneGrain = OneGrain {
-    radius: f64::NAN,
-    mass: f64::NAN,
-    inertia_factor: f64::NAN,
-    along: f64::NAN,
-    onto: f64::NAN,
-    friction: f64::NAN,
-    tangential_stiffness: f64::NAN,
-    spin: f64::NAN,
-    overlap_ratio: f64::NAN,
-    normal_stiffness: f64::NAN,
-    tangential_damping: f64::NAN,
-};
 
 /// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
 /// nearly agree.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
     type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
-    let (belt, step) = stiff(variant);
     let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
         claim(format!("{quantity}, nearly rigid contact"), unit)
             .run(nearly_rigid(variant, tangential_dashpot))
@@ -183,12 +171,12 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         )
     };
     let displaced = computed(
-        belt.displaced(1.0, step),
+        stiff(variant, |belt, step| belt.displaced(1.0, step)),
         "(f V (s/V + Δt) + s)/x: spring displacement s = μ m g/k_t before and after sliding, and one step without \
          friction",
     );
     let halfway = computed(
-        2.0 * belt.lag(step) / belt.sliding(),
+        stiff(variant, |belt, step| 2.0 * belt.lag(step) / belt.sliding()),
         "2 (s/V + Δt)/t_s: the spring must reach the displacement s = μ m g/k_t, and friction may be absent in the \
          first step",
     );
@@ -224,39 +212,19 @@ fn rounding() -> Tolerance {
 /// Returns the claims on the final velocity of rolling, which agrees to rounding with the solution for the lever arm of
 /// each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
-    let speed_claim = |solver: &'static str, quantity: &str, other| {
-        let at_contact = solver == "dem:liggghts";
-        claim(quantity, "m/s")
-            .run(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
-            .equals(Source::Derived("v = V iR²/(iR² + a²) with arm a (derivation)"), move |done| {
-                let (_, state) = last(&done[0])?;
-                let belt = Belt::from_scene(&done[0].scene);
-                let grain = belt.grain;
-                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
-                let exact = belt.rolling_at(arm);
-                Ok(Measurement::new(state.v, exact, exact))
-            })
-            .within(rounding())
-            .refuses(other)
-    };
-    vec![
-        speed_claim("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        speed_claim("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
-    ]
+    let source = Source::Derived("v = V iR²/(iR² + a²) with arm a (derivation)");
+    on_plane::final_velocity(variant, source, |scene, arm| Belt::from_scene(scene).rolling_at(arm), &rounding())
 }
 
 /// Returns the claims on the solver `rigid` (rapier), whose contacts have no compliance. The error of `rigid` comes
 /// from the time step and from the overlap at rest (see `cases/src/rows/rigid.rs`).
 fn by_impulses(variant: &'static str) -> Vec<Claim> {
-    let (belt, _) = stiff(variant);
     let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
-    let sunk = belt.grain.onto / (TAU * Settings::default().frequency).powi(2) / belt.grain.radius;
+    let sunk =
+        stiff(variant, |belt, _| belt.grain.onto / (TAU * Settings::default().frequency).powi(2) / belt.grain.radius);
+    let lag = stiff(variant, |belt, _| belt.rolling() * step / belt.rigid(1.0).x);
     let impulse_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
-        let run = Run::new(variant, "rigid", Resolution::substeps(SUBSTEPS)).adjusted("touching", |scene| {
-            let axis = scene.dimension.count() - 1;
-            let grain = &mut scene.grains[0];
-            grain.position[axis] = grain.radius;
-        });
+        let run = Run::new(variant, "rigid", Resolution::substeps(SUBSTEPS)).adjusted("touching", touching);
         claim(format!("{quantity} at 1 s"), unit)
             .run(run)
             .equals(SOURCE, move |done| end(&done[0], pick))
@@ -267,13 +235,7 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
                the spin half of that";
     let late = "f V Δt/x: friction begins or ends up to a step Δt late";
     vec![
-        impulse_claim(
-            "displacement",
-            "m",
-            computed(belt.rolling() * step / belt.rigid(1.0).x, late),
-            stronger_friction(),
-            |state| state.x,
-        ),
+        impulse_claim("displacement", "m", computed(lag, late), stronger_friction(), |state| state.x),
         impulse_claim("velocity", "m/s", computed(2.0 * sunk, arm), other_inertia(), |state| state.v),
         impulse_claim("spin", "rad/s", computed(sunk, arm), other_inertia(), |state| state.omega),
     ]
@@ -282,7 +244,6 @@ fn by_impulses(variant: &'static str) -> Vec<Claim> {
 /// Returns the claims on a disc on a belt that stops. Velocity and spin become zero. The displacement is the velocity of
 /// rolling times the time at which the belt stops.
 fn stopped() -> Vec<Claim> {
-    let (belt, step) = stiff(STOPS);
     let turning = || {
         Control::scene("a disc that turns at first, at a thousandth of the belt's speed", |scene| {
             scene.grains[0].spin.z = -0.01;
@@ -301,9 +262,11 @@ fn stopped() -> Vec<Claim> {
                 .refuses(control)
                 .fair_to_any()
         };
-    let way = belt.rolling() * belt.stop;
     let displaced = computed(
-        (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way,
+        stiff(STOPS, |belt, step| {
+            let way = belt.rolling() * belt.stop;
+            (2.0 * (belt.rolling() * belt.lag(step) + belt.grain.stretch(belt.push())) + belt.rung()) / way
+        }),
         "(2 f V (s/V + Δt) + 2 s + f V/ω)/(f V T): spring displacement s = μ m g/k_t before and after sliding and one \
          step without friction, each for both slides; and the vibration of the spring with ω, whose phase at the stop \
          of the belt is unknown",
@@ -353,8 +316,8 @@ fn kick() -> Claim {
             "overlap/R, for a lever arm between R and R − overlap; in units of the velocity of \
                                 LIGGGHTS",
         ))
-        .refuses(Control::ours("a dashpot along the belt × 1.05 in ours", |scene| {
-            scene.change_laws(|law| law.tangential_damping *= 1.05);
+        .refuses(Control::our_contact_law("a dashpot along the belt × 1.05 in ours", |law| {
+            law.tangential_damping *= 1.05
         }))
 }
 
@@ -382,8 +345,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Checks that displacement and velocity equal those of `backspin` with the initial surface speed R Ω₀ = V.

@@ -1,19 +1,14 @@
 //! All material pairs of the round robin of bulk processes, against LIGGGHTS.
 
-use crate::rows::programs::row;
+use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
 /// Time step of the impact in the paper (Dosta et al. 2024).
-const LEVELS: &[Level] = &[Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) }];
+const LEVELS: &[Level] = &[time_step("dt=5e-7 s", 5e-7)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: |_| Ok(Vec::new()),
-    ..crate::registry::heads::BULK_PAIRS
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::BULK_PAIRS };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
@@ -45,14 +40,8 @@ fn runs(variant: &'static str) -> [Run; 2] {
 
 /// Returns the claim on the force m Δv/Δt on the first grain of a pair, over all steps.
 fn force(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(
-        1.0,
-        "rounding only, because both programs use the same integration cycle; in units of the \
-                                 largest force",
-    );
-    let control = Control::ours("E* × 1.00001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.00001));
-    });
+    let allowed = same_cycle("in units of the largest force");
+    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
     row(&format!("force, {about}, worst"), "N", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];
         rate(done, &["a.vx", "a.vz"], grain.mass)
@@ -61,14 +50,8 @@ fn force(variant: &'static str, about: &str) -> Claim {
 
 /// Returns the claim on the torque I Δω/Δt on the first grain of a pair, over all steps.
 fn torque(variant: &'static str, about: &str) -> Claim {
-    let allowed = rounding(
-        1.0,
-        "rounding only, because both programs use the same integration cycle; in units of the \
-                                 largest torque",
-    );
-    let control = Control::ours("μ × 1.00001 in ours", |scene| {
-        scene.change_laws(|law| law.friction *= 1.00001);
-    });
+    let allowed = same_cycle("in units of the largest torque");
+    let control = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
     row(&format!("torque, {about}, worst"), "N m", allowed, runs(variant), control, |done| {
         let grain = &done[0].scene.grains[0];
         rate(done, &["a.omega_y"], grain.inertia)

@@ -24,7 +24,7 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::CHAIN };
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::CHAIN };
 
 fn run(level: Level) -> Run {
     Run::new(PLAIN, "dem", level.resolution)
@@ -44,11 +44,7 @@ fn bead(done: &FinishedRun, n: usize, column: &str) -> Result<Measurement, Missi
 }
 
 fn claims() -> Vec<Claim> {
-    let heavier = || {
-        Control::scene("beads half a percent too heavy", |scene: &mut Scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.005);
-        })
-    };
+    let heavier = || Control::grains("beads half a percent too heavy", |grain| grain.mass *= 1.005);
     let at_bead = |(n, column): (usize, &'static str)| {
         claim(format!("velocity of bead {n} at 20/ω₀"), "m/s")
             .run(run(FINEST))
@@ -71,16 +67,14 @@ fn claims() -> Vec<Claim> {
             let force = done[0].column("driver.force_x")?;
             let half = &force[force.len() / 2..];
             let mean = half.iter().sum::<f64>() / half.len() as f64;
-            Ok(Measurement::new(-mean, speed * impedance, speed * impedance))
+            Ok(Measurement::relative(-mean, speed * impedance))
         })
         .within(computed(
             2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),
             "the force oscillates about the impedance by √(2/π) x^(−3/2), x = 2ω₀t; the mean from x = 20 to 40 \
              contains at most one uncancelled half wave, 2√(2/π) 20^(−5/2)",
         ))
-        .refuses(Control::scene("contacts 2 % too stiff", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.02));
-        }))
+        .refuses(Control::contact_law("contacts 2 % too stiff", |law| law.scale_normal(1.02)))
         .fair_to_any();
     // Rigid beads have no dispersion. If many beads are in contact at once, the solution is not unique.
     let rigid = claim("velocity of bead 22 at 20/ω₀", "m/s")

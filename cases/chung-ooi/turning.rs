@@ -49,7 +49,7 @@ fn sharp(run: &Run) -> Vec<Claim> {
         |solver: &'static str, other: &'static str, words: &str, factor: fn(&ImpactParameters) -> f64| {
             let row = |quantity: &str, unit, column: &'static str, at: usize| {
                 let control = if run.variant.starts_with('5') {
-                    Control::scene("friction × 1.01", |scene| scene.change_laws(|law| law.friction *= 1.01))
+                    Control::contact_law("friction × 1.01", |law| law.friction *= 1.01)
                 } else {
                     Control::solver("the limit of the other convention", other)
                 };

@@ -11,7 +11,7 @@ const STRENGTH: Source = Source::Derived(
 );
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::COHESIVE_DISC };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::COHESIVE_DISC };
 
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {
@@ -55,13 +55,13 @@ fn claims() -> Vec<Claim> {
                 "the force is constant once the spring is at rest or has yielded: position, velocity, spin and spring \
                  each have a rounding of ε per step; in units of g sin θ",
             ))
-            .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.cohesion *= by)))
+            .refuses(Control::contact_law(wrong, move |law| law.cohesion *= by))
     };
     let refusal = |solver, step| claim("refusal of cohesion", "1").run(Run::new(PLAIN, solver, step));
     let programs = ["lammps", "liggghts"].map(|program| {
         refusal(program, STEP.resolution).refused(
             "its cohesion attracts along the normal; it has no shear strength without load",
-            Control::scene("no cohesion", |scene| scene.change_laws(|law| law.cohesion = 0.0)),
+            Control::contact_law("no cohesion", |law| law.cohesion = 0.0),
         )
     });
     let ours = [

@@ -13,7 +13,7 @@ const FINEST: Level = LEVELS[3];
 const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-zeta.2"];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::registry::heads::COLLISION };
+    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::COLLISION };
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
@@ -114,7 +114,7 @@ fn force_that_moves() -> Claim {
             "rounding: 4ε relative to the displacement v Δt = 2e-4 per step, and ε of up to 500 steps, times the \
              dashpot force c v = .2 of the largest force; 8ε of k times a radius",
         ))
-        .refuses(Control::scene("damping × 1.001", |scene| scene.change_laws(|law| law.stiffness_damping *= 1.001)))
+        .refuses(Control::contact_law("damping × 1.001", |law| law.stiffness_damping *= 1.001))
 }
 
 /// Returns the claim on the contact force that LAMMPS or LIGGGHTS outputs. The program evaluates the contact again at
@@ -122,11 +122,10 @@ fn force_that_moves() -> Claim {
 /// moved the grains.
 fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
-    let because = "rounding only, because both programs use the same integration cycle; in units of the largest force \
-                   without damping";
+    let allowed = programs::same_cycle("in units of the largest force without damping");
     let runs = pair.map(|solver| Run::new(FELT, solver, LEVELS[1].resolution));
     let quantity = "force of a damped contact with the velocity of the sample, worst";
-    programs::row(quantity, "N", rounding(1.0, because), runs, control, |done| {
+    programs::row(quantity, "N", allowed, runs, control, |done| {
         let compared_column = |column| together(&done[0], &done[1], column).map(|(ours, _)| ours);
         let (x, v) =
             ([compared_column("a.x")?, compared_column("b.x")?], [compared_column("a.vx")?, compared_column("b.vx")?]);
@@ -262,7 +261,7 @@ fn at_the_limit() -> Claim {
             let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
             // Friction turns both discs clockwise.
             let expected = -limit * grain.radius / grain.inertia;
-            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
         })
         .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
         .refuses(Control::without(Effect::Friction))
@@ -299,7 +298,7 @@ fn coulomb() -> Vec<Claim> {
             let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
             let impulse = law.friction * pushes * done[0].record.provenance.time_step;
             let expected = -impulse * grain.radius / grain.inertia;
-            Ok(Measurement::new(done[0].last("a.omega")? - grain.spin.z, expected, expected))
+            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
         },
     )
     .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))

@@ -10,7 +10,7 @@ use std::f64::consts::PI;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::COOLING_GAS };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::COOLING_GAS };
 
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.
@@ -83,9 +83,7 @@ fn interval() -> f64 {
 fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
     claim(format!("cooling rate d(1/√T)/dt, k = {stiffness:e}"), "1/(s √J)")
         .run(run)
-        .equals(COOLING_RATE.source(), |done| {
-            Ok(Measurement::new(cooling_rate(&done[0])?, COOLING_RATE.value, COOLING_RATE.value))
-        })
+        .equals(COOLING_RATE.source(), |done| Ok(Measurement::relative(cooling_rate(&done[0])?, COOLING_RATE.value)))
         .within(computed(
             interval() + in_contact(stiffness),
             "t s √(1 + 1/24) with Student's t = 2.81 and s of 24 seeds, and ω t_c for the duration of contacts",
@@ -142,7 +140,7 @@ fn claims() -> Vec<Claim> {
         let runs = pair.map(|solver| run(PLAIN, solver));
         claims.push(row("cooling rate", "1/(s √J)", allowed, runs, Control::ours(LIVELIER, livelier), |done| {
             let theirs = cooling_rate(&done[1])?;
-            Ok(Measurement::new(cooling_rate(&done[0])?, theirs, theirs))
+            Ok(Measurement::relative(cooling_rate(&done[0])?, theirs))
         }));
         let allowed = rounding(
             2.0,

@@ -7,7 +7,7 @@ use grainbench_scene::scene::Duration;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::registry::heads::DISC_GAS };
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::DISC_GAS };
 
 /// Time steps of the runs in the figure, as fractions of the critical time step.
 const FRACTIONS: [f64; 3] = [0.1, 0.03, FINEST];

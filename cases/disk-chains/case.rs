@@ -30,7 +30,7 @@ const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::DISK_CHAINS };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::DISK_CHAINS };
 
 /// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {
@@ -95,16 +95,14 @@ fn exact(variant: &'static str, first: usize) -> Claim {
             let scene = &done[0].scene;
             let modes = Modes::from_scene(scene);
             let exact = modes.arrival(pair(scene, first), threshold(scene), duration(scene));
-            Ok(Measurement::new(arrival(&done[0], first)?, exact, exact))
+            Ok(Measurement::relative(arrival(&done[0], first)?, exact))
         })
         .within(computed(
             0.02_f64.powi(2) / 24.0 + 2e-6,
             "(ωΔt)²/24 of central differences at ωΔt = .02 for the fastest mode of a chain; displacements of 2e-6 R \
              turn the normals",
         ))
-        .refuses(Control::scene("contacts 1 % too stiff", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.01));
-        }))
+        .refuses(Control::contact_law("contacts 1 % too stiff", |law| law.scale_normal(1.01)))
 }
 
 /// Returns the claim on the force between the first two discs of the sticking chain, until a contact of the assembly
@@ -127,9 +125,7 @@ fn glued() -> Claim {
             "central differences at ω₀Δt = .01; contacts with a tension below a hundredth of the striker's \
              displacement count as closed; in units of V√(k m)",
         ))
-        .refuses(Control::scene("tangential springs 1 % too soft", |scene| {
-            scene.change_laws(|law| law.scale_tangential(0.99));
-        }))
+        .refuses(Control::contact_law("tangential springs 1 % too soft", |law| law.scale_tangential(0.99)))
 }
 
 /// Returns the claim that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the
@@ -160,7 +156,7 @@ fn rigid() -> Claim {
             let scene = &done[0].scene;
             let speed = ARRIVED * scene.walls[0].motion.phases[0].velocity.norm();
             let exact = Modes::from_scene(scene).moving(pair(scene, 3)[1], speed, duration(scene));
-            Ok(Measurement::new(first_above(&done[0], "fourth.vx", speed)?, exact, exact))
+            Ok(Measurement::relative(first_above(&done[0], "fourth.vx", speed)?, exact))
         })
         .within(judged(1e-3, "accuracy of a solver with springs"))
         .refuses(Control::without_the_error("dem in its place", "dem", STEP.resolution))

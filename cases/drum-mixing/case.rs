@@ -18,10 +18,10 @@ use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use zones::{COUNTED, ZONES};
 
-const LEVELS: &[Level] = &[Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) }];
+const LEVELS: &[Level] = &[time_step("dt=3e-6 s", 3e-6)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::DRUM_MIXING };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::DRUM_MIXING };
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
@@ -120,7 +120,7 @@ fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -
                 .map(|[time, mean, half]| {
                     let count = counted(&done[0], time)?;
                     let code = if count > mean { mean - half } else { mean + half };
-                    Ok(Measurement::new(count, code, code))
+                    Ok(Measurement::relative(count, code))
                 })
                 .collect();
             Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))

@@ -39,10 +39,7 @@ fn worst(step: &str, run: Run) -> ClaimWithTolerance {
         .agrees(Source::Ourselves("the same with the step of the case"), |done| {
             let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
             let found: Result<Vec<Measurement>, MissingData> = times
-                .map(|time| {
-                    let expected = counted(&done[1], time)?;
-                    Ok(Measurement::new(counted(&done[0], time)?, expected, expected))
-                })
+                .map(|time| Ok(Measurement::relative(counted(&done[0], time)?, counted(&done[1], time)?)))
                 .collect();
             Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
         })

@@ -17,7 +17,7 @@ const SINKING: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::registry::heads::HEAVY_CANTILEVER };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::HEAVY_CANTILEVER };
 
 /// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]
@@ -94,7 +94,7 @@ fn claims() -> Vec<Claim> {
                 .equals(SOURCE, |done| {
                     let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| MissingData("a strip".to_owned()))?;
                     let exact = -length * Elastica::under(weight).sinking;
-                    Ok(Measurement::new(done[0].last("tip.uy")?, exact, exact))
+                    Ok(Measurement::relative(done[0].last("tip.uy")?, exact))
                 })
                 .within(computed(
                     allowed(level),

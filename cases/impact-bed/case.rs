@@ -17,10 +17,7 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 use published::{BEDS, Spread};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=2e-6 s", resolution: Resolution::TimeStep(2e-6) },
-    Level { name: "dt=5e-7 s", resolution: Resolution::TimeStep(5e-7) },
-];
+const LEVELS: &[Level] = &[time_step("dt=2e-6 s", 2e-6), time_step("dt=5e-7 s", 5e-7)];
 
 /// Derivation, followed by the description of the published data.
 const DERIVATION: &str = {
@@ -39,7 +36,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    ..crate::registry::heads::IMPACT_BED
+    ..crate::heads::IMPACT_BED
 };
 
 /// Time step of most claims.
@@ -228,7 +225,7 @@ fn at_rest() -> Control {
 }
 
 fn smooth() -> Control {
-    Control::scene("no friction", |scene| scene.change_laws(|law| law.friction = 0.0))
+    Control::contact_law("no friction", |law| law.friction = 0.0)
 }
 
 /// Returns a negative control in which contacts with ball and walls have the contact law of the grains.

@@ -23,7 +23,7 @@ fn beginning() -> Claim {
         "rounding only, because both programs use the same integration cycle with another \
                                  order of sums; in units of the radius of the ball",
     );
-    let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
+    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
     row("height of the ball on a thousand grains until .25 ms, worst", "m", allowed, runs, control, |done| {
         let (ours, theirs) = together(&done[0], &done[1], "ball.z")?;
         let until = done[1].series().time.partition_point(|time| *time < UNTIL + 1e-9);
@@ -44,7 +44,7 @@ fn after_the_horizon() -> Claim {
     const PARTING: DivergenceColumns = DivergenceColumns { columns: &[MOTION.column] };
     let on = |solver| Run::new("thousand-deep", solver, STEP).slow();
     let perturbed = [on(SIDES[0]).aside(), on(SIDES[0]).adjusted(PERTURBED, move_one).aside()];
-    let control = Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0));
+    let control = Control::our_contact_law("no friction in ours", |law| law.friction = 0.0);
     perturbed::statistics(PARTING, MOTION, [SIDES.map(on), perturbed].concat(), control)
 }
 

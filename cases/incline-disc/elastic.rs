@@ -133,7 +133,7 @@ fn telling(slope: Elastic) -> Control {
     if slope.sticks {
         Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")
     } else {
-        Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))
+        Control::contact_law("half the friction", |law| law.friction *= 0.5)
     }
 }
 
@@ -167,7 +167,7 @@ fn to_a_hundredth(slope: Elastic) -> Claim {
             "the accuracy at which costs are compared, one per cent, and the uncertainty of the reference",
         ))
         .refuses(
-            Control::scene("three tenths of the friction", |scene| scene.change_laws(|law| law.friction *= PART))
+            Control::contact_law("three tenths of the friction", |law| law.friction *= PART)
                 .coarser(Resolution::grid(4.0, POINTS)),
         )
         .fair_to_any_continuum()

@@ -51,7 +51,7 @@ pub(super) fn claims() -> Vec<Claim> {
                     .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
                     .within(required(allowed + slope.reference.uncertainty, ASKED))
                     .refuses(
-                        Control::scene("a tenth of the friction", |scene| scene.change_laws(|law| law.friction *= 0.1))
+                        Control::contact_law("a tenth of the friction", |law| law.friction *= 0.1)
                             .coarser(Resolution::grid(2.0, POINTS)),
                     ),
             );

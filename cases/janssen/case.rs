@@ -11,13 +11,10 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use std::f64::consts::PI;
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=6e-4 s", resolution: Resolution::TimeStep(6e-4) },
-    Level { name: "dt=3e-4 s", resolution: Resolution::TimeStep(3e-4) },
-];
+const LEVELS: &[Level] = &[time_step("dt=6e-4 s", 6e-4), time_step("dt=3e-4 s", 3e-4)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::JANSSEN };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::JANSSEN };
 
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");
@@ -211,7 +208,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
         .equals(JANSSEN, |done| {
             let middle = MiddleMeans::from_run(&done[0])?;
             let expected = middle.left_over(&done[0].scene, middle.shear / middle.vertical);
-            Ok(Measurement::new(on_floor(&done[0])?, expected, expected))
+            Ok(Measurement::relative(on_floor(&done[0])?, expected))
         })
         .within(required(0.1, "required in advance: K is constant in the law but differs at the ends of the column"))
         .refuses(Control::misread(TWICE, twice))

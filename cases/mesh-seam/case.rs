@@ -3,7 +3,7 @@
 #[path = "floors.rs"]
 mod floors;
 
-use crate::rows::programs::row;
+use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::nalgebra::Vector3;
@@ -15,7 +15,7 @@ const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::MESH_SEAM };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::MESH_SEAM };
 
 fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> =
@@ -56,12 +56,10 @@ fn rolls(floor: &'static str) -> Claim {
         .equals(Source::Derived("5/7 of the initial velocity (derivation)"), |done| {
             let start = done[0].scene.grains[0].velocity.norm();
             let exact = 5.0 / 7.0 * start;
-            Ok(Measurement::new(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact, exact))
+            Ok(Measurement::relative(done[0].last("ball.vx")?.hypot(done[0].last("ball.vy")?), exact))
         })
         .within(rounding(1.0, "angular momentum about the contact determines the value once the spring is at rest"))
-        .refuses(Control::scene("the inertia of a disc", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 1.25);
-        }))
+        .refuses(Control::grains("the inertia of a disc", |grain| grain.inertia *= 1.25))
 }
 
 /// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates of
@@ -133,15 +131,9 @@ fn held(at: &'static SeamPosition) -> Claim {
 /// Returns the claim that the position of the sphere agrees with LIGGGHTS on the same triangles.
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
-    let control = Control::ours("tangential stiffness × 1.001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1.001));
-    });
-    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
+    let control = Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001));
+    let allowed = same_cycle("in units of R");
     row(&format!("position over {floor}, worst"), "m", allowed, runs, control, |done| {
         worst(done, &AXES, done[0].scene.grains[0].radius)
     })
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

@@ -1,7 +1,6 @@
 //! Manufactured vortex with large rotation and shear.
 
-use crate::exact::manufactured::error;
-use grainbench_harness::measure::slope;
+use crate::exact::manufactured::{error, order};
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::Duration;
 
@@ -22,7 +21,7 @@ const fn level(name: &'static str, cells: f64) -> Level {
 }
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::MMS_VORTEX };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::MMS_VORTEX };
 
 /// Ends the run at 0.5 s, when the rotation is largest.
 fn half(scene: &mut Scene) {
@@ -31,12 +30,6 @@ fn half(scene: &mut Scene) {
 
 fn run(solver: &'static str, level: Level) -> Run {
     Run::new(PLAIN, solver, level.resolution).adjusted("to .5 s", half)
-}
-
-fn order(done: &[FinishedRun]) -> Result<f64, MissingData> {
-    let points: Result<Vec<(f64, f64)>, MissingData> =
-        done.iter().zip(CELLS).map(|(done, cells)| Ok((1.0 / cells, error(done)?))).collect();
-    Ok(slope(&points?))
 }
 
 fn claims() -> Vec<Claim> {
@@ -51,7 +44,7 @@ fn claims() -> Vec<Claim> {
     let converges = |quantity: &'static str, runs: Vec<Run>| {
         claim(quantity, "1")
             .runs(runs)
-            .converges_at_least(1.0, SOURCE, order)
+            .converges_at_least(1.0, SOURCE, |done| order(done, &CELLS))
             .within(exactly(
                 "the force is discontinuous at the edges, where a grid method is of first order \
                              (derivation)",

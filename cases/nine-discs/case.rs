@@ -34,7 +34,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::NINE_DISCS
+    ..crate::heads::NINE_DISCS
 };
 
 fn claims() -> Vec<Claim> {
@@ -200,14 +200,11 @@ fn without_geometry(done: &[FinishedRun]) -> Result<Vec<InwardDisplacements>, Mi
 fn discrete() -> Vec<Claim> {
     let discrete_claim = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
-            let control = Control::scene("stiffness off by 1e-8", |scene| {
-                scene.change_laws(|law| law.scale_normal(1.0 + 1e-8));
-            });
+            let control = Control::contact_law("stiffness off by 1e-8", |law| law.scale_normal(1.0 + 1e-8));
             (vec![Run::new(variant, "dem", LEVELS[0].resolution)], rounded(variant), control)
         } else {
-            let control = Control::scene("tangential stiffness off by 1e-7", |scene| {
-                scene.change_laws(|law| law.scale_tangential(1.0 + 1e-7));
-            });
+            let control =
+                Control::contact_law("tangential stiffness off by 1e-7", |law| law.scale_tangential(1.0 + 1e-7));
             let remainder = computed(over_radius(variant).powi(3), "remainder of the extrapolation, (δ/R)³");
             (SPEEDS.map(|factor| at_speed(variant, factor)).to_vec(), remainder, control)
         };
@@ -236,9 +233,7 @@ fn geometry() -> Claim {
             over_radius("kappa-1"),
             "next power of δ/R with a coefficient of the same size: δ/R of the largest value",
         ))
-        .refuses(Control::scene("mass off by a thousandth", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
-        }))
+        .refuses(Control::grains("mass off by a thousandth", |grain| grain.mass *= 1.001))
 }
 
 /// Sets a ramp of the same duration for each time step of the run: 40 steps of 0.1 of the critical step. The run ends
@@ -272,11 +267,7 @@ fn modal_error(done: &[FinishedRun]) -> Result<Measurement, MissingData> {
 const PHASE_ERRORS: [f64; 3] = [1.2e-2, 3e-3, 8e-4];
 
 fn continuous() -> Vec<Claim> {
-    let lighter = || {
-        Control::scene("mass 2 % too small", |scene: &mut Scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.mass *= 0.98);
-        })
-    };
+    let lighter = || Control::grains("mass 2 % too small", |grain| grain.mass *= 0.98);
     let mut claims = Vec::new();
     for variant in MODAL {
         for (level, allowed) in LEVELS.iter().copied().zip(PHASE_ERRORS) {
@@ -375,7 +366,7 @@ fn speed_of_loading() -> Vec<Claim> {
             claim(format!("frequency, slow over fast loading, {figure}"), "1")
                 .runs(pair(fast, slow))
                 .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
-                    Ok(Measurement::new(frequency(&done[1])? / frequency(&done[0])?, 1.0, 1.0))
+                    Ok(Measurement::relative(frequency(&done[1])? / frequency(&done[0])?, 1.0))
                 })
                 .within(spectrum())
                 .refuses(Control::scene("stiffness × 1.05 under slow loading", |scene| {
@@ -391,7 +382,7 @@ fn speed_of_loading() -> Vec<Claim> {
                     let omega = Modal::from_scene(&done[0].scene).frequencies()[0];
                     let step = done[0].record.provenance.time_step;
                     let seen = 2.0 * (0.5 * omega * step).asin() / step;
-                    Ok(Measurement::new(frequency(&done[0])?, seen, seen))
+                    Ok(Measurement::relative(frequency(&done[0])?, seen))
                 })
                 .within(spectrum())
                 .refuses(Control::forgets_history()),
@@ -415,7 +406,7 @@ fn damping() -> Vec<Claim> {
                     printed("Fig. 6 and the text: damping does not affect the equilibrium value of the force"),
                     |done| {
                         let (mean, _) = residual(&done[0], "centre-edge.normal_force")?;
-                        Ok(Measurement::new(mean / done[1].last("centre-edge.normal_force")?, 1.0, 1.0))
+                        Ok(Measurement::relative(mean / done[1].last("centre-edge.normal_force")?, 1.0))
                     },
                 )
                 .within(computed(
@@ -435,7 +426,7 @@ fn damping() -> Vec<Claim> {
                 .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
                     let expected =
                         Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
-                    Ok(Measurement::new(decay(&done[0])?, expected, expected))
+                    Ok(Measurement::relative(decay(&done[0])?, expected))
                 })
                 .within(judged(5e-5, "geometry, first order in δ/R: 1.3e-3 for stiff discs and 1.1e-2 for soft discs"))
                 .refuses(Control::without(Effect::ContactDamping)),
@@ -475,9 +466,9 @@ const TURN: usize = 1500;
 fn slip_in_compression() -> Vec<Claim> {
     let slip_claim = |variant: &'static str| {
         let (expected, control) = if variant.contains("15deg") {
-            (8.0, Control::scene("friction × 3", |scene| scene.change_laws(|law| law.friction *= 3.0)))
+            (8.0, Control::contact_law("friction × 3", |law| law.friction *= 3.0))
         } else {
-            (0.0, Control::scene("friction halved", |scene| scene.change_laws(|law| law.friction *= 0.5)))
+            (0.0, Control::contact_law("friction halved", |law| law.friction *= 0.5))
         };
         claim("most contacts slipping at once in slow compression", "1")
             .run(Run::new(variant, "dem:1979", LEVELS[0].resolution))
@@ -540,12 +531,10 @@ fn distortion() -> Vec<Claim> {
                 |done| Ok(largest_turning(&done[0])? / largest_turning(&done[1])?),
             )
             .within(exactly("only the order is printed"))
-            .refuses(Control::scene("κ = 1/10 where it should be 1", |scene| {
-                scene.change_laws(|law| {
-                    if law.tangential_stiffness() >= law.normal_stiffness() {
-                        law.scale_tangential(0.1);
-                    }
-                });
+            .refuses(Control::contact_law("κ = 1/10 where it should be 1", |law| {
+                if law.tangential_stiffness() >= law.normal_stiffness() {
+                    law.scale_tangential(0.1);
+                }
             })),
         claim("30°: F_n in the end over its largest, κ = 1", "1")
             .runs(runs(&[3]))
@@ -561,7 +550,7 @@ fn distortion() -> Vec<Claim> {
                 "the paper states only a decrease; a decrease by a thousandth differs from a force that grows to the \
                              end",
             ))
-            .refuses(Control::scene("no slip: friction × 10", |scene| scene.change_laws(|law| law.friction *= 10.0))),
+            .refuses(Control::contact_law("no slip: friction × 10", |law| law.friction *= 10.0)),
         claim("F_n of κ = 1 and 2/3: largest difference at 15° over that at 30°", "1")
             .runs(runs(&[0, 1, 2, 3]))
             .at_most(
@@ -579,7 +568,6 @@ fn distortion() -> Vec<Claim> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     /// Checks that each value of `PHASE_ERRORS` is the computed phase error, rounded up by less than 10 %.

@@ -5,7 +5,7 @@ mod elastic;
 #[path = "figures.rs"]
 mod figures;
 
-use crate::rows::programs::{PAIRS, layer_of_spheres};
+use crate::rows::programs::{PAIRS, discs_for, stiffer};
 use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_1969 as experiment};
 use crate::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns};
@@ -24,7 +24,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::PHOTOELASTIC_PACKING
+    ..crate::heads::PHOTOELASTIC_PACKING
 };
 
 /// Packings with the parameters of each table of the paper. Eleven packings were tried for each table. The lists
@@ -216,11 +216,9 @@ const STALE_STRETCH: &str = "LIGGGHTS 3.8.0 reports no force of a mesh at step 0
                              of an opened contact while the pair is on its neighbour list (plane-shear), and here \
                              contacts open and close again";
 
-/// Returns the run of a solver in the comparison with `program`. In the comparison with LIGGGHTS the discs are one
-/// layer of spheres, because LIGGGHTS moves walls in three dimensions only.
+/// Returns the run of a solver in the comparison with `program`.
 fn common(variant: &'static str, solver: &'static str, program: &str) -> Run {
-    let run = Run::new(variant, solver, STEP).slow();
-    if program == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+    discs_for(program, Run::new(variant, solver, STEP).slow())
 }
 
 /// Returns our run with one disc moved by one unit in the last place.
@@ -234,10 +232,7 @@ fn perturbed(variant: &'static str, disc: usize) -> Run {
 /// Returns the claims that our solver agrees with LAMMPS and LIGGGHTS from the same initial state, with dashpots that
 /// both programs support. Samples are compared up to the predictability horizon, and F_H/F_V at the stages afterwards.
 fn programs() -> Vec<Claim> {
-    let softer = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-    });
-    let smooth = || Control::ours("friction .1 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
+    let smooth = || Control::our_contact_law("friction .1 in ours", |law| law.friction = 0.1);
     let [lammps, liggghts] = PAIRS;
     let program_runs = |pair: [&'static str; 2]| {
         let perturbed = [Run::new("first", lammps[0], STEP).slow().aside(), perturbed("first", 0).aside()];
@@ -247,7 +242,7 @@ fn programs() -> Vec<Claim> {
     known[0] = known[0].clone().known(STALE_STRETCH).up_to(0.05);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], STEP);
     let mut claims = vec![
-        perturbed::pointwise(PARTING, program_runs(lammps), softer),
+        perturbed::pointwise(PARTING, program_runs(lammps), stiffer()),
         perturbed::pointwise(PARTING, known, without),
         perturbed::horizon(PARTING, HORIZON, [Run::new("first", lammps[0], STEP).slow(), perturbed("first", 0)]),
     ];

@@ -12,18 +12,10 @@ use grainbench_harness::prelude::*;
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_scene::scene::{Duration, Piston, Sampling};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=2e-3 s", resolution: Resolution::TimeStep(2e-3) },
-    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
-];
+const LEVELS: &[Level] = &[time_step("dt=2e-3 s", 2e-3), time_step("dt=1e-3 s", 1e-3)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::PLANE_SHEAR_PRESSURE
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::PLANE_SHEAR_PRESSURE };
 
 /// Variants, each with its approximate inertial number.
 const RATES: [(&str, &str); 5] =
@@ -168,7 +160,7 @@ fn normal(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum across the layer: the mean of σ_yy, with its momentum flux, is that of the lid", |done| {
-            Ok(Measurement::new(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0, 1.0))
+            Ok(Measurement::relative(bulk(&done[0], "normal")? / pressure(&done[0].scene), 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
@@ -198,7 +190,7 @@ fn shear(variant: &'static str, about: &str) -> Claim {
     claim(quantity, "1")
         .run(ours(variant))
         .holds("momentum along the layer: the mean of σ_xy, with its momentum flux, is that of the walls", |done| {
-            Ok(Measurement::new(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0, 1.0))
+            Ok(Measurement::relative(bulk(&done[0], "shear")? / of_walls(&done[0])?, 1.0))
         })
         .within(computed(allowed, BECAUSE))
         .refuses(Control::misread("tangential forces with the wrong sign in the stress", turned))
@@ -248,8 +240,8 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
 fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
-    let control = Control::ours("friction 0 between grains in ours", |scene| {
-        scene.change_laws(|law| law.friction = if law.friction > 1.0 { law.friction } else { 0.0 });
+    let control = Control::our_contact_law("friction 0 between grains in ours", |law| {
+        law.friction = if law.friction > 1.0 { law.friction } else { 0.0 }
     });
     row(&quantity, "1", allowed, [run(variant, "dem:lammps"), run(variant, "lammps")], control, move |done| {
         Ok(Measurement::new(read(&done[0])?, read(&done[1])?, scale))

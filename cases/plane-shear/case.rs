@@ -8,13 +8,10 @@ use grainbench_harness::compare::pointwise::{difference, largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_solver::perturbed::move_one;
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=1e-3 s", resolution: Resolution::TimeStep(1e-3) },
-    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
-];
+const LEVELS: &[Level] = &[time_step("dt=1e-3 s", 1e-3), time_step("dt=1e-4 s", 1e-4)];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::PLANE_SHEAR };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::PLANE_SHEAR };
 
 /// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";
@@ -56,7 +53,7 @@ fn long(solver: &'static str) -> Run {
 const PARTING: DivergenceColumns = DivergenceColumns { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
 
 fn claims() -> Vec<Claim> {
-    let friction = Control::ours("friction .1 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.1));
+    let friction = Control::our_contact_law("friction .1 for .5 in ours", |law| law.friction = 0.1);
     let [lammps, liggghts] = PAIRS;
     let other = |solver| Control::solver("ours in the convention of the other program", solver);
     let without = Control::without_the_error("our solver, which forgets", liggghts[0], LEVELS[0].resolution);

@@ -24,22 +24,18 @@ use grainbench_scene::scene::Duration;
 
 /// Returns a resolution with `cells` cells across the slab and two points per cell and axis, as in the paper.
 const fn grid(cells: f64) -> Resolution {
-    Resolution::Grid { cells, points: 2, courant: 0.4 }
+    Resolution::grid(cells, 2)
 }
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=.05", resolution: Resolution::CriticalFraction(0.05) },
-    Level { name: "L/75", resolution: grid(75.0) },
-    Level { name: "L/150", resolution: grid(150.0) },
-    Level { name: "L/300", resolution: grid(300.0) },
-];
+const LEVELS: &[Level] =
+    &[fraction("dt=.05", 0.05), cells("L/75", 75.0, 2), cells("L/150", 150.0, 2), cells("L/300", 300.0, 2)];
 
 pub(crate) static CASE: Case = Case {
     levels: LEVELS,
     default_level: LEVELS[0],
     claims: &claims,
     figures: figures::figures,
-    ..crate::registry::heads::POLYDISPERSE_SHEAR
+    ..crate::heads::POLYDISPERSE_SHEAR
 };
 
 fn claims() -> Vec<Claim> {

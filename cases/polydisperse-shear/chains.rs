@@ -110,8 +110,6 @@ fn groups(count: usize, links: &[(u32, u32)]) -> Vec<usize> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use grainbench_scene::scene::Grain;
     use grainbench_solver::record::{ContactState, GrainState};

@@ -219,14 +219,14 @@ pub(super) fn claims() -> Vec<Claim> {
             .run(slab("mpm"))
             .holds("Coulomb's law: friction of the scene", |done| {
                 let friction = done[0].scene.laws[0].unwrap_or_default().friction;
-                Ok(Measurement::new(steepest(&done[0])?, friction, friction))
+                Ok(Measurement::relative(steepest(&done[0])?, friction))
             })
             .within(judged(0.02, "the forces of a contact area are summed, and their normals differ slightly"))
             .refuses(Control::scene(Effect::Friction.absence(), early(|scene| Effect::Friction.switch_off(scene)))),
         claim(format!("stress of von Mises over the flow stress where it has flowed, {percent}, largest"), "1")
             .run(slab("mpm"))
             .holds("radial return ends on the yield surface", |done| {
-                Ok(Measurement::new(on_the_yield_surface(&done[0])?, 1.0, 1.0))
+                Ok(Measurement::relative(on_the_yield_surface(&done[0])?, 1.0))
             })
             .within(computed(
                 64.0 * f64::EPSILON,

@@ -114,7 +114,7 @@ fn over_packings(
     (held, because): PackingReduction,
     bound: f64,
     control: Control,
-    read: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    read: impl RunsReader<f64>,
 ) -> Claim {
     let each = runs.len() / PACKINGS.len();
     claim(format!("{quantity}, 5 packings"), "1")
@@ -163,7 +163,7 @@ fn on_springs() -> Vec<Claim> {
         chains_of_the_paper(runs(), ", grains on springs", staying()),
         claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
             .runs([springs::to("slow", 0.25, 0).slow(), springs::to("seed-1", 0.25, 0).slow()])
-            .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::new(bands(done)?, slower, slower)))
+            .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::relative(bands(done)?, slower)))
             .within(judged(
                 0.4,
                 "spread between packings, and another kind of contact: the grains of the prototype \

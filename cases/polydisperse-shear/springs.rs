@@ -53,9 +53,7 @@ pub(super) fn claims() -> Vec<Claim> {
             .run(slab())
             .holds("equal and opposite forces", |done| momentum(&done[0]))
             .within(rounding(1.0, "of the largest impulse"))
-            .refuses(Control::scene("grains heavier by a thousandth", |scene| {
-                scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.001);
-            })),
+            .refuses(Control::grains("grains heavier by a thousandth", |grain| grain.mass *= 1.001)),
     ];
     for (pair, beginning) in PAIRS.into_iter().zip(BEGINNINGS) {
         let runs = pair.map(|solver| to_shear(Run::new("seed-1", solver, WITH_PROGRAMS), beginning, 0));
@@ -68,7 +66,7 @@ pub(super) fn claims() -> Vec<Claim> {
                            sums; an energy has twice the relative error of velocities",
             ),
             runs,
-            Control::ours("friction .29 for .3 in ours", |scene| scene.change_laws(|law| law.friction = 0.29)),
+            Control::our_contact_law("friction .29 for .3 in ours", |law| law.friction = 0.29),
             |done| {
                 let energy = "all.kinetic_energy";
                 worst(done, &[energy], largest(done[1].column(energy)?))

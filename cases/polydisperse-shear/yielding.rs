@@ -166,7 +166,7 @@ fn refined() -> Vec<Claim> {
         claim(format!("{words} on a grid of {coarse}² over that on one of {fine}², {:.0} % shear", 100.0 * shear), "1")
             .runs([run, finer.aside()])
             .agrees(Source::Ourselves("the same packing on a grid twice as fine"), move |done| {
-                Ok(Measurement::new(over(done, shear, read)?, 1.0, 1.0))
+                Ok(Measurement::relative(over(done, shear, read)?, 1.0))
             })
             .within(required(
                 allowed,

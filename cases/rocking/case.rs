@@ -6,8 +6,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROCKING };
+pub(crate) static CASE: Case = Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROCKING };
 
 /// Parameters of a sphere that rolls to rest.
 struct RollToRest {
@@ -31,7 +30,7 @@ impl RollToRest {
         let soft = rolling / (law.tangential_stiffness() * radius * radius);
         let swing =
             2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
-        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let step = STEP.step(scene);
         // Samples are ten steps apart, so the turning points of the oscillation, 2Rθ apart, lie between samples.
         let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
         Self { radius, yields, way, off: [soft + phase + swing * way / (radius * yields), 2.0 * swing + soft] }
@@ -45,10 +44,6 @@ fn turning_points(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok([places[farthest], places[farthest..].iter().copied().fold(f64::INFINITY, f64::min)])
 }
 
-fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
-    CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
-}
-
 fn claims() -> Vec<Claim> {
     vec![back(), way(), between("between"), between("backwards")]
 }
@@ -60,16 +55,14 @@ fn back() -> Claim {
             let [stop, back] = turning_points(&done[0])?;
             let rest = RollToRest::from_scene(&done[0].scene);
             let exact = 2.0 * rest.radius * rest.yields;
-            Ok(Measurement::new(stop - back, exact, exact))
+            Ok(Measurement::relative(stop - back, exact))
         })
         .within(computed(
-            number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
+            CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
             "compliance of the tangential spring, k_r/k_tR²; its vibration at the start; turning points between \
              samples, (ω_rΔt)²/8",
         ))
-        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.1);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .fair_to_any_springs()
 }
 
@@ -77,16 +70,13 @@ fn way() -> Claim {
     claim("way to rest", "m")
         .run(Run::new("to-rest", "dem", STEP.resolution))
         .equals(Source::Derived("(7/10) m v₀² = μ_r m g (x_s/R − θ_y/2) R (derivation)"), |done| {
-            let exact = RollToRest::from_scene(&done[0].scene).way;
-            Ok(Measurement::new(turning_points(&done[0])?[0], exact, exact))
+            Ok(Measurement::relative(turning_points(&done[0])?[0], RollToRest::from_scene(&done[0].scene).way))
         })
         .within(computed(
-            number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
+            CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
             "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
-        .refuses(Control::scene("rolling resistance × 1.1", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.1);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .fair_to_any_springs()
 }
 
@@ -105,7 +95,7 @@ fn rocks(scene: &Scene) -> [f64; 2] {
     let stiffness: f64 = scene.grains.iter().skip(1).filter(touches).map(each).sum();
     let rate = (stiffness / grain.inertia).sqrt();
     let phase = rate * scene.duration.seconds().unwrap_or(f64::NAN);
-    let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    let step = STEP.step(scene);
     let overlap = 1e-3;
     [rate, phase * (0.5 * overlap / grain.radius + (rate * step).powi(2) / 24.0) + (rate * step).powi(2) / 8.0]
 }
@@ -121,16 +111,10 @@ fn between(variant: &'static str) -> Claim {
             |done| done.scene.grains[0].spin.z,
         )
         .within(computed(
-            number(variant, |scene| rocks(scene)[1]),
+            CASE.number(variant, |scene| rocks(scene)[1]),
             "lever arms differ by up to the overlap, ω_s t δ/2R; central differences, ω_s t (ω_sΔt)²/24 and (ω_sΔt)²/8 \
              of a velocity; relative to ω₀",
         ))
-        .refuses(Control::scene("rolling resistance × 1.05", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.05);
-        }))
+        .refuses(Control::contact_law("rolling resistance × 1.05", |law| law.rolling_friction *= 1.05))
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

@@ -6,7 +6,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 const STEP: Level = LEVELS[1];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::ROLLING_OFF };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROLLING_OFF };
 
 /// Fixed ball and rolling ball.
 struct Balls {
@@ -33,7 +33,7 @@ impl Balls {
         let swing = 2.0 / 7.0 * gravity * angle.sin() / (3.5 * law.tangential_stiffness() / ball.mass).sqrt();
         let fast = (gravity * distance * 10.0 / 17.0).sqrt();
         let overlap = ball.mass * gravity / law.normal_stiffness();
-        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+        let step = STEP.step(scene);
         let off = (swing + gravity * step) / fast + overlap / distance + overlap / ball.radius;
         Self { gravity, friction: law.friction, radius: ball.radius, distance, angle, off }
     }
@@ -86,7 +86,7 @@ fn claims() -> Vec<Claim> {
 
 fn off(variant: &str, times: f64) -> Tolerance {
     computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| times * Balls::from_scene(&scene).off),
+        CASE.number(variant, |scene| times * Balls::from_scene(scene).off),
         "vibration of the spring at the start, (2/7) g sin θ₀/ω_t, and one step of gravity, relative to the velocity; \
          overlap over the distance and over the radius",
     )
@@ -101,7 +101,7 @@ fn angle() -> Claim {
             let balls = Balls::from_scene(&done[0].scene);
             let surface = done[0].last("ball.omega_y")? * balls.radius;
             let exact = 10.0 / 17.0 * balls.angle.cos();
-            Ok(Measurement::new(surface * surface / (balls.gravity * balls.distance), exact, exact))
+            Ok(Measurement::relative(surface * surface / (balls.gravity * balls.distance), exact))
         })
         .within(off("rough", 2.0))
         .refuses(Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25))
@@ -118,27 +118,20 @@ fn kept(
     let control = if variant == "rough" {
         Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25)
     } else {
-        Control::scene("friction × 1.05", |scene| scene.change_laws(|law| law.friction *= 1.05))
+        Control::contact_law("friction × 1.05", |law| law.friction *= 1.05)
     };
     claim(format!("{quantity}, {variant}"), unit)
         .run(Run::new(variant, "dem", STEP.resolution))
         .equals(Source::Derived("Newton's law with Coulomb's, by Runge and Kutta's method (derivation)"), move |done| {
-            let exact = exact(&Balls::from_scene(&done[0].scene));
-            Ok(Measurement::new(done[0].last(column)?, exact, exact))
+            Ok(Measurement::relative(done[0].last(column)?, exact(&Balls::from_scene(&done[0].scene))))
         })
         .within(off(variant, 1.0))
         .refuses(control)
         .fair_to_any_springs()
 }
 
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
-}
-
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Checks that the integration reproduces the closed form of the rough ball.

@@ -6,13 +6,8 @@ use grainbench_harness::source::CitedNumber;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::ROLLING_ON_BLOCK
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::ROLLING_ON_BLOCK };
 
 /// One slope with its reference.
 #[derive(Clone, Copy)]

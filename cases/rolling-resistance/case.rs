@@ -1,7 +1,7 @@
 //! Rolling resistance: deceleration on a flat plane, and the largest slope at which a grain rests.
 
 use crate::exact::one_grain::{OneGrain, State, course};
-use crate::rows::incline::wrong_inertia;
+use crate::rows::on_plane::wrong_inertia;
 use crate::rows::programs;
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
@@ -11,13 +11,8 @@ const STEP: Level = LEVELS[2];
 const FLAT: [&str; 2] = ["sphere", "disc"];
 const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: STEP,
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::ROLLING_RESISTANCE
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::ROLLING_RESISTANCE };
 
 fn rolling_friction(scene: &Scene) -> f64 {
     scene.laws.iter().flatten().map(|law| law.rolling_friction).fold(0.0, f64::max)
@@ -36,7 +31,7 @@ fn claims() -> Vec<Claim> {
     let lammps =
         claim("refusal of a damped rolling spring", "1").run(Run::new(SLOPE[0], "lammps", STEP.resolution)).refused(
             "LAMMPS limits the sum of spring and dashpot; LIGGGHTS and `dem` limit the spring alone",
-            Control::scene("no dashpot", |scene| scene.change_laws(|law| law.rolling_damping = 0.0)),
+            Control::contact_law("no dashpot", |law| law.rolling_damping = 0.0),
         );
     let rolls_off = |variant| programs::rolling_off(move |solver| Run { solver, ..tilted(variant, 1.001) });
     let ours = FLAT.into_iter().flat_map(flat).chain(SLOPE.into_iter().flat_map(threshold)).chain([rigid]);
@@ -47,10 +42,9 @@ fn claims() -> Vec<Claim> {
 fn beside_programs(variant: &'static str) -> Vec<Claim> {
     let time_step: f64 = 2e-5;
     let ahead = computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| {
-            let frequency = OneGrain::from_scene(&scene).rolling_frequency(rolling_friction(&scene));
-            frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(&scene)
-                / scene.grains[0].radius
+        CASE.number(variant, |scene| {
+            let frequency = OneGrain::from_scene(scene).rolling_frequency(rolling_friction(scene));
+            frequency.powi(2) * scene.grains[0].velocity.x * time_step.powi(2) * seconds(scene) / scene.grains[0].radius
         }),
         "the program counts one step of rolling in its evaluation of forces at the start. The moment k_r ωΔt then \
          decelerates by ω_r² v Δt for half a step or a whole step. A grain that starts at rest (on the slopes) is not \
@@ -69,19 +63,16 @@ fn flat(variant: &'static str) -> Vec<Claim> {
         claim(quantity, "m/s²")
             .run(Run::new(variant, "dem", STEP.resolution))
             .equals(Source::Derived("dv/dt = g (sin θ − μ_r cos θ)/(1 + i) (derivation)"), move |done| {
-                let exact = acceleration(&done[0].scene);
-                Ok(Measurement::new(slowing(&done[0], of_spin)?, exact, exact))
+                Ok(Measurement::relative(slowing(&done[0], of_spin)?, acceleration(&done[0].scene)))
             })
             .within(computed(
-                CASE.variant(variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).rung(0.5)),
+                CASE.number(variant, |scene| OneGrain::from_scene(scene).rung(0.5)),
                 "the moment is constant once the rolling spring has yielded, and friction approaches its value as \
                  exp(−λt): remainder after half a second (derivation)",
             ))
             .refuses(control)
     };
-    let more = Control::scene("rolling resistance × 1.01", |scene| {
-        scene.change_laws(|law| law.rolling_friction *= 1.01);
-    });
+    let more = Control::contact_law("rolling resistance × 1.01", |law| law.rolling_friction *= 1.01);
     vec![
         rolling_claim("deceleration on a flat plane", more, false),
         rolling_claim(
@@ -126,12 +117,10 @@ fn threshold(variant: &'static str) -> Vec<Claim> {
                 },
             )
             .within(allowed)
-            .refuses(Control::scene(wrong, move |scene| scene.change_laws(|law| law.rolling_friction *= by)))
+            .refuses(Control::contact_law(wrong, move |law| law.rolling_friction *= by))
     };
     let comes_to_rest = computed(
-        CASE.variant(variant).map_or(f64::NAN, |scene| {
-            OneGrain::from_scene(&scene).rolled(rolling_friction(&scene), 0.5 * seconds(&scene))
-        }),
+        CASE.number(variant, |scene| OneGrain::from_scene(scene).rolled(rolling_friction(scene), 0.5 * seconds(scene))),
         "remainder of the critically damped motion of the rolling spring after half the time (derivation); in units of \
          μ_r g/(1 + i)",
     );

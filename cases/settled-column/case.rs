@@ -8,13 +8,8 @@ use grainbench_scene::scene::Duration;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SETTLED_COLUMN
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SETTLED_COLUMN };
 
 /// Variants with columns from different random seeds. The spread between them gives the tolerances.
 const COLUMNS: [&str; 4] = [PLAIN, "seed-12", "seed-13", "seed-14"];
@@ -65,7 +60,7 @@ fn claims() -> Vec<Claim> {
         claim("weight carried by floor and walls", "N")
             .run(run(PAIRS[0][0]))
             .equals(Source::Derived("balance of forces at rest"), |done| {
-                Ok(Measurement::new(carried(&done[0])?, weight(&done[0]), weight(&done[0])))
+                Ok(Measurement::relative(carried(&done[0])?, weight(&done[0])))
             })
             .within(judged(
                 2e-3,
@@ -94,9 +89,7 @@ fn claims() -> Vec<Claim> {
                         "in units of the 99 % interval of the difference of two columns, from the spread of four \
                          starts",
                     ))
-                    .refuses(Control::ours("friction .05 for .5 in ours", |scene| {
-                        scene.change_laws(|law| law.friction = 0.05);
-                    })),
+                    .refuses(Control::our_contact_law("friction .05 for .5 in ours", |law| law.friction = 0.05)),
             );
         }
     }

@@ -6,18 +6,10 @@ use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
 use grainbench_reference::round_robin::{EARLY, SILO, STEADY, course};
 
-const LEVELS: &[Level] = &[
-    Level { name: "dt=6e-6 s", resolution: Resolution::TimeStep(6e-6) },
-    Level { name: "dt=3e-6 s", resolution: Resolution::TimeStep(3e-6) },
-];
+const LEVELS: &[Level] = &[time_step("dt=6e-6 s", 6e-6), time_step("dt=3e-6 s", 3e-6)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SILO_DISCHARGE
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SILO_DISCHARGE };
 
 /// Variant with the small orifice.
 const SMALL: &str = "small";
@@ -124,7 +116,7 @@ fn claims() -> Vec<Claim> {
             .runs([low(), half_the_step()])
             .agrees(Source::Ourselves("half the time step"), |done| {
                 let fine = rate(&done[1], EARLY)?;
-                Ok(Measurement::new(rate(&done[0], EARLY)?, fine, fine))
+                Ok(Measurement::relative(rate(&done[0], EARLY)?, fine))
             })
             .within(judged(0.01, "a fifth of the tolerance of the rates"))
             .refuses(smooth()),
@@ -132,7 +124,7 @@ fn claims() -> Vec<Claim> {
     let beginning = "position of a grain of a small silo over .6 ms, worst";
     claims.push(bulk::beginning(beginning, in_the_funnel("funnel-beginning", "dem:liggghts")));
     claims.extend(["dem:liggghts", "dem"].map(|ours| {
-        let control = Control::ours("no friction in ours", |scene| scene.change_laws(|law| law.friction = 0.0));
+        let control = Control::our_contact_law("no friction in ours", |law| law.friction = 0.0);
         let runs = in_the_funnel("funnel", ours).map(Run::slow);
         let momentum = ("all.momentum_z", 0.03);
         bulk::mean("mean momentum of a small silo from .03 to .12 s", "kg m/s", momentum, runs, control)
@@ -149,7 +141,7 @@ fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
 fn near(
     quantity: grainbench_harness::claim::Quantity,
     cited: CitedNumber,
-    value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+    value: impl RunsReader<f64>,
 ) -> grainbench_harness::claim::ClaimWithTolerance {
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }

@@ -14,7 +14,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    ..crate::registry::heads::SILO_PUSH
+    ..crate::heads::SILO_PUSH
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };

@@ -14,7 +14,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    ..crate::registry::heads::SILO_TALL
+    ..crate::heads::SILO_TALL
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };

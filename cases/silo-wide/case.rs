@@ -14,7 +14,7 @@ pub(crate) static CASE: Case = Case {
     default_level: LEVELS[0],
     claims: &claims,
     figures,
-    ..crate::registry::heads::SILO_WIDE
+    ..crate::heads::SILO_WIDE
 };
 
 static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };

@@ -4,7 +4,8 @@
 #[path = "backspin.rs"]
 mod backspin;
 
-use crate::exact::one_grain::{OneGrain, last};
+use crate::exact::one_grain::OneGrain;
+use crate::rows::elastic::excess;
 use crate::sources::prototype::{elastic_sphere, nodal_contact_2000, nodal_contact_2001};
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::CitedNumber;
@@ -16,13 +17,8 @@ const AT_REST: f64 = 1.0;
 const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a width of about √(2Rh), along each \
                     body's own normal";
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SPHERE_ON_BLOCK
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::SPHERE_ON_BLOCK };
 
 /// One slope with its references.
 #[derive(Clone, Copy)]
@@ -53,12 +49,6 @@ const SLOPES: [Slope; 2] = [
     },
 ];
 
-/// Returns the last displacement divided by that of a rigid sphere, minus one.
-fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
-    let (t, state) = last(done)?;
-    Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
-}
-
 /// Returns the run without relaxation. As in Bardenhagen et al. (2001), the sphere starts in contact and is released.
 fn set_down(variant: &'static str, solver: &'static str) -> Run {
     Run::new(variant, solver, LEVELS[1].resolution).adjusted("set down", |scene| scene.start.settle = None)
@@ -84,7 +74,7 @@ fn claims() -> Vec<Claim> {
                         "discretisation at this resolution, deformation of the plane, and the uncertainty of the \
                          reference",
                     ))
-                    .refuses(Control::scene("half the friction", |scene| scene.change_laws(|law| law.friction *= 0.5))),
+                    .refuses(Control::contact_law("half the friction", |law| law.friction *= 0.5)),
             );
         }
         for (solver, cited) in slope.papers {

@@ -24,7 +24,7 @@ const FORCES: ClaimFigure = ClaimFigure {
 };
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::registry::heads::SQUASH };
+    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SQUASH };
 
 fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)
@@ -75,8 +75,8 @@ fn claims() -> Vec<Claim> {
                         (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
                             scene.grains[1].position.x -= 1e-6;
                         }),
-                        (3, _) => Control::scene("the mass of the discs off by a millionth", |scene| {
-                            scene.grains.iter_mut().for_each(|grain| grain.mass *= 1.0 + 1e-6);
+                        (3, _) => Control::grains("the mass of the discs off by a millionth", |grain| {
+                            grain.mass *= 1.0 + 1e-6
                         }),
                         (_, "C") => late("the right wall starts one cycle late", 1),
                         _ => late("the left wall starts one cycle late", 0),
@@ -100,9 +100,7 @@ fn claims() -> Vec<Claim> {
                     "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 \
                      R",
                 ))
-                .refuses(Control::scene("damping of 1e-6 of critical", |scene| {
-                    scene.change_laws(|law| law.normal_damping = 2e-6);
-                }))
+                .refuses(Control::contact_law("damping of 1e-6 of critical", |law| law.normal_damping = 2e-6))
                 .drawn(&FORCES, contact),
         );
     }

@@ -18,13 +18,8 @@ const SOURCE: Source = Source::Derived(
                      (derivation)",
 );
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[1],
-    claims: &claims,
-    figures,
-    ..crate::registry::heads::SQUEEZED_DISCS
-};
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::SQUEEZED_DISCS };
 
 /// Returns the distance by which each wall moves in (m).
 fn squeeze(scene: &Scene) -> f64 {
@@ -106,10 +101,7 @@ fn claims() -> Vec<Claim> {
         claims.push(
             claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
                 .runs(runs)
-                .equals(SOURCE, |done| {
-                    let exact = exact(&done[0].scene);
-                    Ok(Measurement::new(over_phases(done)?, exact, exact))
-                })
+                .equals(SOURCE, |done| Ok(Measurement::relative(over_phases(done)?, exact(&done[0].scene))))
                 .within(tolerance)
                 .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9))),
         );
@@ -130,8 +122,7 @@ fn claims() -> Vec<Claim> {
                         should be")
                 .up_to(2.0))
             .equals(SOURCE, |done| {
-                let exact = exact(&done[0].scene);
-                Ok(Measurement::new(mean_force(&done[0])?, exact, exact))
+                Ok(Measurement::relative(mean_force(&done[0])?, exact(&done[0].scene)))
             })
             .within(judged(0.2, "accuracy of springs at the surface for any position of the grid"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[0].resolution)),

@@ -17,4 +17,5 @@ pub mod uncertainty;
 mod varied;
 
 pub use grainbench_harness::case::Case;
+pub(crate) use registry::heads;
 pub use solvers::runner;

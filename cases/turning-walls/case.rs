@@ -9,7 +9,7 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fra
 const STEP: Level = LEVELS[1];
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::registry::heads::TURNING_WALLS };
+    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::TURNING_WALLS };
 
 /// Returns the angular velocity of the walls (rad/s).
 fn spin(scene: &Scene) -> Vector3<f64> {
@@ -21,14 +21,9 @@ fn turned(scene: &Scene) -> f64 {
     spin(scene).norm() * scene.duration.seconds().unwrap_or(f64::NAN)
 }
 
-/// Returns a number computed from the scene of a variant as the case defines it, also under a negative control.
-fn number(variant: &str, value: impl Fn(&Scene) -> f64) -> f64 {
-    CASE.variant(variant).map_or(f64::NAN, |scene| value(&scene))
-}
-
 /// Returns the relative error of the integration scheme, (ΩΔt)² (1 + ΩT)².
 fn scheme(scene: &Scene) -> f64 {
-    let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    let step = STEP.step(scene);
     (spin(scene).norm() * step * (1.0 + turned(scene))).powi(2)
 }
 
@@ -59,14 +54,14 @@ fn gone_round(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 fn orbit() -> Claim {
-    let exact = number("drum", turned);
+    let exact = CASE.number("drum", turned);
     claim("angle that the sphere has gone round in the drum", "rad")
         .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it stays at rest relative to the drum: ΩT (derivation)"), move |done| {
-            Ok(Measurement::new(gone_round(&done[0])?, exact, exact))
+            Ok(Measurement::relative(gone_round(&done[0])?, exact))
         })
         .within(computed(
-            number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].position.norm() + scheme(scene)),
+            CASE.number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].position.norm() + scheme(scene)),
             "lever arms differ by up to the overlap, 2δ/r; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
@@ -74,14 +69,14 @@ fn orbit() -> Claim {
 }
 
 fn spin_in_drum() -> Claim {
-    let exact = number("drum", |scene| spin(scene).norm());
+    let exact = CASE.number("drum", |scene| spin(scene).norm());
     claim("spin of the sphere in the drum", "rad/s")
         .run(Run::new("drum", "dem", STEP.resolution))
         .equals(Source::Derived("it turns with the drum: Ω (derivation)"), move |done| {
-            Ok(Measurement::new(done[0].last("grain.omega_z")?, exact, exact))
+            Ok(Measurement::relative(done[0].last("grain.omega_z")?, exact))
         })
         .within(computed(
-            number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].radius + scheme(scene)),
+            CASE.number("drum", |scene| 2.0 * in_drum(scene) / scene.grains[0].radius + scheme(scene)),
             "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
@@ -118,7 +113,7 @@ fn tray() -> Claim {
             Ok(Measurement::new(way, exact, grain.radius * angle))
         })
         .within(computed(
-            number("tray", tray_off),
+            CASE.number("tray", tray_off),
             "lever arms differ by up to the overlap, δφ; twice the vibration ẋ/ω on the springs; in units of Rφ",
         ))
         .refuses(Control::without(Effect::RollingResistance))
@@ -136,8 +131,8 @@ fn across(place: Vector3<f64>) -> Vector3<f64> {
 }
 
 fn clamped() -> Claim {
-    let allowed = number("clamped", |scene| {
-        let step = STEP.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step);
+    let allowed = CASE.number("clamped", |scene| {
+        let step = STEP.step(scene);
         let time = scene.duration.seconds().unwrap_or(f64::NAN);
         second_order(1.0, spin(scene).norm(), frequency(scene), [time, step])
     });
@@ -156,8 +151,4 @@ fn clamped() -> Claim {
             scene.walls[1].motion.phases.iter_mut().for_each(|phase| phase.spin *= 0.99);
         }))
         .fair_to_any_springs()
-}
-
-fn figures(_: &Runner) -> Result<Vec<Figure>, RunError> {
-    Ok(Vec::new())
 }

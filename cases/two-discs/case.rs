@@ -10,7 +10,7 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 const TOUCH: f64 = 3.0 - SQRT_2;
 
 pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::registry::heads::TWO_DISCS };
+    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::TWO_DISCS };
 
 /// Courant number: time step divided by the transit time of a wave through a cell. It is smaller than usual because of
 /// the contact springs and the waves of an impact.
@@ -65,7 +65,7 @@ fn claims() -> Vec<Claim> {
         claims.push(
             claim(format!("energy after over before, {cells} cells a radius"), "1")
                 .run(run.clone())
-                .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
+                .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
                 .within(required(5e-3, "damping by the grid, and half a step between velocities and springs"))
                 .refuses(energetic()),
         );
@@ -124,7 +124,7 @@ fn claims() -> Vec<Claim> {
                     .known("contact ends as soon as the bodies separate, for any traction: each release adds energy")
                     .up_to(0.2),
             )
-            .holds("conservation of energy", |done| Ok(Measurement::new(energy(&done[0])?, 1.0, 1.0)))
+            .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
             .within(required(5e-3, "accuracy of springs at the surface"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
     );
@@ -178,7 +178,7 @@ fn oblique() -> Vec<Claim> {
             run("oblique", "mpm"),
             "ΩR/v₀ after an oblique impact, μ = .9",
             "discretisation at this resolution, and the uncertainty of the prototype",
-            Control::scene("a third of the friction", |scene| scene.change_laws(|law| law.friction /= 3.0)).coarser(grid(4.0)),
+            Control::contact_law("a third of the friction", |law| law.friction /= 3.0).coarser(grid(4.0)),
         ),
         spin_claim(
             Run::new("oblique", "mpm", grid(16.0)).slow().known(
@@ -227,15 +227,13 @@ fn touching() -> Vec<Claim> {
                 let force = done[0].column("contact.normal_force")?;
                 let at =
                     force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
-                Ok(Measurement::new(done[0].series().time[at], TOUCH, TOUCH))
+                Ok(Measurement::relative(done[0].series().time[at], TOUCH))
             })
             .within(computed(
                 2.0 * STEP / TOUCH,
                 "two steps of .3 h/c = .0065 s: a contact is detected in the step after the surfaces touch",
             ))
-            .refuses(Control::scene("five per cent slower", |scene| {
-                scene.grains.iter_mut().for_each(|grain| grain.velocity *= 0.95);
-            })),
+            .refuses(Control::grains("five per cent slower", |grain| grain.velocity *= 0.95)),
     ]
 }
 

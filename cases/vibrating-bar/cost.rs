@@ -20,7 +20,7 @@ pub(crate) fn subjects() -> Vec<TargetQuantity> {
         measure: Arc::new(move |done| {
             let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let exact = exact(&done.scene);
-            Ok(Measurement::new(period(done)?, exact, exact))
+            Ok(Measurement::relative(period(done)?, exact))
         }),
         lanes: vec![SolverSetup {
             method: Method::Grid,

@@ -21,10 +21,24 @@ pub struct Level {
     pub resolution: Resolution,
 }
 
+impl Level {
+    /// Returns the time step for a scene (s), or NaN if the level has no time step.
+    #[must_use]
+    pub fn step(&self, scene: &Scene) -> f64 {
+        self.resolution.steps(scene).map_or(f64::NAN, |(step, _)| step)
+    }
+}
+
 /// Returns a level whose time step is a fraction of the critical time step.
 #[must_use]
 pub const fn fraction(name: &'static str, fraction: f64) -> Level {
     Level { name, resolution: Resolution::CriticalFraction(fraction) }
+}
+
+/// Returns a level with a time step (s).
+#[must_use]
+pub const fn time_step(name: &'static str, step: f64) -> Level {
+    Level { name, resolution: Resolution::TimeStep(step) }
 }
 
 /// Returns a level with a grid: cells per reference length, and material points per cell along each axis.
@@ -153,6 +167,12 @@ impl Case {
             made.push((self.name, variant.to_owned(), scene.clone()));
         }
         Ok(scene)
+    }
+
+    /// Returns a number computed from the scene of a variant, or NaN if there is no such scene.
+    #[must_use]
+    pub fn number(&self, variant: &str, value: impl FnOnce(&Scene) -> f64) -> f64 {
+        self.variant(variant).map_or(f64::NAN, |scene| value(&scene))
     }
 
     /// Returns the names of the variants, or [`PLAIN`] alone if the scene has none.

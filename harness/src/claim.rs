@@ -13,8 +13,7 @@
 //! let fall = claim("speed after 1 s of free fall", "m/s")
 //!     .run(Run::new("plain", "dem", Resolution::TimeStep(1e-3)))
 //!     .equals(Source::Derived("v = gt"), |done| {
-//!         let exact = done[0].scene.gravity.norm();
-//!         Ok(Measurement::new(-done[0].last("grain.vy")?, exact, exact))
+//!         Ok(Measurement::relative(-done[0].last("grain.vy")?, done[0].scene.gravity.norm()))
 //!     })
 //!     .within(computed(1000.0 * f64::EPSILON, "every one of 1000 steps rounds by ε"))
 //!     .refuses(Control::scene("gravity a hundredth too large", |scene| scene.gravity *= 1.01));
@@ -33,6 +32,11 @@ use std::sync::Arc;
 
 /// Reads the measured value from the records of a claim's runs, in the order of the runs.
 pub type Measure = Arc<dyn Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync>;
+
+/// Function that reads a value from the finished runs of a claim, in the order of the runs.
+pub trait RunsReader<T>: Fn(&[FinishedRun]) -> Result<T, MissingData> + Send + Sync + 'static {}
+
+impl<T, F: Fn(&[FinishedRun]) -> Result<T, MissingData> + Send + Sync + 'static> RunsReader<T> for F {}
 
 /// Kind of the expected result.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -138,47 +142,30 @@ impl Quantity {
         self,
         expectation: Expectation,
         source: Source,
-        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+        measure: impl RunsReader<Measurement>,
     ) -> ClaimWithExpectation {
         ClaimWithExpectation { quantity: self, expectation, source, measure: Arc::new(measure), trace: None }
     }
 
     /// Expects the value that the source gives for the scene. The value may be a single number or the worst sample of a
     /// time series.
-    pub fn equals(
-        self,
-        source: Source,
-        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn equals(self, source: Source, measure: impl RunsReader<Measurement>) -> ClaimWithExpectation {
         self.expects(Expectation::Equals, source, measure)
     }
 
     /// Expects a number from a cited work. The error is the difference divided by `scale`.
-    pub fn equals_cited(
-        self,
-        cited: CitedNumber,
-        scale: f64,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn equals_cited(self, cited: CitedNumber, scale: f64, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let measure = move |done: &[FinishedRun]| Ok(Measurement::new(value(done)?, cited.value, scale));
         self.expects(Expectation::Equals, cited.source(), measure)
     }
 
     /// Expects a law that holds for every solution, such as the conservation of a quantity.
-    pub fn holds(
-        self,
-        law: &'static str,
-        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn holds(self, law: &'static str, measure: impl RunsReader<Measurement>) -> ClaimWithExpectation {
         self.expects(Expectation::Holds, Source::Derived(law), measure)
     }
 
     /// Expects the value of another run of the claim.
-    pub fn agrees(
-        self,
-        source: Source,
-        measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn agrees(self, source: Source, measure: impl RunsReader<Measurement>) -> ClaimWithExpectation {
         self.expects(Expectation::Agrees, source, measure)
     }
 
@@ -187,7 +174,7 @@ impl Quantity {
         expectation: Expectation,
         bound: Bound,
         source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
+        value: impl RunsReader<f64>,
     ) -> ClaimWithExpectation {
         let measure = move |done: &[FinishedRun]| {
             Ok(Measurement::new(value(done)?, ExpectedValue::Bound(bound), scale_of(bound)))
@@ -196,67 +183,37 @@ impl Quantity {
     }
 
     /// Expects a value of at least `bound`.
-    pub fn at_least(
-        self,
-        bound: f64,
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn at_least(self, bound: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::AtLeast(bound);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
     /// Expects a value of at most `bound`.
-    pub fn at_most(
-        self,
-        bound: f64,
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn at_most(self, bound: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::AtMost(bound);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
     /// Expects a value within a band.
-    pub fn between(
-        self,
-        band: [f64; 2],
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn between(self, band: [f64; 2], source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::Between(band);
         self.bounded(Expectation::Bound(bound), bound, source, value)
     }
 
     /// Expects this order of convergence.
-    pub fn converges(
-        self,
-        order: f64,
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn converges(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::Order(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
     /// Expects at least this order of convergence.
-    pub fn converges_at_least(
-        self,
-        order: f64,
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn converges_at_least(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::AtLeast(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }
 
     /// Expects at most this order of convergence. An error that does not decrease also passes.
-    pub fn converges_at_most(
-        self,
-        order: f64,
-        source: Source,
-        value: impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static,
-    ) -> ClaimWithExpectation {
+    pub fn converges_at_most(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
         let bound = Bound::AtMost(order);
         self.bounded(Expectation::Converges(bound), bound, source, value)
     }

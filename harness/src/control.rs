@@ -2,8 +2,9 @@
 
 use crate::reading::Table;
 use crate::run::{Change, Set};
+use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::effect::Effect;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Grain, Scene};
 use grainbench_solver::Defect;
 use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
@@ -94,6 +95,18 @@ impl Control {
         Self::new(name, WrongPhysics::Scene(Arc::new(change)))
     }
 
+    /// Returns a control with wrong contact laws.
+    #[must_use]
+    pub fn contact_law(name: &'static str, change: impl Fn(&mut ContactLaw) + Send + Sync + 'static) -> Self {
+        Self::scene(name, move |scene| scene.change_laws(&change))
+    }
+
+    /// Returns a control with wrong grains.
+    #[must_use]
+    pub fn grains(name: &'static str, change: impl Fn(&mut Grain) + Send + Sync + 'static) -> Self {
+        Self::scene(name, move |scene| scene.grains.iter_mut().for_each(&change))
+    }
+
     /// Returns a control that switches off an effect of the scene.
     #[must_use]
     pub fn without(effect: Effect) -> Self {
@@ -104,6 +117,12 @@ impl Control {
     #[must_use]
     pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, WrongPhysics::Ours(Arc::new(change)))
+    }
+
+    /// Returns a control for a comparison with another program: only our solver gets wrong contact laws.
+    #[must_use]
+    pub fn our_contact_law(name: &'static str, change: impl Fn(&mut ContactLaw) + Send + Sync + 'static) -> Self {
+        Self::ours(name, move |scene| scene.change_laws(&change))
     }
 
     /// Returns a control with a solver whose contacts lose their history.

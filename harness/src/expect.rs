@@ -129,6 +129,12 @@ impl Measurement {
         Self { value, expected: expected.into(), scale, course: Vec::new() }
     }
 
+    /// Returns a single measured value whose error is in units of the expected value.
+    #[must_use]
+    pub fn relative(value: f64, expected: f64) -> Self {
+        Self::new(value, expected, expected)
+    }
+
     /// Returns the worst sample of a time series compared with an exact solution.
     #[must_use]
     pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {

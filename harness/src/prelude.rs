@@ -1,9 +1,9 @@
 //! Names that the definition of a case needs.
 
-pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction};
-pub use crate::claim::{Claim, Measure, claim};
+pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction, time_step};
+pub use crate::claim::{Claim, Measure, RunsReader, claim};
 pub use crate::control::Control;
-pub use crate::course::{ClaimFigure, from_start, no_more, samples};
+pub use crate::course::{ClaimFigure, from_start, samples};
 pub use crate::expect::{Bound, ExpectedValue, Measurement};
 pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::reading::{Reader, Reading, Table};

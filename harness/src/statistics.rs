@@ -135,8 +135,6 @@ fn quantile_at(level: f64, degrees_of_freedom: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     /// Student's t for one degree of freedom is 63.66 at 99 %. Two values that differ by 2 have s = √2.

@@ -159,7 +159,6 @@ fn age(path: &Path, now: SystemTime) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use std::thread::sleep;
 

@@ -117,7 +117,6 @@ fn of_run(run: &LoggedRun, from: u64) -> Option<Vec<Part>> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::read::log::parse_log;
 

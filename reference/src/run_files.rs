@@ -222,7 +222,6 @@ pub(crate) fn shown(path: &Path) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     /// A file pattern yields names in alphabetical order, so that `dump.end` is before `dump.grains`.

@@ -94,7 +94,6 @@ fn pattern(what: &str) -> Result<Pattern, Fault> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     #[test]

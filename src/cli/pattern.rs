@@ -48,7 +48,6 @@ pub(crate) fn expanded(names: &[String]) -> Result<Vec<String>, Fault> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     #[test]

@@ -125,7 +125,6 @@ pub fn time_of(folder: &Path) -> SystemTime {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     const TERMS: LockTerms =

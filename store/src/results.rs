@@ -113,7 +113,6 @@ impl FinishedTasks {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::log::Log;
 

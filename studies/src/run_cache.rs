@@ -223,7 +223,6 @@ impl Wrapper for CachingSolver {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use grainbench_scene::source::SceneSource;
     use grainbench_solver::record::{Cost, Provenance, Series};

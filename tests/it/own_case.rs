@@ -48,6 +48,18 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
 }
 
+/// A list of solvers gives one claim for each of them.
+#[test]
+fn a_list_of_solvers_gives_a_claim_for_each() {
+    let folder = case("claims.toml", &[("unit = \"m/s\"", "unit = \"m/s\"\nsolver = [\"dem\", \"dem:lammps\"]")]);
+    let (answer, verdicts, controls) = run(folder.path());
+    assert_eq!(answer.code, Some(0), "{verdicts:#?}");
+    let claims = verdicts.iter().map(|row| (row["quantity"].as_str().unwrap(), row["solver"].as_str().unwrap()));
+    let velocity = "velocity, rolling";
+    assert_eq!(claims.take(2).collect::<Vec<_>>(), [(velocity, "dem"), (velocity, "dem:lammps")]);
+    assert!(verdicts.len() == 4 && controls.len() == 4, "{verdicts:#?}");
+}
+
 /// A wrong scene, a wrong expectation, or a negative control with too small a change makes the run fail.
 #[test]
 fn what_is_wrong_is_red() {

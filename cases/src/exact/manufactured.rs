@@ -1,5 +1,6 @@
 //! Error of a run against its manufactured solution.
 
+use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::{FinishedRun, MissingData};
 use grainbench_scene::manufactured::Medium;
 
@@ -21,4 +22,13 @@ pub fn error(done: &FinishedRun) -> Result<f64, MissingData> {
         (sum + (point.displacement - exact).norm_squared() * point.volume, volume + point.volume)
     });
     Ok((sum / volume).sqrt())
+}
+
+/// Returns the order of convergence in the cell length, fitted over runs with these numbers of cells per metre.
+///
+/// # Errors
+/// When [`error`] has an error for a run.
+pub fn order(done: &[FinishedRun], cells: &[f64]) -> Result<f64, MissingData> {
+    let point = |(done, cells): (&FinishedRun, &f64)| Ok((1.0 / cells, error(done)?));
+    Ok(slope(&done.iter().zip(cells).map(point).collect::<Result<Vec<_>, MissingData>>()?))
 }

@@ -232,6 +232,12 @@ impl OneGrain {
         }
     }
 
+    /// Returns the lever arm of friction (m) in the contact convention of a solver: R − overlap/2 for LIGGGHTS, R for LAMMPS.
+    #[must_use]
+    pub fn arm(&self, solver: &str) -> f64 {
+        if solver == "dem:liggghts" { self.radius * (1.0 - 0.5 * self.overlap_ratio) } else { self.radius }
+    }
+
     /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm a (`arm`)
     /// instead of R. v(1 + i(R/a)²) = g_t t follows from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
     #[must_use]

@@ -32,9 +32,9 @@ pub(super) struct ClaimEntry {
     pub(super) unit: String,
     /// Variant of the scene; the scene without a variant by default.
     pub(super) variant: Option<String>,
-    /// Name of the solver; `dem` by default.
-    #[serde(default = "dem")]
-    pub(super) solver: String,
+    /// Name of the solver, or a list of names with one claim for each; `dem` by default.
+    #[serde(default)]
+    pub(super) solver: SolverNames,
     /// Parameters of the resolution; defaults for parameters that are not given.
     #[serde(default)]
     pub(super) resolution: ResolutionParameters,
@@ -80,13 +80,33 @@ pub(super) struct ClaimEntry {
 /// Solver of claims that do not name one.
 pub(super) const DEM: &str = "dem";
 
-fn dem() -> String {
-    DEM.to_owned()
+/// Names of the solvers for which a claim is made.
+#[derive(Deserialize)]
+#[serde(untagged, expecting = "another value, expected the name of a solver or a list of names")]
+pub(super) enum SolverNames {
+    One(String),
+    Several(Vec<String>),
+}
+
+impl Default for SolverNames {
+    fn default() -> Self {
+        Self::One(DEM.to_owned())
+    }
+}
+
+impl SolverNames {
+    /// Returns the names as a list.
+    pub(super) fn list(&self) -> &[String] {
+        match self {
+            Self::One(name) => std::slice::from_ref(name),
+            Self::Several(names) => names,
+        }
+    }
 }
 
 /// Number, or arithmetic expression over numbers of the scene. In `equals` the expression may contain the time `t`.
 #[derive(Deserialize)]
-#[serde(untagged)]
+#[serde(untagged, expecting = "another value, expected a number or an expression")]
 pub(super) enum Formula {
     Number(f64),
     Text(String),

@@ -81,7 +81,7 @@ pub fn read(folder: &Path) -> Result<&'static Case, CaseFolderError> {
         return Err(no_case("expected at least one `[[claims]]`, found none".to_owned()));
     }
     let source = SceneSource::read(&folder.join(SCENE)).map_err(|error| no_case(error.to_string()))?;
-    let rows = rows(claims.claims, &Reader { folder, source: &source, plots: true }).map_err(no_case)?;
+    let rows = rows(&claims.claims, &Reader { folder, source: &source, plots: true }).map_err(no_case)?;
     let whole = fs::canonicalize(folder).map_err(|error| no_case(error.to_string()))?;
     let is_plain = |name: &&std::ffi::OsStr| !name.to_string_lossy().chars().any(char::is_control);
     let (Some(name), Some(parent)) = (whole.file_name().filter(is_plain), whole.parent()) else {
@@ -128,7 +128,7 @@ pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
     let claims = toml::from_str(text).map_err(|error| error.message().replace('\n', " "));
     let read = claims
-        .and_then(|file: ClaimsFile| rows(file.claims, &Reader { folder: &folder, source: &source, plots: false }));
+        .and_then(|file: ClaimsFile| rows(&file.claims, &Reader { folder: &folder, source: &source, plots: false }));
     read.unwrap_or_else(|reason| vec![unreadable(format!("{}: {reason}", folder.join(CLAIMS).display()))])
 }
 
@@ -144,15 +144,16 @@ fn unreadable(reason: String) -> Claim {
 ///
 /// # Errors
 /// The message names the claim and the key, and gives the expected and the found text.
-fn rows(claims: Vec<ClaimEntry>, reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
-    let row = |(place, claimed): (usize, ClaimEntry)| {
-        let quantity = claimed.quantity.clone();
-        reader.claim(claimed).map_err(|wrong| match wrong {
-            ClaimError::Key(key, what) => format!("claim {} ({quantity}): {key}: {what}", place + 1),
-            ClaimError::Scene(what) => format!("claim {} ({quantity}): {what}", place + 1),
-        })
-    };
-    claims.into_iter().enumerate().map(row).collect()
+fn rows(claims: &[ClaimEntry], reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
+    let mut rows = Vec::new();
+    for (place, claimed) in claims.iter().enumerate() {
+        let entry = format!("claim {} ({})", place + 1, claimed.quantity);
+        rows.extend(reader.claims(claimed).map_err(|wrong| match wrong {
+            ClaimError::Key(key, what) => format!("{entry}: {key}: {what}"),
+            ClaimError::Scene(what) => format!("{entry}: {what}"),
+        })?);
+    }
+    Ok(rows)
 }
 
 /// Returns the files on which the results of a case folder depend: scene, claims, and the files named in these two.

@@ -4,7 +4,7 @@ use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
 use super::{ClaimError, wrong};
-use grainbench_harness::claim::{ClaimWithExpectation, Quantity};
+use grainbench_harness::claim::{ClaimWithExpectation, Quantity, RunsReader};
 use grainbench_harness::course::Points;
 use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::source::Source;
@@ -83,9 +83,7 @@ impl RecordExpression {
     }
 
     /// Returns a function that reads the value from finished runs, for a claim with a bound.
-    pub(super) fn bounded(
-        self,
-    ) -> Result<impl Fn(&[FinishedRun]) -> Result<f64, MissingData> + Send + Sync + 'static, ClaimError> {
+    pub(super) fn bounded(self) -> Result<impl RunsReader<f64>, ClaimError> {
         if self.over == Some(SampleReduction::Course) {
             return Err(wrong("over", "`max`, `min` or `mean` with a bound", "`course`"));
         }

@@ -39,11 +39,18 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Converts a claim.
+    /// Converts an entry to one claim for each of its solvers.
     ///
     /// # Errors
     /// The message names the key and gives the expected and the found text.
-    pub(super) fn claim(&self, claimed: ClaimEntry) -> Result<Claim, ClaimError> {
+    pub(super) fn claims(&self, claimed: &ClaimEntry) -> Result<Vec<Claim>, ClaimError> {
+        if claimed.solver.list().is_empty() {
+            return Err(wrong("solver", "at least one name", "none"));
+        }
+        claimed.solver.list().iter().map(|solver| self.claim(claimed, solver)).collect()
+    }
+
+    fn claim(&self, claimed: &ClaimEntry, solver: &str) -> Result<Claim, ClaimError> {
         let variant = claimed.variant.as_deref().unwrap_or(PLAIN);
         let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
         let in_scene = |error: grainbench_scene::error::SceneError| ClaimError::Scene(error.to_string());
@@ -53,8 +60,8 @@ impl Reader<'_> {
         for (key, text) in [("quantity", &claimed.quantity), ("unit", &claimed.unit), ("because", &claimed.because)] {
             in_words(key, text)?;
         }
-        let resolution = resolution(&claimed.resolution, &claimed.solver, &scene)?;
-        let run = Run::new(kept(variant.to_owned()), kept(claimed.solver.clone()), resolution);
+        let resolution = resolution(&claimed.resolution, solver, &scene)?;
+        let run = Run::new(kept(variant.to_owned()), kept(solver.to_owned()), resolution);
         let run = if matches!(claimed.tier, Tier::Standard) { run.slow() } else { run };
         let course = claimed.follows.as_ref().map(|file| self.course(file, &scene)).transpose()?;
         // The claim covers only the times of the table, so its quantity states the first and the last time.
@@ -63,9 +70,9 @@ impl Reader<'_> {
             _ => claimed.quantity.clone(),
         };
         let quantity = claim(words, kept(claimed.unit.clone())).run(run);
-        let tolerance = tolerance(&claimed, &numbers)?;
+        let tolerance = tolerance(claimed, &numbers)?;
         let control = control(&claimed.control, &source, &scene)?;
-        let expecting = expecting(quantity, &claimed, course, &numbers)?;
+        let expecting = expecting(quantity, claimed, course, &numbers)?;
         let claim = expecting.within(tolerance).refuses(control);
         let claim = match (&claim.trace, claim.quantity.clone()) {
             (Some(_), words) if self.plots => {
@@ -83,7 +90,7 @@ impl Reader<'_> {
         };
         // External solvers with the contact springs of the scene can also run a claim of `dem`, because the name `dem`
         // selects no contact convention of LAMMPS or LIGGGHTS.
-        Ok(if claimed.solver == DEM { claim.fair_to_any_springs() } else { claim })
+        Ok(if solver == DEM { claim.fair_to_any_springs() } else { claim })
     }
 
     /// Reads an expected curve from a table. The times must increase and lie within the run.

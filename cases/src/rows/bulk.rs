@@ -17,7 +17,7 @@ pub(crate) fn beginning(quantity: &str, runs: [Run; 2]) -> Claim {
         "rounding only, because both programs use the same integration cycle with another \
                                  order of sums; in units of the radius",
     );
-    let control = Control::ours("E* × 1.00001 in ours", |scene| scene.change_laws(|law| law.scale_normal(1.00001)));
+    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
     row(quantity, "m", allowed, runs, control, |done| {
         let axes = &["one.x", "one.y", "one.z"][..done[0].scene.dimension.count()];
         worst(done, axes, done[0].scene.grains[0].radius)

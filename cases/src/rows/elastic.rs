@@ -1,10 +1,12 @@
 //! Elastic grains: relaxation of one grain on a plane before the run, stiffening of a grain towards the rigid limit,
 //! and the closed form of a disc that is compressed across its diameter.
 
-use crate::exact::one_grain::{OneGrain, last};
+use crate::exact::one_grain::{OneGrain, last, normal_axis};
+use crate::rows::on_plane::touching;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Settle;
 use grainbench_scene::scene::{Duration, Scene};
+use nalgebra::Vector3;
 use std::f64::consts::PI;
 
 /// Relaxation phase before the run.
@@ -19,12 +21,9 @@ pub struct Rest {
 /// Places the first grain in contact with its plane and relaxes it under the normal component of gravity. The run then
 /// lasts `time` (s).
 pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
-    let normal = scene.dimension.count() - 1;
-    scene.grains[0].position[normal] = scene.grains[0].radius;
-    let mut gravity = scene.gravity;
-    for axis in 0..normal {
-        gravity[axis] = 0.0;
-    }
+    touching(scene);
+    let (normal, mut gravity) = (normal_axis(scene), Vector3::zeros());
+    gravity[normal] = scene.gravity[normal];
     scene.start.settle = Some(Settle { duration: rest.duration, damping: rest.damping, gravity });
     scene.duration = Duration::Seconds(time);
 }

@@ -29,7 +29,7 @@ pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
 
 /// Returns the negative control for the sliding phase: 0.7 times the friction.
 pub(crate) fn slippery() -> Control {
-    Control::scene("friction × .7", |scene| scene.change_laws(|law| law.friction *= 0.7))
+    Control::contact_law("friction × .7", |law| law.friction *= 0.7)
 }
 
 /// Returns the claims that displacement and rolling velocity of the sphere agree with the prototype. `level` is the

@@ -1,10 +1,7 @@
 //! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
 //! Each case has its own scene, slopes and elastic body.
 
-pub use super::on_plane::{
-    DAMPING, NEARLY_RIGID, STEP, at_overlap, more_friction, nearly_rigid, other_inertia, stronger_friction,
-    wrong_inertia,
-};
+use super::on_plane::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
 use super::rigid::{self, Row};
 use super::set_down::{self, Dashpots};
 use super::{label, programs};
@@ -135,7 +132,7 @@ pub fn end(
 ) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
     let expected = pick(exact(&OneGrain::from_scene(&done.scene), t));
-    Ok(Measurement::new(pick(state), expected, expected))
+    Ok(Measurement::relative(pick(state), expected))
 }
 
 /// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
@@ -144,7 +141,7 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
-    let slips_from = case.variant(slope.variant).map_or(f64::NAN, |scene| OneGrain::from_scene(&scene).slips_from());
+    let slips_from = case.number(slope.variant, |scene| OneGrain::from_scene(scene).slips_from());
     let error = |done: &FinishedRun| end(done, OneGrain::compliant_incline, |state| state.x);
     vec![
         claim("displacement at 1 s, undamped, against the elastic answer", "m")
@@ -307,18 +304,17 @@ fn elsewhere(scene: &Scene) -> State {
 /// each convention.
 fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
-        let at_contact = solver == "dem:liggghts";
         claim(quantity, "m/s")
             .run(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
             .equals(Source::Derived("v(1 + i(R/a)²) = g_t t with arm a (derivation)"), move |done| {
                 let (t, state) = last(&done[0])?;
                 let grain = OneGrain::from_scene(&done[0].scene);
-                let arm = if at_contact { grain.radius * (1.0 - 0.5 * grain.overlap_ratio) } else { grain.radius };
+                let arm = grain.arm(solver);
                 let exact = grain.rolling_velocity(t, arm);
-                Ok(Measurement::new(if of_spin { state.omega * arm } else { state.v }, exact, exact))
+                Ok(Measurement::relative(if of_spin { state.omega * arm } else { state.v }, exact))
             })
             .within(come_to_roll(case, slope.variant, |_| 0.0))
-            .refuses(if at_contact {
+            .refuses(if solver == "dem:liggghts" {
                 Control::solver("torque arm R", "dem:lammps")
             } else {
                 Control::solver("torque arm R − overlap/2", "dem:liggghts")

@@ -1,6 +1,6 @@
 //! Runs of a grain on a plane, and their negative controls.
 
-use crate::exact::one_grain::rest_at_overlap;
+use crate::exact::one_grain::{OneGrain, last, normal_axis, rest_at_overlap};
 use grainbench_harness::prelude::*;
 
 /// Time step of runs that are compared with rigid solutions.
@@ -17,15 +17,16 @@ pub fn wrong_inertia(scene: &mut Scene) {
     grain.inertia = factor * grain.mass * grain.radius * grain.radius;
 }
 
-/// Increases friction by 5 %.
-pub fn more_friction(scene: &mut Scene) {
-    scene.change_laws(|law| law.friction *= 1.05);
+/// Places the grain exactly in contact with the plane, without overlap.
+pub fn touching(scene: &mut Scene) {
+    let axis = normal_axis(scene);
+    scene.grains[0].position[axis] = scene.grains[0].radius;
 }
 
 /// Returns the negative control for sliding grains: friction that is 5 % larger.
 #[must_use]
 pub fn stronger_friction() -> Control {
-    Control::scene("friction ×1.05", more_friction)
+    Control::contact_law("friction ×1.05", |law| law.friction *= 1.05)
 }
 
 /// Returns the negative control for rolling grains: the moment of inertia of the other shape, disc or sphere.
@@ -53,4 +54,28 @@ pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
         rest_at_overlap(scene, NEARLY_RIGID, DAMPING);
         scene.change_laws(|law| law.tangential_damping = 0.0);
     })
+}
+
+/// Returns the claims on the final velocity of rolling, which agrees to rounding with the solution for the lever arm of
+/// each convention. `exact` returns the velocity (m/s) in a scene for a lever arm (m).
+pub(crate) fn final_velocity(
+    variant: &'static str,
+    source: Source,
+    exact: fn(&Scene, f64) -> f64,
+    allowed: &Tolerance,
+) -> Vec<Claim> {
+    let speed_claim = |solver, quantity: &str, other| {
+        claim(quantity, "m/s")
+            .run(at_overlap(variant, solver, 1e-3, DAMPING, STEP))
+            .equals(source, move |done| {
+                let arm = OneGrain::from_scene(&done[0].scene).arm(solver);
+                Ok(Measurement::relative(last(&done[0])?.1.v, exact(&done[0].scene, arm)))
+            })
+            .within(allowed.clone())
+            .refuses(other)
+    };
+    vec![
+        speed_claim("dem:lammps", "final velocity, arm R", Control::solver("torque arm R − overlap/2", "dem:liggghts")),
+        speed_claim("dem:liggghts", "final velocity, arm R − overlap/2", Control::solver("torque arm R", "dem:lammps")),
+    ]
 }

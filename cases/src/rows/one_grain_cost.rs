@@ -3,14 +3,13 @@
 
 use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
 use crate::registry;
-use crate::rows::incline::DAMPING;
+use crate::rows::elastic::{Rest, settle, stiffen};
+use crate::rows::on_plane::{DAMPING, touching};
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::body::Settle;
 use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Duration;
-use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// Static overlaps of grains on springs, divided by the radius R.
@@ -54,7 +53,7 @@ fn subject(
     let grid = STIFFENED.map(|factor| SolverSetup {
         method: Method::Grid,
         knobs: if factor == 1.0 { String::new() } else { format!("moduli × {factor}") },
-        prepare: Some(lasting(seconds, move |scene| settled(scene, factor))),
+        prepare: Some(Arc::new(move |scene| settled(scene, factor, seconds))),
         about: Resolution::grid(8.0, 3),
     });
     TargetQuantity {
@@ -67,7 +66,7 @@ fn subject(
             let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
             let (t, state) = last(done)?;
             let expected = exact(&OneGrain::from_scene(&done.scene), t).x;
-            Ok(Measurement::new(state.x, expected, expected))
+            Ok(Measurement::relative(state.x, expected))
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
     }
@@ -80,25 +79,14 @@ fn lasting(seconds: f64, change: impl Fn(&mut Scene) + Send + Sync + 'static) ->
     })
 }
 
-fn touching(scene: &mut Scene) {
-    let axis = scene.dimension.count() - 1;
-    let grain = &mut scene.grains[0];
-    grain.position[axis] = grain.radius;
-}
-
 /// Sets the grain on the plane and lets it relax before the run, under the normal component of gravity. The moduli of
 /// all materials are multiplied by `factor`. Materials without moduli first get K = 10 MPa and G = 2.5 MPa
 /// (Bardenhagen, Brackbill & Sulsky 2000).
-fn settled(scene: &mut Scene, factor: f64) {
-    touching(scene);
-    let axis = scene.dimension.count() - 1;
-    let mut gravity = Vector3::zeros();
-    gravity[axis] = scene.gravity[axis];
-    scene.start.settle = Some(Settle { duration: 0.3, damping: 100.0, gravity });
+fn settled(scene: &mut Scene, factor: f64, seconds: f64) {
+    settle(scene, Rest { duration: 0.3, damping: 100.0 }, seconds);
     let paper = Deformable { bulk_modulus: 1e7, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };
     for material in &mut scene.deformable {
-        let given = material.get_or_insert(paper);
-        given.bulk_modulus *= factor;
-        given.shear_modulus *= factor;
+        material.get_or_insert(paper);
     }
+    stiffen(scene, factor);
 }

@@ -4,18 +4,12 @@
 //! dashpot forces therefore differ from the forces that moved the grains, so runs with contacts between grains are
 //! undamped. The dumped wall forces are the forces that moved the grains.
 
-use crate::rows::programs::{PAIRS, layer_of_spheres, row};
+use crate::rows::programs::{PAIRS, discs_for, row, stiffer};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
 const BECAUSE: &str = "rounding only, because both programs use the same integration cycle and round positions alike; \
                        in units of the largest force";
-
-fn stiffer() -> Control {
-    Control::ours("stiffness off by 1e-6 in ours", |scene| {
-        scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-    })
-}
 
 /// Returns the claims that the forces in `columns` equal those of LAMMPS and of LIGGGHTS. `unit` returns the unit of
 /// the error (N) from the scene and the time step (s).
@@ -48,10 +42,7 @@ pub fn nine_discs(variant: &'static str, resolution: Resolution, rounded: &Toler
         stiffness * phase.velocity.norm() * phase.stop.seconds(time_step)
     };
     let force_row = |pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]| {
-        let runs = pair.map(|solver| {
-            let run = Run::new(variant, solver, resolution);
-            if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
-        });
+        let runs = pair.map(|solver| discs_for(pair[1], Run::new(variant, solver, resolution)));
         row(quantity, "N", rounded.clone(), runs, stiffer(), move |done| {
             worst(done, columns, unit(&done[0].scene, done[0].record.provenance.time_step))
         })

@@ -19,13 +19,18 @@ pub(crate) fn row(
     tolerance: Tolerance,
     runs: [Run; 2],
     control: Control,
-    measure: impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> + Send + Sync + 'static,
+    measure: impl RunsReader<Measurement>,
 ) -> Claim {
     claim(format!("{quantity}, against {}", runs[1].solver), unit)
         .runs(runs)
         .agrees(Source::Program, measure)
         .within(tolerance)
         .refuses(control)
+}
+
+/// Returns the tolerance for rounding in two programs with the same integration cycle. `unit` states the unit of the error.
+pub(crate) fn same_cycle(unit: &str) -> Tolerance {
+    rounding(1.0, format!("rounding only, because both programs use the same integration cycle; {unit}"))
 }
 
 /// Returns the claims on the position of one grain on a plane over one second, undamped and damped. In the damped runs,
@@ -54,13 +59,11 @@ pub fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
 /// Returns a negative control with a tangential stiffness 0.1 % too large. The stiffness affects when a grain starts to
 /// slip and how a grain starts to roll.
 fn telling() -> Control {
-    Control::ours("tangential stiffness × 1.001 in ours", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1.001));
-    })
+    Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001))
 }
 
 fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
-    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
+    let allowed = same_cycle("in units of R");
     row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
         let scene = &done[0].scene;
         let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
@@ -80,17 +83,11 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
     for &variant in variants {
         for pair in PAIRS {
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
-            let control = Control::ours("damping ×1.001 in ours", |scene| {
-                scene.change_laws(|law| {
-                    law.normal_damping *= 1.001;
-                    law.stiffness_damping *= 1.001;
-                });
+            let control = Control::our_contact_law("damping ×1.001 in ours", |law| {
+                law.normal_damping *= 1.001;
+                law.stiffness_damping *= 1.001;
             });
-            let allowed = rounding(
-                1.0,
-                "rounding only, because both programs use the same integration cycle; in units \
-                                         of the approach velocity",
-            );
+            let allowed = same_cycle("in units of the approach velocity");
             claims.push(row("coefficient of restitution", "1", allowed, runs, control, |done| {
                 Ok(Measurement::new(restitution_coefficient(&done[0])?, restitution_coefficient(&done[1])?, 1.0))
             }));
@@ -101,10 +98,20 @@ pub fn restitution(variants: &[&'static str], resolution: Resolution) -> Vec<Cla
 
 /// Replaces discs by spheres of the same mass in one layer, because LIGGGHTS moves walls inwards in three dimensions
 /// only.
-pub(crate) fn layer_of_spheres(scene: &mut Scene) {
+fn layer_of_spheres(scene: &mut Scene) {
     scene.grain_shape = GrainShape::Sphere;
     let factor = GrainShape::Sphere.inertia_factor();
     scene.grains.iter_mut().for_each(|grain| grain.inertia = factor * grain.mass * grain.radius * grain.radius);
+}
+
+/// Returns the run of discs that is compared with a program: for LIGGGHTS a run of one layer of spheres.
+pub(crate) fn discs_for(program: &str, run: Run) -> Run {
+    if program == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
+}
+
+/// Returns a negative control with a stiffness 1e-6 too large.
+pub(crate) fn stiffer() -> Control {
+    Control::our_contact_law("stiffness off by 1e-6 in ours", |law| law.scale_normal(1.0 + 1e-6))
 }
 
 /// Columns of the nine-discs case with the compared positions.
@@ -122,16 +129,9 @@ pub fn nine_discs(
     let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let runs = pair.map(|solver| {
-                let run = Run::new(variant, solver, resolution);
-                if pair[1] == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
-            });
-            let control = Control::ours("stiffness off by 1e-6 in ours", |scene| {
-                scene.change_laws(|law| law.scale_normal(1.0 + 1e-6));
-            });
-            let allowed = rounded(variant);
+            let runs = pair.map(|solver| discs_for(pair[1], Run::new(variant, solver, resolution)));
             let quantity = "position over all cycles, worst";
-            claims.push(row(quantity, "m", allowed, runs, control, move |done| {
+            claims.push(row(quantity, "m", rounded(variant), runs, stiffer(), move |done| {
                 worst(done, &NINE_DISCS, travel(&done[0]))
             }));
         }
@@ -185,27 +185,15 @@ pub fn turning_walls(
 pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) -> Vec<Claim> {
     let mut claims = Vec::new();
     for pair in PAIRS {
-        let allowed = rounding(
-            1.0,
-            "rounding only, because both programs use the same integration cycle; relative to \
-                                     the velocity before",
-        );
+        let allowed = same_cycle("relative to the velocity before");
         let runs = || pair.map(|solver| Run::new(variant, solver, resolution));
-        let control = Control::ours("E* × 1.00001 in ours", |scene| {
-            scene.change_laws(|law| law.scale_normal(1.00001));
-        });
+        let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
         claims.push(row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
             worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
         }));
         if turns {
-            let allowed = rounding(
-                1.0,
-                "rounding only, because both programs use the same integration cycle; relative \
-                                         to the velocity before over the radius",
-            );
-            let control = Control::ours("G* × 1.00001 in ours", |scene| {
-                scene.change_laws(|law| law.scale_tangential(1.00001));
-            });
+            let allowed = same_cycle("relative to the velocity before over the radius");
+            let control = Control::our_contact_law("G* × 1.00001 in ours", |law| law.scale_tangential(1.00001));
             claims.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
                 let grain = &done[0].scene.grains[0];
                 worst(done, &["a.omega_y"], grain.velocity.norm() / grain.radius)
@@ -220,12 +208,11 @@ pub fn hertz_impact(variant: &'static str, resolution: Resolution, turns: bool) 
 #[must_use]
 pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Vec<Claim> {
     let rolling_rows = |pair: [&'static str; 2]| {
-        let same = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
+        let same = same_cycle("in units of R");
         let allowed = if pair[1] == "lammps" { same } else { ahead.clone() };
         let runs = pair.map(|solver| Run::new(variant, solver, step));
-        let control = Control::ours("rolling resistance × 1.00001 in ours", |scene| {
-            scene.change_laws(|law| law.rolling_friction *= 1.00001);
-        });
+        let control =
+            Control::our_contact_law("rolling resistance × 1.00001 in ours", |law| law.rolling_friction *= 1.00001);
         row("position over 1 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
     };
     PAIRS.map(rolling_rows).to_vec()
@@ -235,10 +222,10 @@ pub fn rolling(variant: &'static str, step: Resolution, ahead: &Tolerance) -> Ve
 /// `tilted` returns the run of each solver.
 #[must_use]
 pub fn rolling_off(tilted: impl Fn(&'static str) -> Run) -> Claim {
-    let allowed = rounding(1.0, "rounding only, because both programs use the same integration cycle; in units of R");
+    let allowed = same_cycle("in units of R");
     let runs = PAIRS[1].map(tilted);
-    let control = Control::ours("the dashpot of the rolling spring × .999 in ours", |scene| {
-        scene.change_laws(|law| law.rolling_damping *= 0.999);
+    let control = Control::our_contact_law("the dashpot of the rolling spring × .999 in ours", |law| {
+        law.rolling_damping *= 0.999
     });
     row("position over 4 s, worst", "m", allowed, runs, control, |done| worst(done, &["grain.x"], 1.0))
 }
@@ -250,23 +237,13 @@ pub fn impact(variants: &[&'static str], resolution: Resolution) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &variant in variants {
         for pair in PAIRS {
-            let allowed = rounding(
-                1.0,
-                "rounding only, because both programs use the same integration cycle; relative \
-                                         to the velocity before",
-            );
-            let control = Control::ours("friction ×1.001 in ours", |scene| {
-                scene.change_laws(|law| law.friction *= 1.001);
-            });
+            let allowed = same_cycle("relative to the velocity before");
+            let control = Control::our_contact_law("friction ×1.001 in ours", |law| law.friction *= 1.001);
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("velocity over the impact, worst", "m/s", allowed, runs, control.clone(), |done| {
                 worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
             }));
-            let allowed = rounding(
-                1.0,
-                "rounding only, because both programs use the same integration cycle; relative \
-                                         to the largest force of the spring, v√(km)",
-            );
+            let allowed = same_cycle("relative to the largest force of the spring, v√(km)");
             let runs = pair.map(|solver| Run::new(variant, solver, resolution));
             claims.push(row("force on the wall, worst", "N", allowed, runs, control, |done| {
                 let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());

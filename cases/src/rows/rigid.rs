@@ -16,7 +16,7 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::on_plane::{other_inertia, stronger_friction};
+use crate::rows::on_plane::{other_inertia, stronger_friction, touching};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use grainbench_scene::scene::Duration;
@@ -48,13 +48,7 @@ pub struct Row {
     pub lifts: Option<[f64; 2]>,
 }
 
-/// Places the grain exactly in contact, because a rigid contact has no static overlap.
-fn touching(scene: &mut Scene) {
-    let axis = scene.dimension.count() - 1;
-    let grain = &mut scene.grains[0];
-    grain.position[axis] = grain.radius;
-}
-
+/// Returns a run of the grain in contact without overlap, because a rigid contact has no static overlap.
 fn run(variant: &'static str, resolution: Resolution) -> Run {
     Run::new(variant, RIGID, resolution).adjusted("touching", touching)
 }
@@ -76,7 +70,7 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
             .equals(RIGID_SOURCE, move |done| {
                 let (t, state) = last(&done[0])?;
                 let expected = pick(exact(&OneGrain::from_scene(&done[0].scene), t));
-                Ok(Measurement::new(pick(state), expected, expected))
+                Ok(Measurement::relative(pick(state), expected))
             })
             .within(tolerance)
             .refuses(control)
@@ -205,7 +199,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
             |done| {
                 let (t, state) = last(&done[0])?;
                 let exact = rolling(&OneGrain::from_scene(&done[0].scene), t);
-                Ok(Measurement::new(state.v, exact, exact))
+                Ok(Measurement::relative(state.v, exact))
             },
         )
         .within(computed(
@@ -290,11 +284,9 @@ pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<M
             1.0,
             "rapier applies −e times the approach velocity once, at the end of the step of the impact",
         ))
-        .refuses(Control::scene("damping ×1.05", |scene| {
-            scene.change_laws(|law| {
-                law.stiffness_damping *= 1.05;
-                law.normal_damping *= 1.05;
-            });
+        .refuses(Control::contact_law("damping ×1.05", |law| {
+            law.stiffness_damping *= 1.05;
+            law.normal_damping *= 1.05;
         }))
 }
 
@@ -326,9 +318,7 @@ pub fn angular_momentum(
             "normal and lever arms are taken at the start of the step, and the grains have moved when the impulse \
              acts: ∝ v Δt, in units of m v R",
         ))
-        .refuses(Control::scene("the inertia of spheres", |scene| {
-            scene.grains.iter_mut().for_each(|grain| grain.inertia *= 0.8);
-        }))
+        .refuses(Control::grains("the inertia of spheres", |grain| grain.inertia *= 0.8))
 }
 
 /// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number of

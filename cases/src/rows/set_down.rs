@@ -124,15 +124,6 @@ fn set_down(scene: &mut Scene, dashpots: Dashpots) {
     scene.sampling = Sampling::Seconds(TIMES[1] / frequency);
 }
 
-/// Increases both spring stiffnesses by 5 %.
-fn stiffer(scene: &mut Scene) {
-    scene.change_laws(|law| {
-        if let grainbench_scene::contact_law::Springs::Linear { normal, tangential } = &mut law.springs {
-            (*normal, *tangential) = (1.05 * *normal, 1.05 * *tangential);
-        }
-    });
-}
-
 /// Returns the claims on overlap and slip velocity over time, for a grain on a slope.
 #[must_use]
 pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
@@ -141,12 +132,10 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
         Dashpots::OfStiffness => "set down, damping by stiffness",
     };
     let run = || Run::new(variant, "dem:lammps", STEP).adjusted(name, move |scene| set_down(scene, dashpots));
-    let weaker = Control::scene("dashpots a tenth too weak", |scene| {
-        scene.change_laws(|law| {
-            law.normal_damping *= 0.9;
-            law.tangential_damping *= 0.9;
-            law.stiffness_damping *= 0.9;
-        });
+    let weaker = Control::contact_law("dashpots a tenth too weak", |law| {
+        law.normal_damping *= 0.9;
+        law.tangential_damping *= 0.9;
+        law.stiffness_damping *= 0.9;
     });
     let overlap = || {
         claim("overlap while it rings, largest deviation", "m")
@@ -182,7 +171,7 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     };
     vec![
         overlap()
-            .refuses(Control::scene("springs ×1.05", stiffer))
+            .refuses(Control::contact_law("springs ×1.05", |law| law.springs = law.springs.scaled([1.05; 2])))
             .fair_to_any_springs()
             .drawn(&SPRINGS, super::label(variant)),
         slip().refuses(weaker).fair_to_any_springs(),

@@ -45,10 +45,7 @@ pub(crate) struct Silo {
 }
 
 /// Levels of resolution of silos. The claims use the first.
-pub(crate) const LEVELS: &[Level] = &[
-    Level { name: "dt=2.5e-4 s", resolution: Resolution::TimeStep(2.5e-4) },
-    Level { name: "dt=1e-4 s", resolution: Resolution::TimeStep(1e-4) },
-];
+pub(crate) const LEVELS: &[Level] = &[time_step("dt=2.5e-4 s", 2.5e-4), time_step("dt=1e-4 s", 1e-4)];
 
 /// Limitations of these cases.
 pub(crate) const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
@@ -70,27 +67,12 @@ const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the diffe
 
 /// Returns a negative control with half the friction.
 fn half_the_friction() -> Control {
-    Control::scene("friction .25 for .5", |scene| scene.change_laws(|law| law.friction = 0.25))
+    Control::contact_law("friction .25 for .5", |law| law.friction = 0.25)
 }
 
 /// Returns a negative control with tangential springs a millionth as stiff.
 pub(crate) fn no_springs() -> Control {
-    Control::scene("tangential springs a millionth as stiff", |scene| {
-        scene.change_laws(|law| law.scale_tangential(1e-6))
-    })
-}
-
-/// Returns a negative control that reads tan φ, the ratio of shear to normal stress, instead of sin φ.
-fn tangent_for_sine() -> Control {
-    Control::misread("tan φ taken for sin φ", |tables| {
-        for table in tables {
-            for (column, values) in table.columns.iter().zip(&mut table.values) {
-                if column == "sine_of_friction" {
-                    values.iter_mut().for_each(|sine| *sine /= (1.0 - *sine * *sine).sqrt());
-                }
-            }
-        }
-    })
+    Control::contact_law("tangential springs a millionth as stiff", |law| law.scale_tangential(1e-6))
 }
 
 /// Returns a negative control with gravity rotated by ten degrees about y.
@@ -206,7 +188,7 @@ impl Silo {
             .run(self.run.clone())
             .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
             .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
-            .refuses(tangent_for_sine())
+            .refuses(Control::misread("tan φ taken for sin φ", ensemble::tangent))
     }
 
     /// Returns the claims on two correlations over elements: of two measures of friction, and of two strain rates. The
@@ -311,8 +293,8 @@ impl Silo {
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
         let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
-        let control = Control::ours("tangential springs a millionth as stiff in ours", |scene| {
-            scene.change_laws(|law| law.scale_tangential(1e-6));
+        let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {
+            law.scale_tangential(1e-6)
         });
         let because = format!("because of chaos the two runs are independent samples after .8 τ; {PACKINGS}");
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
@@ -332,8 +314,7 @@ impl Silo {
             "order of sums: the difference grows by e every .033 τ, up to .2 τ; an energy has twice the relative error \
              of velocities",
         );
-        let control =
-            Control::ours("friction .25 for .5 in ours", |scene| scene.change_laws(|law| law.friction = 0.25));
+        let control = Control::our_contact_law("friction .25 for .5 in ours", |law| law.friction = 0.25);
         let words = format!("kinetic energy up to {time} τ, worst");
         row(&words, "m g d", allowed, [run("dem:lammps"), run("lammps")], control, |done| {
             worst(done, &[ENERGY], largest(done[1].column(ENERGY)?))

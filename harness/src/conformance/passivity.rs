@@ -271,8 +271,6 @@ fn work(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use grainbench_solver::Solver;
     use grainbench_solver::failure::RunError;

@@ -327,8 +327,6 @@ fn one_free(name: &'static str, dimension: usize, law: &str) -> Result<NamedScen
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     #[test]

@@ -157,7 +157,6 @@ fn by_lot(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     const HEAD: &str = "title = 't'\nscene = 'squash'\nsolvers = []\n";

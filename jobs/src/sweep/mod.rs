@@ -515,7 +515,6 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use grainbench_cases::solvers::Registry;
     use std::fs;

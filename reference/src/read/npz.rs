@@ -301,8 +301,6 @@ fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use std::fs;
 

@@ -190,8 +190,6 @@ impl Numbers {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use grainbench_scene::source::SceneSource;
     use grainbench_solver::resolution::Resolution;

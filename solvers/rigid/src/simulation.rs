@@ -256,8 +256,6 @@ fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) 
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use crate::settings::Settings;
     use grainbench_scene::source::SceneSource;

@@ -338,8 +338,6 @@ fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     /// The key of the effect shows the coefficient of restitution of the scene, not the damping ratio.
     #[test]
     fn restitution_is_told_as_the_scene_has_it() {

@@ -118,8 +118,6 @@ fn body_of<T: DeserializeOwned>(bytes: &[u8], magic: &[u8], format: u32) -> Resu
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
 
     fn state() -> EndState {

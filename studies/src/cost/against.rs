@@ -158,7 +158,6 @@ fn time(solver: &str, case: &str, ratios: &[(f64, f64)]) -> Option<Change> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use grainbench_reports::study::point::{Counts, Timing};
     use rand::{RngExt, SeedableRng};

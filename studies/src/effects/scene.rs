@@ -138,7 +138,6 @@ impl StudyInput<'_> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use grainbench_dem::convention::Convention;
     use grainbench_dem::solver::Dem;

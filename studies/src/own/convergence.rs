@@ -155,7 +155,6 @@ fn order([coarse, middle, fine]: [f64; 3], ratio: f64) -> Option<f64> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
 
     fn levels(sizes: &[f64], value: impl Fn(f64) -> f64) -> Vec<LevelValue> {

@@ -161,7 +161,6 @@ fn forces(links: &[Link], motion: &[Motion]) -> Vec<Motion> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use crate::stability::assembly;
     use grainbench_dem::convention::Convention;

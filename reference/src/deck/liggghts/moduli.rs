@@ -86,8 +86,6 @@ fn not_of_materials(how: &str) -> String {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
-
     use super::*;
     use grainbench_scene::contact_law::Springs;
 

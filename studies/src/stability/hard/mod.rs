@@ -281,7 +281,6 @@ fn head_on(scene: &Scene, record: &Record) -> Result<(), Failure> {
 
 #[cfg(test)]
 mod tests {
-    #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
     use super::*;
     use grainbench_dem::convention::Convention;
     use grainbench_dem::solver::Dem;
