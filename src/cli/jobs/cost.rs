@@ -18,7 +18,6 @@ use grainbench::reports::study::step::Model;
 use grainbench::store::key;
 use grainbench::store::log::State;
 use grainbench::store::results::TaskResult;
-use grainbench::studies::ProgressObserver;
 use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
 use serde::{Deserialize, Serialize};
@@ -87,15 +86,6 @@ impl CostStudy {
     }
 }
 
-/// Observer that reports the name of the current run.
-struct Now<'a>(&'a dyn Fn(&str));
-
-impl ProgressObserver for Now<'_> {
-    fn now(&mut self, piece: &str) {
-        (self.0)(piece);
-    }
-}
-
 /// Returns the duration of all repetitions of a point (s).
 fn seconds_of(point: &Point) -> f64 {
     point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
@@ -147,12 +137,12 @@ impl TaskList for CostStudy {
     type Output = Measured;
 
     fn perform(&self, place: usize, sink: &ResultSink<'_, Measured>) -> (State, Measured) {
-        let mut now = Now(&|name| sink.now(name));
+        let now = |name: &str| sink.now(name);
         let measured = match BESIDE.get(place) {
             Some(("prices", _)) => {
-                step::measure(&Registry, ROUNDS, &mut now).map(Measured::Model).map_err(|error| error.to_string())
+                step::measure(&Registry, ROUNDS, &now).map(Measured::Model).map_err(|error| error.to_string())
             }
-            _ => load::measure(&Registry, ROUNDS, &mut now).map(Measured::Loads).map_err(|error| error.to_string()),
+            _ => load::measure(&Registry, ROUNDS, &now).map(Measured::Loads).map_err(|error| error.to_string()),
         };
         measured.map_or_else(|why| (State::Failed, Measured::Nothing(why)), |measured| (State::Done, measured))
     }
