@@ -23,7 +23,7 @@ use grainbench::harness::run::Run;
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::{Kind, Plan};
+use grainbench::jobs::plan::Plan;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::store::key;
 use grainbench::store::log::State;
@@ -137,10 +137,6 @@ fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
 }
 
 impl Tasks for ClaimStudy {
-    fn kind(&self) -> Kind {
-        Kind::Run
-    }
-
     fn is_timed(&self) -> bool {
         false
     }

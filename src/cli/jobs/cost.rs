@@ -9,7 +9,6 @@ use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::TargetQuantity;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::load::Load;
 use grainbench::reports::study::point::{Point, PointStatus};
@@ -92,10 +91,6 @@ fn seconds_of(point: &Point) -> f64 {
 }
 
 impl Tasks for CostStudy {
-    fn kind(&self) -> Kind {
-        Kind::Cost
-    }
-
     fn is_timed(&self) -> bool {
         !self.wanted.counts
     }
