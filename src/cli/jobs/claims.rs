@@ -64,7 +64,7 @@ impl ClaimStudy {
             ));
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
-        claims::narrow(&mut selected, &options, &filters)?;
+        claims::narrow(&mut selected, &options, &filters, None)?;
         let is_whole = cases.is_empty() && options.filter.is_empty();
         let tasks = ClaimTasks::new(selected, &options, is_whole)?.cached(cache::open(false));
         let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
