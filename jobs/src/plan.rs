@@ -12,9 +12,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// File with the origin of the plan.
-pub const HEAD: &str = "plan.toml";
+const HEAD: &str = "plan.toml";
 /// File with the tasks, one per line.
-pub const TASKS: &str = "tasks.jsonl";
+const TASKS: &str = "tasks.jsonl";
 /// Directory of leases.
 pub const RUNNING: &str = "running";
 /// Format version of `plan.toml`. It must be raised whenever the meaning of stored data changes.
@@ -148,7 +148,7 @@ impl Plan {
     ///
     /// # Errors
     /// The error names the file, the place, what was expected and what was found.
-    pub fn head(path: &Path) -> Result<Head, Fault> {
+    fn head(path: &Path) -> Result<Head, Fault> {
         let file = path.join(HEAD);
         if !file.is_file() {
             return Err(Fault::in_file(

@@ -91,7 +91,7 @@ impl TimeUnit {
 
     /// Returns a duration (s) in this unit, without its symbol, with at most three significant digits.
     #[must_use]
-    pub fn number(self, seconds: f64) -> String {
+    fn number(self, seconds: f64) -> String {
         significant(seconds * self.scale, 3)
     }
 

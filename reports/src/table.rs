@@ -446,7 +446,7 @@ pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
 }
 
 /// Returns a text that no spreadsheet interprets as a formula. Names come from scene files.
-pub(crate) fn harmless(text: String) -> String {
+fn harmless(text: String) -> String {
     if text.starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text }
 }
 
