@@ -16,7 +16,7 @@ use grainbench_solver::record::Series;
 /// Largest accepted |difference| of the new run while the run is predictable, divided by the extent of the column.
 /// During this time, a rounding error of one unit in the last place of one position grows to a thousandth of this
 /// limit. Other builds and processors round every sum differently.
-pub const ALLOWED: f64 = 1e-6;
+const ALLOWED: f64 = 1e-6;
 
 /// Repeats a stored run and compares both runs, sample by sample while the run is predictable, and by means after that.
 ///

@@ -58,7 +58,7 @@ pub struct LoadedDisc {
 impl LoadedDisc {
     /// Creates a disc of a radius (m) under loads.
     #[must_use]
-    pub fn new(radius: f64, loads: Vec<Load>) -> Self {
+    fn new(radius: f64, loads: Vec<Load>) -> Self {
         let normal_sum: f64 = loads.iter().map(|load| load.force.dot(&load.normal)).sum();
         let resultant = loads.iter().map(|load| load.force).sum();
         let torque: f64 = loads.iter().map(|load| radius * load.normal.perp(&load.force)).sum();

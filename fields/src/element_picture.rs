@@ -53,7 +53,7 @@ pub struct Units {
 
 impl Units {
     /// Metres and seconds.
-    pub const SI: Self = Self { length: "m", time: "s" };
+    const SI: Self = Self { length: "m", time: "s" };
 
     /// Converts the SI unit of a column to these units. Only units of speed and rate change.
     fn unit(self, si: &str) -> String {

@@ -37,12 +37,6 @@ pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
 }
 
 impl Tracer {
-    /// Returns the number of grains that were labelled at the start.
-    #[must_use]
-    pub fn members(&self) -> usize {
-        self.labelled.len()
-    }
-
     /// Returns true if the tracer has stopped because there were no grains around it.
     #[must_use]
     pub const fn is_lost(&self) -> bool {

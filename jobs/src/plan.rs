@@ -13,9 +13,9 @@ use std::fs;
 use std::path::{Path, PathBuf};
 
 /// File with the origin of the plan.
-pub const HEAD: &str = "plan.toml";
+const HEAD: &str = "plan.toml";
 /// File with the tasks, one per line.
-pub const TASKS: &str = "tasks.jsonl";
+const TASKS: &str = "tasks.jsonl";
 /// Directory of leases.
 pub const RUNNING: &str = "running";
 /// Format version of `plan.toml`. It must be raised whenever the meaning of stored data changes.
@@ -23,30 +23,11 @@ const FORMAT: u32 = 1;
 /// Default time (s) after which a lease expires if it is not renewed.
 const LEASE: f64 = 60.0;
 
-/// Kind of plan.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Kind {
-    /// Claims of cases.
-    Run,
-    /// Cost-accuracy study.
-    Cost,
-    /// Stability study.
-    Stability,
-    /// Study of the influence of effects.
-    Effects,
-    /// Parameter sweep over keys of a scene.
-    Sweep,
-}
-
-/// Contents of `plan.toml`.
+/// Contents of `plan.toml`. Plans of earlier versions have a key `kind` that repeats the command; it is ignored.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(deny_unknown_fields)]
 pub struct Head {
     /// Format version of the file.
     pub format: u32,
-    /// Kind of plan.
-    pub kind: Kind,
     /// Number of tasks.
     pub tasks: usize,
     /// Hash of the file of tasks.
@@ -84,10 +65,9 @@ impl Head {
     /// Returns the contents of `plan.toml` for this program. [`Plan::write`] sets the number, the hash and the expected
     /// time of the tasks.
     #[must_use]
-    pub fn new(kind: Kind, arguments: toml::Value, timed: bool) -> Self {
+    pub fn new(arguments: toml::Value, timed: bool) -> Self {
         Self {
             format: FORMAT,
-            kind,
             tasks: 0,
             hash: String::new(),
             shards: 1,
@@ -169,7 +149,7 @@ impl Plan {
     ///
     /// # Errors
     /// The error names the file, the place, what was expected and what was found.
-    pub fn head(path: &Path) -> Result<Head, Fault> {
+    fn head(path: &Path) -> Result<Head, Fault> {
         let file = path.join(HEAD);
         if !file.is_file() {
             return Err(Fault::in_file(

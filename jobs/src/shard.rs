@@ -8,7 +8,7 @@ use std::str::FromStr;
 /// Maximum number of shards.
 pub const MOST: u32 = 1_000_000;
 /// Shortest mean expected duration of the recommended shards (s). A batch system takes about a second to start a shard.
-pub const SECONDS: f64 = 60.0;
+const SECONDS: f64 = 60.0;
 /// Shortest assumed duration of a task (s), because each task has some overhead.
 const LEAST: f64 = 1e-3;
 

@@ -17,7 +17,7 @@ use std::path::{Path, PathBuf};
 use std::process::Command;
 
 /// Directory of job scripts, job output and the list of submissions.
-pub const FOLDER: &str = "slurm";
+const FOLDER: &str = "slurm";
 /// File with one submission per line.
 const JOBS: &str = "jobs.jsonl";
 /// Options of `sbatch` that users may not set, because they would change the job array.
@@ -94,7 +94,7 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
 ///
 /// # Errors
 /// When the file of submissions cannot be read.
-pub fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
+fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
     let path = plan.join(FOLDER).join(JOBS);
     let text = match fs::read_to_string(&path) {
         Ok(text) => text,

@@ -2,14 +2,12 @@
 
 use crate::distinct;
 use crate::provenance::Provenance;
+use crate::study::Study;
+use crate::study::cost::{self, TARGETS};
 use crate::study::effects::Entry;
 use crate::study::point::{Diagram, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
-use crate::study::{Study, cost};
 use serde::{Deserialize, Serialize};
-
-/// Errors for which costs are reported, as fractions of the scale of the quantity.
-pub const TARGETS: [f64; 3] = cost::TARGETS;
 
 /// Index in [`TARGETS`] of the error for which the first screen shows costs.
 pub const AT: usize = 1;

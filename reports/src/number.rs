@@ -59,6 +59,12 @@ pub fn count(count: u64) -> String {
     text
 }
 
+/// Returns a number of things, such as `1 task` or `2 tasks`.
+#[must_use]
+pub fn counted(number: usize, noun: &str) -> String {
+    format!("{} {noun}{}", count(number as u64), if number == 1 { "" } else { "s" })
+}
+
 /// Returns a duration (s) with an SI prefix and at most three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
@@ -85,7 +91,7 @@ impl TimeUnit {
 
     /// Returns a duration (s) in this unit, without its symbol, with at most three significant digits.
     #[must_use]
-    pub fn number(self, seconds: f64) -> String {
+    fn number(self, seconds: f64) -> String {
         significant(seconds * self.scale, 3)
     }
 
@@ -223,6 +229,7 @@ mod tests {
     fn counts_and_times_read_easily() {
         assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
         assert_eq!(count(999), "999");
+        assert_eq!([counted(1, "task"), counted(20, "task")], ["1 task", "20 tasks"]);
         assert_eq!(seconds(0.000_4), "400\u{202f}µs");
         assert_eq!(seconds(2.13), "2.13\u{202f}s");
         assert_eq!(seconds(0.0), "0\u{202f}s");

@@ -36,7 +36,12 @@ pub enum FigureFormat {
 }
 
 impl FigureFormat {
-    const fn ending(self) -> &'static str {
+    /// All formats.
+    pub const ALL: [Self; 2] = [Self::Pdf, Self::Png];
+
+    /// Returns the ending of the file names.
+    #[must_use]
+    pub const fn ending(self) -> &'static str {
         match self {
             Self::Pdf => "pdf",
             Self::Png => "png",

@@ -5,7 +5,7 @@
 use crate::number;
 use crate::series_figures;
 pub use crate::series_figures::NamedRecord;
-use crate::solid_figures::{self, Shot as Lit};
+use crate::solid_figures::{self, not_recorded};
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
@@ -29,7 +29,7 @@ const SLICES: usize = 60;
 
 /// Returns true if a record has grains or points and all of them lie in the plane z = 0.
 #[must_use]
-pub fn is_plane(record: &Record) -> bool {
+fn is_plane(record: &Record) -> bool {
     let heights = |snapshot: &Snapshot| {
         let grains = snapshot.grains.iter().map(|grain| grain.position.z);
         grains.chain(snapshot.points.iter().map(|point| point.position.z)).collect::<Vec<f64>>()
@@ -78,31 +78,34 @@ pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure
     figures
 }
 
-/// Returns the name of each record and its snapshots nearest to the given times (s). Records without snapshots are left out.
-fn film_of<'a>(records: &'a [NamedRecord<'_>], clock: &[f64]) -> Vec<(String, Vec<&'a Snapshot>)> {
-    let frames = |named: &'a NamedRecord<'_>| clock.iter().filter_map(|&time| named.at(time)).collect::<Vec<_>>();
-    records
-        .iter()
-        .map(|named| (named.name.clone(), frames(named)))
-        .filter(|(_, frames)| frames.len() == clock.len())
-        .collect()
+/// Returns the snapshots of each record nearest to the given times (s). Records without snapshots are left out.
+fn film_of<'a>(records: impl IntoIterator<Item = &'a NamedRecord<'a>>, clock: &[f64]) -> Vec<Shot<'a>> {
+    let shot = |named: &'a NamedRecord<'a>| {
+        let frames = clock.iter().map(|&time| named.at(time)).collect::<Option<_>>()?;
+        Some(Shot { title: named.name.clone(), frames })
+    };
+    records.into_iter().filter_map(shot).collect()
+}
+
+/// Returns the snapshot of each record nearest to a time (s). The title contains the time of the snapshot.
+fn pictures_of<'a>(records: impl IntoIterator<Item = &'a NamedRecord<'a>>, time: f64) -> Vec<Shot<'a>> {
+    let shot = |named: &'a NamedRecord<'a>| {
+        let snapshot = named.at(time)?;
+        let time = format!("t = {}", number::seconds(snapshot.time));
+        Some(Shot::new(if named.name.is_empty() { time } else { format!("{}, {time}", named.name) }, snapshot))
+    };
+    records.into_iter().filter_map(shot).collect()
 }
 
 /// Returns figures of a three-dimensional scene: grains and contact forces at the end, and a film.
 fn solid(records: &[NamedRecord<'_>], all: &[&Snapshot], shown: &FigureOptions) -> Vec<Figure> {
     let Some(last) = all.last() else { return Vec::new() };
-    let shots = |clock: &[f64]| film_of(records, clock).into_iter().map(|(title, frames)| Lit { title, frames });
-    let at = |shot: Lit<'_>| {
-        let time = format!("t = {}", number::seconds(shot.frames.last().map_or(last.time, |snapshot| snapshot.time)));
-        if shot.title.is_empty() { time } else { format!("{}, {time}", shot.title) }
-    };
-    let end: Vec<Lit<'_>> =
-        shots(&[last.time]).map(|shot| Lit { frames: shot.frames.clone(), title: at(shot) }).collect();
+    let end = pictures_of(records, last.time);
     let mut figures: Vec<Figure> =
         [solid_figures::grains(&end, &[0.0]), solid_figures::forces(&end)].into_iter().flatten().collect();
     if all.len() >= FEWEST {
         let clock: Vec<f64> = spread(all, shown.frames).map(|snapshot| snapshot.time).collect();
-        figures.extend(solid_figures::grains(&shots(&clock).collect::<Vec<_>>(), &clock));
+        figures.extend(solid_figures::grains(&film_of(records, &clock), &clock));
     }
     figures
 }
@@ -117,33 +120,14 @@ fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions
         let (name, title) = words(quantity);
         let (telling, mute): (Vec<&NamedRecord<'_>>, Vec<&NamedRecord<'_>>) =
             records.iter().partition(|named| named.at(end).is_some_and(|snapshot| tells(snapshot, quantity)));
-        let shots: Vec<Shot<'_>> = shown
-            .iter()
-            .flat_map(|&time| {
-                telling.iter().filter_map(move |named| {
-                    let snapshot = named.at(time)?;
-                    let time = format!("t = {}", number::seconds(snapshot.time));
-                    let title = if named.name.is_empty() { time } else { format!("{}, {time}", named.name) };
-                    Some(Shot::new(title, snapshot))
-                })
-            })
-            .collect();
+        let shots: Vec<Shot<'_>> = shown.iter().flat_map(|&time| pictures_of(telling.iter().copied(), time)).collect();
         let picture = pictures(quantity, &shots, PIXELS, None);
         let range = picture.range;
-        let caption = caption(quantity) + &not_told(&mute);
+        let caption = caption(quantity) + &not_recorded(mute.iter().map(|named| named.name.as_str()));
         figures.push(Figure::field(name, title, &caption, picture));
         if all.len() >= FEWEST && !matches!(quantity, Quantity::Speed) {
             let clock: Vec<f64> = spread(all, options.frames).map(|snapshot| snapshot.time).collect();
-            let frames =
-                |named: &&&NamedRecord<'_>| clock.iter().filter_map(|&time| named.at(time)).count() == clock.len();
-            let shots: Vec<Shot<'_>> = telling
-                .iter()
-                .filter(frames)
-                .map(|named| Shot {
-                    title: named.name.clone(),
-                    frames: clock.iter().filter_map(|&time| named.at(time)).collect(),
-                })
-                .collect();
+            let shots = film_of(telling.iter().copied(), &clock);
             // All frames of a film have the range of the pictures, so that a colour means the same value at all times.
             let moving = film(quantity, &shots, ("time t (s)", &clock), FILM_PIXELS, Some(range));
             figures.push(Figure::field(&format!("{name}-film"), &format!("{title}, film"), &caption, moving));
@@ -162,12 +146,6 @@ fn tells(snapshot: &Snapshot, quantity: Quantity) -> bool {
         Quantity::Rotation => has_points || snapshot.grains.iter().any(|grain| grain.angle.is_some()),
         Quantity::Speed => true,
     }
-}
-
-/// Returns a sentence that names the records without data for the quantity.
-fn not_told(mute: &[&NamedRecord<'_>]) -> String {
-    let names: Vec<&str> = mute.iter().map(|named| named.name.as_str()).collect();
-    if names.is_empty() { String::new() } else { format!(" Not recorded by {}.", names.join(", ")) }
 }
 
 /// Returns at most `count` evenly spaced snapshots. The last snapshot is always included, and the first only if it is the

@@ -4,6 +4,7 @@
 //! up and towards the eye. If two objects cover one pixel, the object with the larger p·t is visible.
 
 use crate::number;
+use grainbench_fields::picture::Shot;
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
 use grainbench_harness::raster::{RIM, Raster, VOID, level, lit};
 use grainbench_solver::record::{Partner, Snapshot, WallState};
@@ -22,12 +23,6 @@ const AMBIENT: f64 = 0.3;
 const WIDEST: f64 = 0.7;
 /// Number of straight lines that represent a circle.
 const PIECES: usize = 48;
-
-/// Snapshots of a record, with a title.
-pub(crate) struct Shot<'a> {
-    pub(crate) title: String,
-    pub(crate) frames: Vec<&'a Snapshot>,
-}
 
 /// Projection from positions (m) to pixels.
 struct View {
@@ -280,12 +275,8 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     if shots_with_contacts.iter().flat_map(|shot| &shot.frames).all(|snapshot| snapshot.told_contacts().is_empty()) {
         return None;
     }
-    let missing: Vec<&str> = shots
-        .iter()
-        .filter(|shot| shot.frames.iter().any(|snapshot| snapshot.contacts.is_none()))
-        .map(|shot| shot.title.as_str())
-        .collect();
-    let missing = if missing.is_empty() { String::new() } else { format!(" Not recorded by {}.", missing.join(", ")) };
+    let missing = shots.iter().filter(|shot| shot.frames.iter().any(|snapshot| snapshot.contacts.is_none()));
+    let missing = not_recorded(missing.map(|shot| shot.title.as_str()));
     Some(Figure::field(
         "forces",
         "Contact forces",
@@ -295,6 +286,12 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         ),
         field(&view, &shots_with_contacts, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
     ))
+}
+
+/// Returns a sentence that names the records without data for a figure; empty if there are none.
+pub(crate) fn not_recorded<'a>(names: impl Iterator<Item = &'a str>) -> String {
+    let names: Vec<&str> = names.collect();
+    if names.is_empty() { String::new() } else { format!(" Not recorded by {}.", names.join(", ")) }
 }
 
 fn field(

@@ -95,7 +95,7 @@ pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
-pub fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
+fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
     let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let results = results_json(report).map_err(|error| encode("results.json")(error.to_string()))?;
     out.write("results.json", results)?;

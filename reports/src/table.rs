@@ -422,7 +422,7 @@ fn page_cell(column: &Column, cell: &Cell, unit: TimeUnit, sorts: bool) -> Marku
     let key = cell.sort_key().filter(|_| sorts);
     let class = Some(column.class).filter(|class| !class.is_empty());
     html! {
-        @if column.format == Format::Heading { th scope="row" { (content) } }
+        @if column.format == Format::Heading { th class=[class] scope="row" { (content) } }
         @else { td class=[class] data-v=[key] { (content) } }
     }
 }
@@ -433,7 +433,7 @@ pub(crate) fn head(columns: &[Column]) -> Markup {
         thead {
             tr {
                 @for column in columns {
-                    th class=[(column.class == "n").then_some("n")] scope="col" { (column.title()) }
+                    th class=[Some(column.class).filter(|class| ["n", "name"].contains(class))] scope="col" { (column.title()) }
                 }
             }
         }
@@ -446,7 +446,7 @@ pub(crate) fn scrolling(label: &str, table: &Markup) -> Markup {
 }
 
 /// Returns a text that no spreadsheet interprets as a formula. Names come from scene files.
-pub(crate) fn harmless(text: String) -> String {
+fn harmless(text: String) -> String {
     if text.starts_with(['=', '+', '-', '@']) { format!("'{text}") } else { text }
 }
 

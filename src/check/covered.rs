@@ -109,7 +109,7 @@ impl Coverage {
     }
 
     /// Returns true if the output reaches the end of the run.
-    pub(super) fn is_whole(&self) -> bool {
+    fn is_whole(&self) -> bool {
         self.whole.is_some_and(|whole| self.reached >= whole - self.slack)
     }
 

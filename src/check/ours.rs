@@ -194,7 +194,7 @@ pub(super) fn is_compared(name: &str) -> bool {
 }
 
 /// Returns true if a column counts grains.
-pub(super) fn is_count(name: &str) -> bool {
+fn is_count(name: &str) -> bool {
     name.ends_with(".present") || name.ends_with(".left")
 }
 
@@ -265,7 +265,7 @@ fn column(
 }
 
 /// Returns the words of a source that say how the convention was chosen.
-pub(super) const fn how_chosen(choice: ConventionChoice) -> &'static str {
+const fn how_chosen(choice: ConventionChoice) -> &'static str {
     match choice {
         ConventionChoice::Named(_) => "the chosen convention",
         ConventionChoice::Nearest => "our nearest convention",

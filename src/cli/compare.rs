@@ -11,7 +11,6 @@ use grainbench::harness::expect::{Bound, ExpectedValue, Measurement};
 use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::harness::verdict::{self, Verdict};
-use grainbench::reference::ReadError;
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
 use grainbench::reference::observer::Names;
 use grainbench::reports::{Report, Section, number};
@@ -67,7 +66,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         time_steps: [arguments.time_step.first().copied(), arguments.time_step.last().copied()],
         partial: arguments.partial,
     };
-    let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(unreadable)?;
+    let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(Fault::reading)?;
     check_writable(&arguments.out)?;
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
@@ -90,12 +89,6 @@ fn is_label(row: &Verdict) -> bool {
 /// Returns the name of the quantity of a column's result.
 fn quantity(column: &str) -> String {
     format!("column {column}, worst")
-}
-
-/// Returns the error of a file that cannot be read. For a truncated file, it names the option that compares the complete frames.
-fn unreadable(error: ReadError) -> Fault {
-    let hint = if error.is_cut() { " (--partial compares the complete frames before it)" } else { "" };
-    Fault::input(format!("{error}{hint}"))
 }
 
 /// Returns the names of the two outputs: the file names, or the paths if the file names are equal.

@@ -1,7 +1,7 @@
 //! `grainbench cost`: measures error against computing time.
 
 use super::exit::Fault;
-use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::own;
 use super::subject::selected;
 use super::value::window;
@@ -30,15 +30,9 @@ pub(crate) struct Arguments {
     /// case, these costs are always measured.
     #[arg(long)]
     pub(crate) prices: bool,
-    /// Measure finished points again.
-    #[arg(long)]
-    no_cache: bool,
     /// Compare with an earlier `results.json`. Counts must be equal, and times must agree within their spread.
     #[arg(long, value_name = "OLD.json", conflicts_with = "plan")]
-    against: Option<PathBuf>,
-    /// Store the results in the source tree, for the first screen of the report. Needs all cases and all built-in solvers.
-    #[arg(long, conflicts_with_all = ["cases", "solver"])]
-    update_stored: bool,
+    pub(crate) against: Option<PathBuf>,
     /// Directory of the report and of the finished points.
     #[arg(long, value_name = "DIR", default_value = "grainbench-cost")]
     pub(crate) out: PathBuf,
@@ -52,14 +46,11 @@ pub(crate) struct Arguments {
     /// end, or the mean over the whole run if the scene is chaotic.
     #[arg(long, value_name = "FROM..TO", value_parser = window, allow_hyphen_values = true)]
     window: Option<(f64, f64)>,
-    /// Print the results as JSON instead of text.
-    #[arg(long)]
-    json: bool,
     /// Measure only errors and operation counts, in a plan. Without timing, several tasks can run on one machine.
     #[arg(long, requires = "plan", conflicts_with = "prices")]
     counts: bool,
     #[command(flatten)]
-    pub(crate) plan: PlanOptions,
+    pub(crate) study: StudyOptions,
 }
 
 impl Arguments {
@@ -72,7 +63,6 @@ impl Arguments {
             levels: if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() },
             prices: self.prices,
             counts: self.counts,
-            json: self.json,
             out: self.out.clone(),
             ..Planned::default()
         }
@@ -80,7 +70,7 @@ impl Arguments {
 
     /// Studies the scene that the arguments name; returns `None` if they name cases, or claims with exact values.
     pub(crate) fn own_scene(&self) -> Result<Option<ExitCode>, Fault> {
-        let (has_levels, is_planned) = (self.levels != "default" || self.prices, self.plan.is_given());
+        let (has_levels, is_planned) = (self.levels != "default" || self.prices, self.study.plan.is_given());
         let path = own::scene(&self.cases)?;
         let has_claims = own::folder(&self.cases)?.is_some_and(|case| !registry::subjects(case).is_empty());
         let Some(path) = path.filter(|_| !has_claims) else {
@@ -97,16 +87,11 @@ impl Arguments {
             solvers: &self.solver,
             quantities: &self.quantity,
             window: self.window,
-            no_cache: self.no_cache,
+            no_cache: self.study.no_cache,
             out: &self.out,
-            json: self.json,
+            json: self.study.json,
         };
         own::cost(&input, &self.own).map(Some)
-    }
-
-    /// Returns the options that do not change the tasks.
-    pub(crate) fn options(&self) -> StudyOptions<'_> {
-        StudyOptions { no_cache: self.no_cache, against: self.against.as_deref(), update_stored: self.update_stored }
     }
 }
 

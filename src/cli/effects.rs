@@ -2,7 +2,7 @@
 
 use super::exit::{Fault, Outcome, check_writable};
 use super::interrupt::Interrupt;
-use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::own;
 use super::progress::Progress;
 use super::provenance::provenance;
@@ -38,20 +38,11 @@ pub(crate) struct Arguments {
     cases: Vec<String>,
     #[command(flatten)]
     yours: SceneOptions,
-    /// Repeat the finished parts of the study.
-    #[arg(long)]
-    no_cache: bool,
-    /// Store the results in the source tree, for the first screen of the report. Needs all cases.
-    #[arg(long, conflicts_with = "cases")]
-    update_stored: bool,
     /// Directory of the report and of the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
-    /// Print the results as JSON instead of text.
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) plan: PlanOptions,
+    pub(crate) study: StudyOptions,
 }
 
 /// Options for a scene file.
@@ -99,18 +90,7 @@ impl SceneOptions {
 impl Arguments {
     /// Returns the arguments of the study of cases.
     pub(crate) fn planned(&self) -> Planned {
-        Planned {
-            what: "effects".to_owned(),
-            cases: self.cases.clone(),
-            json: self.json,
-            out: self.out.clone(),
-            ..Planned::default()
-        }
-    }
-
-    /// Returns the options that do not change the tasks.
-    pub(crate) const fn options(&self) -> StudyOptions<'_> {
-        StudyOptions { no_cache: self.no_cache, against: None, update_stored: self.update_stored }
+        Planned { what: "effects".to_owned(), cases: self.cases.clone(), out: self.out.clone(), ..Planned::default() }
     }
 }
 
@@ -118,7 +98,7 @@ impl Arguments {
 pub(crate) fn scene_file(arguments: &Arguments) -> Result<Option<ExitCode>, Fault> {
     let named = if own::folder(&arguments.cases)?.is_some() { None } else { own::scene(&arguments.cases)? };
     if let Some(scene) = named {
-        if arguments.plan.is_given() {
+        if arguments.study.plan.is_given() {
             return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
         }
         return of_scene(&scene, arguments).map(Some);
@@ -146,7 +126,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     // The files of an external program may change between two runs.
     let cache = match solver::is_manifest(&yours.solver) {
         true => Directory::none(),
-        false => Directory::open(&arguments.out.join(own::RUNS), arguments.no_cache).map_err(Fault::writing)?,
+        false => Directory::open(&arguments.out.join(own::RUNS), arguments.study.no_cache).map_err(Fault::writing)?,
     };
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -210,7 +190,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let stored_chaos = cache.get::<Json<bool>>(&id(CHAOS)).ok();
     let is_chaotic = stored_chaos.unwrap_or_else(|| whole.is_some_and(|whole| !whole.perturbed.is_empty()));
     let text = study.text() + &scale_words(matters, is_chaotic, &left_out);
-    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) };
+    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.study.json, false) };
     publish_study(&study, output)
 }
 

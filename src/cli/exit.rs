@@ -1,6 +1,7 @@
 //! Exit codes, messages and output on the terminal.
 
 use super::terminal;
+use grainbench::reference::ReadError;
 use grainbench::scene::error::{SceneError, did_you_mean};
 use grainbench::scene::text::{shortened, tamed};
 use std::collections::BTreeSet;
@@ -36,6 +37,12 @@ impl Fault {
     /// Returns an error for bad input or usage.
     pub(crate) fn input(message: impl Display) -> Self {
         Self::Input(message.to_string())
+    }
+
+    /// Returns the error of output that cannot be read. For a truncated file, it names the option that uses the complete frames.
+    pub(crate) fn reading(error: ReadError) -> Self {
+        let hint = if error.is_cut() { " (--partial uses the complete frames before it)" } else { "" };
+        Self::input(format!("{error}{hint}"))
     }
 
     /// Returns the error of a failed write. A full disk counts as a failure during the run, not as bad input.

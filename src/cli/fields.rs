@@ -8,7 +8,6 @@ use grainbench::fields::course::Course;
 use grainbench::fields::grid::Grid;
 use grainbench::fields::mask::{Masks, Orifice};
 use grainbench::fields::trails::Trails;
-use grainbench::reference::ReadError;
 use grainbench::reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench::reference::observer::Names;
 use grainbench::reports::elements::{ElementMean, Summary, write_elements};
@@ -213,19 +212,13 @@ fn of_dump(
         }
     }
     let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside).map_err(Fault::input)?;
-    while let Some(snapshot) = dump.read().map_err(unreadable)? {
+    while let Some(snapshot) = dump.read().map_err(Fault::reading)? {
         take(snapshot)?;
     }
     if let Some(cut) = dump.cut() {
         say("warning", &format!("only the complete frames are read (--partial): {cut}"));
     }
     Ok(())
-}
-
-/// Returns the error of a dump that cannot be read. For a truncated dump, it names the option that uses the complete frames.
-fn unreadable(error: ReadError) -> Fault {
-    let hint = if error.is_cut() { " (--partial reads the complete frames before it)" } else { "" };
-    Fault::input(format!("{error}{hint}"))
 }
 
 /// Returns true if a snapshot of our solvers is two-dimensional: all positions have z = 0, and the box extends from −½

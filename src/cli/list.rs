@@ -5,6 +5,7 @@ use super::names;
 use super::select;
 use grainbench::cases::registry::CASES;
 use grainbench::harness::case::Case;
+use grainbench::reports::number;
 use serde::Serialize;
 use std::process::ExitCode;
 
@@ -101,11 +102,10 @@ fn table(entries: &[Entry]) -> String {
     let mut text = String::new();
     for Entry { name, title, variants, gates, default_level, solvers, .. } in entries {
         let variants = variants.join(", ");
-        let plural = if *gates == 1 { "" } else { "s" };
-        let solvers = solvers.join(", ");
+        let (claims, solvers) = (number::counted(*gates, "claim"), solvers.join(", "));
         text.push_str(&format!("{name:<width$}  {title}\n"));
         text.push_str(&format!("{:<width$}    variants  {variants}\n", ""));
-        text.push_str(&format!("{:<width$}    {gates} claim{plural}, level {default_level}, solvers {solvers}\n", ""));
+        text.push_str(&format!("{:<width$}    {claims}, level {default_level}, solvers {solvers}\n", ""));
     }
     text
 }

@@ -184,17 +184,16 @@ pub(crate) fn main() -> ExitCode {
         Command::Compare(arguments) => compare::compare(&arguments),
         Command::Cost(arguments) => arguments.own_scene().and_then(|own| match own {
             Some(code) => Ok(code),
-            None => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+            None => study(&arguments.planned(), &arguments.study, arguments.against.as_deref()),
         }),
         Command::Stability(arguments) => arguments.own_scene().and_then(|own| match own {
             Some(code) => Ok(code),
-            None => study(&arguments.plan, &arguments.planned(), &arguments.options()),
+            None => study(&arguments.planned(), &arguments.study, None),
         }),
-        Command::Effects(arguments) => match effects::scene_file(&arguments) {
-            Ok(None) => study(&arguments.plan, &arguments.planned(), &arguments.options()),
-            Ok(Some(code)) => Ok(code),
-            Err(fault) => Err(fault),
-        },
+        Command::Effects(arguments) => effects::scene_file(&arguments).and_then(|own| match own {
+            Some(code) => Ok(code),
+            None => study(&arguments.planned(), &arguments.study, None),
+        }),
         Command::Race(arguments) => race::race(&arguments),
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),

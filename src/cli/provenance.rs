@@ -2,7 +2,7 @@
 
 use super::cores::cores;
 use grainbench::lanes::Processor;
-use grainbench::reports::Provenance;
+use grainbench::reports::{Provenance, number};
 use std::fs;
 
 /// Returns the provenance of a run of `wall_seconds` (s). `options` are the options of the run in words.
@@ -20,9 +20,8 @@ pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance 
 
 /// Returns a description of the processor, its cores, the operating system, and the vector instructions of our solvers.
 fn machine() -> String {
-    let cores = cores();
-    let plural = if cores == 1 { "" } else { "s" };
-    format!("{}, {cores} core{plural}, {}, loops compiled for {}", processor(), system(), Processor::new().name())
+    let (cores, loops) = (number::counted(cores(), "core"), Processor::new().name());
+    format!("{}, {cores}, {}, loops compiled for {loops}", processor(), system())
 }
 
 /// Returns the value on the first line of a system file that starts with `key`. The value follows `separator`.

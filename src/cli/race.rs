@@ -1,6 +1,6 @@
 //! `grainbench race`: measures the throughput of our solvers and of other programs, in turn on the same scenes.
 
-use super::exit::{Fault, Outcome, RED, check_writable, print};
+use super::exit::{Fault, Outcome, RED, check_writable, print, print_text};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::value::whole;
@@ -10,7 +10,6 @@ use grainbench::cases::solvers;
 use grainbench::scene::source::SceneSource;
 use grainbench::solver::resolution::Resolution;
 use grainbench::store::StagedDir;
-use grainbench::studies::ProgressObserver;
 use grainbench::studies::race::{BenchmarkedSolver, SceneThroughput, ThroughputBenchmark, Track, heat};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -104,20 +103,22 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     }
     let start = Instant::now();
     let laps = tracks.len() as u64 * racers.len() as u64 * u64::from(arguments.rounds);
-    let mut follower = Laps(Progress::new(laps, "laps"));
-    let heats: Vec<SceneThroughput> =
-        tracks.iter().map(|track| heat(track, &racers, arguments.rounds, &mut follower)).collect();
-    drop(follower);
+    let progress = Progress::new(laps, "laps");
+    let now = |lap: &str| {
+        progress.now(lap);
+        progress.advance();
+    };
+    let heats: Vec<SceneThroughput> = tracks.iter().map(|track| heat(track, &racers, arguments.rounds, &now)).collect();
+    drop(progress);
     let has_run = heats.iter().flat_map(|heat| &heat.results).any(|raced| !raced.rates.is_empty());
     let options = vec![format!("rounds {}", arguments.rounds)];
     let race = ThroughputBenchmark { provenance: provenance(options, start.elapsed().as_secs_f64()), heats };
-    let table = race.table();
     let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
     let json = serde_json::to_string_pretty(&race).map_err(Fault::input)?;
     out.write("race.json", json + "\n").map_err(Fault::writing)?;
-    out.write("race.md", &table).map_err(Fault::writing)?;
+    out.write("race.md", race.markdown()).map_err(Fault::writing)?;
     out.commit().map_err(Fault::writing)?;
-    print(&table)?;
+    print_text(&race.text())?;
     print(&format!("\n{}\n", arguments.out.join("race.md").display()))?;
     Ok(if has_run { ExitCode::SUCCESS } else { ExitCode::from(RED) })
 }
@@ -143,15 +144,4 @@ fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
         resolution,
         steps: steps.unwrap_or([(long / 6).min(MOST_TO_COMPARE), long]),
     })
-}
-
-struct Laps(Progress);
-
-impl ProgressObserver for Laps {
-    fn now(&mut self, piece: &str) {
-        self.0.now(piece);
-    }
-    fn done(&mut self) {
-        self.0.advance();
-    }
 }

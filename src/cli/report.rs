@@ -50,16 +50,8 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "FILE.toml")]
     style: Option<PathBuf>,
     /// Write each figure also as PDF, or as PNG with 300 pixels in an inch; SVG is always written. Repeatable.
-    #[arg(long, value_name = "FORMAT", value_enum)]
-    figures: Vec<Format>,
-}
-
-/// File format of figures on the command line.
-#[derive(Clone, Copy, PartialEq, Eq, clap::ValueEnum)]
-enum Format {
-    Svg,
-    Pdf,
-    Png,
+    #[arg(long, value_name = "FORMAT", value_parser = ["svg", "pdf", "png"])]
+    figures: Vec<String>,
 }
 
 impl Arguments {
@@ -133,8 +125,8 @@ fn publish<F: Borrow<Figure>>(
     if arguments.style.is_some() {
         write_figures(dir, figures, style).map_err(Fault::writing)?;
     }
-    for (format, asked) in [(FigureFormat::Pdf, Format::Pdf), (FigureFormat::Png, Format::Png)] {
-        if arguments.figures.contains(&asked) {
+    for format in FigureFormat::ALL {
+        if arguments.figures.iter().any(|asked| asked == format.ending()) {
             let names = figures.iter().map(|(name, _)| name.as_str());
             convert_figures(dir, names, format, style.font.as_deref()).map_err(|error| match error {
                 SaveError::NoFont { .. } => Fault::input(error),

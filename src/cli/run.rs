@@ -75,7 +75,6 @@ pub(super) fn judge_by(cases: &[String], solver: Vec<String>, rest: RunOptions) 
     if let Some(plan) = resume {
         return jobs::work::work(&plan, &work, options.jobs, options.retry_failed);
     }
-    work.refuse_without_plan()?;
     let planned = plan.planned(&jobs::arguments::Arguments {
         what: "run".to_owned(),
         cases: cases.to_vec(),
@@ -99,7 +98,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let cases = if cases.is_empty() { &of_before[..] } else { cases };
     let earlier = options.against.as_deref().map(|path| EarlierReport::read("--against", path)).transpose()?;
     let mut selected = select::select(cases, &options.solver, &options.levels)?;
-    narrow(&mut selected, options, &filters)?;
+    narrow(&mut selected, options, &filters, before.as_ref())?;
     if let Some(folder) = &options.data {
         refuse_without_use(&selected, folder)?;
     }

@@ -11,12 +11,13 @@ use super::progress::Progress;
 use super::solver;
 use super::step::Step;
 use super::value::{path_and_value, positive, whole};
+use clap::builder::{PossibleValuesParser, TypedValueParser};
 use grainbench::cases::registry::read_grains;
 use grainbench::dem::stability::stable_fraction;
 use grainbench::harness::wrapper::Start;
 use grainbench::jobs::shard;
 use grainbench::jobs::sweep::Sweep;
-use grainbench::reports::export::{self, Format};
+use grainbench::reports::export::{self, SnapshotFormat};
 use grainbench::reports::{SnapshotStore, number};
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
@@ -100,8 +101,8 @@ pub(crate) struct Arguments {
     out: PathBuf,
     /// Formats of the snapshots. Default: `dump` and `vtk` for at most 200 000 rows of grains, contacts and points. For
     /// more rows: `parquet` if the scene requests snapshots besides the first and the last, otherwise none.
-    #[arg(long, value_name = "FORMAT", value_delimiter = ',')]
-    write: Option<Vec<SnapshotOption>>,
+    #[arg(long, value_name = "FORMAT", value_delimiter = ',', value_parser = snapshot_format())]
+    write: Option<Vec<Option<SnapshotFormat>>>,
     /// Print provenance, cost and final state as JSON. For a sweep, print its results as JSON.
     #[arg(long)]
     json: bool,
@@ -144,29 +145,14 @@ impl Arguments {
     fn asks_for_no_snapshots(&self, scene: &Scene) -> bool {
         self.write.as_ref().map_or_else(
             || scene.snapshots == 0 && scene.snapshot_times.is_empty(),
-            |asked| asked.iter().all(|format| format.format().is_none()),
+            |asked| asked.iter().all(Option::is_none),
         )
     }
 }
 
-/// Format of the snapshots that the command line requests.
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum SnapshotOption {
-    Dump,
-    Vtk,
-    Parquet,
-    None,
-}
-
-impl SnapshotOption {
-    const fn format(self) -> Option<Format> {
-        match self {
-            Self::Dump => Some(Format::Dump),
-            Self::Vtk => Some(Format::Vtk),
-            Self::Parquet => Some(Format::Parquet),
-            Self::None => None,
-        }
-    }
+/// Returns the parser of a format of snapshots; none for `none`.
+fn snapshot_format() -> impl TypedValueParser<Value = Option<SnapshotFormat>> {
+    PossibleValuesParser::new(SnapshotFormat::NAMES).map(|name| SnapshotFormat::by_name(&name))
 }
 
 /// Largest number of scene keys that one command line may override.
@@ -314,10 +300,10 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
 }
 
 /// Returns the requested formats of the snapshots, or the default formats.
-fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<Format> {
+fn formats(snapshots: &SnapshotStore, arguments: &Arguments) -> BTreeSet<SnapshotFormat> {
     match &arguments.write {
-        Some(asked) => asked.iter().filter_map(|format| format.format()).collect(),
-        None => Format::usual(snapshots),
+        Some(asked) => asked.iter().copied().flatten().collect(),
+        None => SnapshotFormat::usual(snapshots),
     }
 }
 
@@ -424,19 +410,24 @@ fn header(scene: &Scene, solver: &dyn Solver) -> String {
     lines
 }
 
-fn footer(record: &Record, snapshots: &SnapshotStore, formats: &BTreeSet<Format>, arguments: &Arguments) -> String {
+fn footer(
+    record: &Record,
+    snapshots: &SnapshotStore,
+    formats: &BTreeSet<SnapshotFormat>,
+    arguments: &Arguments,
+) -> String {
     let cost = &record.cost;
     let evaluations = cost
         .contact_evaluations
         .map_or(String::new(), |count| format!(", {} contact evaluations", number::count(count)));
     // Text files are easy to find, so only other formats are mentioned.
-    let bulk = if formats.contains(&Format::Dump) || snapshots.is_empty() {
+    let bulk = if formats.contains(&SnapshotFormat::Dump) || snapshots.is_empty() {
         String::new()
     } else {
         let (count, rows) = (number::count(snapshots.len()), number::count(snapshots.rows()));
-        let form = if formats.contains(&Format::Parquet) {
+        let form = if formats.contains(&SnapshotFormat::Parquet) {
             "as Parquet in snapshots/ (--write dump,vtk for text)"
-        } else if formats.contains(&Format::Vtk) {
+        } else if formats.contains(&SnapshotFormat::Vtk) {
             "in vtk/"
         } else {
             "not written (--write parquet, or dump,vtk for text)"

@@ -1,7 +1,7 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
 use super::exit::Fault;
-use super::jobs::arguments::{Arguments as Planned, PlanOptions, StudyOptions};
+use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::own::{self, sources};
 use grainbench::reports::study::Study;
 use grainbench::studies::stability::assembly::Assembly;
@@ -25,22 +25,13 @@ pub(crate) struct Arguments {
     /// Test only this solver, by name or manifest. Repeatable.
     #[arg(long, value_name = "NAME|SOLVER.toml")]
     pub(crate) solver: Vec<String>,
-    /// Repeat the finished parts of the study.
-    #[arg(long)]
-    no_cache: bool,
-    /// Store the results in the source tree, for the first screen of the report. Needs all cases and all built-in solvers.
-    #[arg(long, conflicts_with_all = ["cases", "solver"])]
-    update_stored: bool,
     /// Directory of the report and of the finished parts.
     #[arg(long, value_name = "DIR", default_value = "grainbench-stability")]
     pub(crate) out: PathBuf,
     #[command(flatten)]
     own: own::Options,
-    /// Print the results as JSON instead of text.
-    #[arg(long)]
-    json: bool,
     #[command(flatten)]
-    pub(crate) plan: PlanOptions,
+    pub(crate) study: StudyOptions,
 }
 
 /// Work item of the study: a stability limit or a hard case, by its index, with its solver.
@@ -57,7 +48,6 @@ impl Arguments {
             what: "stability".to_owned(),
             cases: self.cases.clone(),
             solver: self.solver.clone(),
-            json: self.json,
             out: self.out.clone(),
             ..Planned::default()
         }
@@ -69,7 +59,7 @@ impl Arguments {
             self.own.refuse_for_cases(false)?;
             return Ok(None);
         };
-        if self.plan.is_given() {
+        if self.study.plan.is_given() {
             return Err(Fault::input(format!("{path}: expected cases with `--plan`, found a scene file")));
         }
         let (words, solvers) = ([&self.cases[..], &self.solver].concat(), &self.solver);
@@ -79,16 +69,11 @@ impl Arguments {
             solvers,
             quantities: &[],
             window: None,
-            no_cache: self.no_cache,
+            no_cache: self.study.no_cache,
             out: &self.out,
-            json: self.json,
+            json: self.study.json,
         };
         own::stability(&input, &self.own).map(Some)
-    }
-
-    /// Returns the options that do not change the tasks.
-    pub(crate) fn options(&self) -> StudyOptions<'_> {
-        StudyOptions { no_cache: self.no_cache, against: None, update_stored: self.update_stored }
     }
 }
 

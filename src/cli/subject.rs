@@ -66,7 +66,7 @@ impl<'a> Variant<'a> {
     }
 
     /// Returns the source text of the scene.
-    pub(crate) fn source(&self) -> SceneSource {
+    fn source(&self) -> SceneSource {
         match self.variant {
             None | Some(PLAIN) => self.case.source(),
             Some(variant) => self.case.source().variant(variant),

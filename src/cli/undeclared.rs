@@ -2,7 +2,7 @@
 
 use super::exit;
 use grainbench::reference::outside::named_features;
-use grainbench::reports::Report;
+use grainbench::reports::{Report, number};
 use std::collections::BTreeMap;
 
 /// Prints the number of unsupported results and the features that they need, most frequent first. Nothing is printed if
@@ -27,9 +27,9 @@ fn message<'a>(reasons: impl Iterator<Item = &'a str>) -> Option<String> {
     let mut keys: Vec<String> = counts.iter().map(|((key, _), _)| format!("`can.{key}`")).collect();
     keys.sort();
     keys.dedup();
-    let plural = if results == 1 { "" } else { "s" };
     let message = format!(
-        "{results} result{plural} unsupported: {}; a solver that has these features declares them in SOLVER.toml, {}",
+        "{} unsupported: {}; a solver that has these features declares them in SOLVER.toml, {}",
+        number::counted(results, "result"),
         words.join(", "),
         keys.join(" and ")
     );

@@ -218,7 +218,7 @@ impl Directory {
 
     /// Returns the path of the file of a key.
     #[must_use]
-    pub fn path<K: Artifact>(&self, key: &str) -> PathBuf {
+    fn path<K: Artifact>(&self, key: &str) -> PathBuf {
         self.folder.as_deref().unwrap_or(Path::new("")).join(format!("{key}.{}", K::ENDING))
     }
 

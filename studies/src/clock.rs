@@ -38,7 +38,7 @@ pub fn cpu_seconds() -> f64 {
 /// only a tenth. For a thousand pairs of alternating runs of solver and reference task, a line through the logarithms of
 /// both times had a slope of 0.99. The ratio of the times varied by 7 %, the times alone by 20 to 30 %.
 #[must_use]
-pub fn reference_seconds(lasting: f64) -> f64 {
+fn reference_seconds(lasting: f64) -> f64 {
     let start = cpu_seconds();
     let mut pieces = 0.0;
     loop {

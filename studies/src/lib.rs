@@ -13,14 +13,3 @@ pub mod own;
 pub mod race;
 pub mod run_cache;
 pub mod stability;
-
-/// Observer of a study's progress.
-pub trait ProgressObserver {
-    /// Called when an item is started.
-    fn now(&mut self, _piece: &str) {}
-    /// Called when an item is finished.
-    fn done(&mut self) {}
-}
-
-/// Observer that ignores all progress.
-impl ProgressObserver for () {}

@@ -5,10 +5,10 @@
 //! round each solver is timed once, and ratios of rates are taken within the round. A temporarily slow machine
 //! therefore affects all solvers of a round alike.
 
-use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::statistics::range;
-use grainbench_reports::Provenance;
+use grainbench_reports::table::{Cell, Column, Format, Table};
+use grainbench_reports::{Provenance, number, row};
 use grainbench_scene::columns::Columns;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling, Scene};
 use grainbench_solver::Solver;
@@ -16,7 +16,6 @@ use grainbench_solver::failure::RunError;
 use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::sync::Arc;
 use std::time::Instant;
 
@@ -91,47 +90,61 @@ pub struct ThroughputBenchmark {
 }
 
 impl ThroughputBenchmark {
-    /// Returns the benchmark as a Markdown table with median, minimum and maximum over the rounds.
+    /// Returns the benchmark as Markdown.
     #[must_use]
-    pub fn table(&self) -> String {
-        let shown = |values: &[f64], digits: usize| {
-            range(values).map_or_else(
-                || "–".to_owned(),
-                |[least, middle, largest]| format!("{middle:.digits$} [{least:.digits$}..{largest:.digits$}]"),
-            )
-        };
-        let mut text =
-            "Rates are in million particle-steps per second of processor time, from the difference of a long and a \
-                        short run. The solvers took turns, and a ratio compares two runs of the same round. Entries are \
-                        median [smallest..largest].\n\n\
-                        | scene | grains | steps | solver | rate | ratio to the program | difference in kinetic energy |\n\
-                        |---|---|---|---|---|---|---|\n"
-                .to_owned();
-        for heat in &self.heats {
-            for raced in &heat.results {
-                let [short, long] = heat.steps;
-                let (rate, ratio, off) = match &raced.absent {
-                    Some(reason) => (reason.replace('|', "¦"), String::new(), String::new()),
-                    None if raced.solver == raced.against => (shown(&raced.rates, 2), String::new(), String::new()),
-                    None => {
-                        let off = apart(heat, raced).map_or_else(|| "–".to_owned(), |off| format!("{off:.0e}"));
-                        (shown(&raced.rates, 2), shown(&raced.ratios, 2), off)
-                    }
-                };
-                let (track, grains, solver) = (&heat.track, heat.grains, &raced.solver);
-                let _ = writeln!(
-                    text,
-                    "| `{track}` | {grains} | {short}, {long} | `{solver}` | {rate} | {ratio} | {off} |"
-                );
-            }
-        }
+    pub fn markdown(&self) -> String {
+        self.words(&self.table().markdown())
+    }
+
+    /// Returns the benchmark as text for a terminal.
+    #[must_use]
+    pub fn text(&self) -> String {
+        self.words(&self.table().text())
+    }
+
+    /// Returns the table with a note about its entries and with the versions of all programs.
+    fn words(&self, table: &str) -> String {
         let programs = self.heats.iter().flat_map(|heat| &heat.results).filter(|raced| raced.solver == raced.against);
         let versions: BTreeSet<&str> = programs.filter_map(|raced| raced.version.as_deref()).collect();
         let Provenance { version, commit, date, machine, .. } = &self.provenance;
         let ours = format!("grainbench {version} ({commit})");
         let all: Vec<&str> = [ours.as_str()].into_iter().chain(versions).chain([date.as_str(), machine]).collect();
-        let _ = writeln!(text, "\n{}.", all.join("; "));
-        text
+        format!(
+            "Rates are in million particle-steps per second of processor time, from the difference of a long and a short \
+             run. The solvers took turns, and a ratio compares two runs of the same round. Entries are median \
+             (smallest..largest).\n\n{table}\n{}.\n",
+            all.join("; ")
+        )
+    }
+
+    /// Returns the table of median, minimum and maximum over the rounds.
+    fn table(&self) -> Table<'_> {
+        let columns = [
+            Column::heading("scene"),
+            Column::new("grains", Format::Count),
+            Column::text("steps"),
+            Column::text("solver"),
+            Column::text("rate"),
+            Column::text("ratio to the program"),
+            Column::text("difference in kinetic energy"),
+        ];
+        let shown = |values: &[f64]| -> Cell {
+            range(values).map(|[least, middle, largest]| format!("{middle:.2} ({least:.2}..{largest:.2})")).into()
+        };
+        let row = move |(heat, raced): (&SceneThroughput, &SolverThroughput)| {
+            let [rate, ratio, off] = match &raced.absent {
+                Some(reason) => [reason.into(), "".into(), "".into()],
+                None if raced.solver == raced.against => [shown(&raced.rates), "".into(), "".into()],
+                None => {
+                    let off = apart(heat, raced).map(|off| format!("{off:.0e}"));
+                    [shown(&raced.rates), shown(&raced.ratios), off.into()]
+                }
+            };
+            let [short, long] = heat.steps.map(number::count);
+            row![&heat.track, heat.grains, format!("{short}, {long}"), &raced.solver, rate, ratio, off]
+        };
+        let results = self.heats.iter().flat_map(|heat| heat.results.iter().map(move |raced| (heat, raced)));
+        Table::new("", columns, results.map(row))
     }
 }
 
@@ -161,13 +174,8 @@ fn run(racer: &BenchmarkedSolver, track: &Track, steps: u64) -> Result<(f64, Opt
     Ok((spent, energy, record.provenance.options.into_iter().next()))
 }
 
-/// Times all solvers on a benchmark scene in turn, in a number of rounds.
-pub fn heat(
-    track: &Track,
-    racers: &[BenchmarkedSolver],
-    rounds: u32,
-    follow: &mut impl ProgressObserver,
-) -> SceneThroughput {
+/// Times all solvers on a benchmark scene in turn, in a number of rounds. `now` receives the name of each timing before it.
+pub fn heat(track: &Track, racers: &[BenchmarkedSolver], rounds: u32, now: &dyn Fn(&str)) -> SceneThroughput {
     let blank = |racer: &BenchmarkedSolver| SolverThroughput {
         solver: racer.solver.name(),
         version: None,
@@ -181,7 +189,7 @@ pub fn heat(
     let particle_steps = (track.steps[1] - track.steps[0]) as f64 * track.scene.grains.len() as f64;
     for round in 1..=rounds {
         for (racer, raced) in racers.iter().zip(&mut results) {
-            follow.now(&format!("{}, {}, lap {round} of {rounds}", track.name, raced.solver));
+            now(&format!("{}, {}, lap {round} of {rounds}", track.name, raced.solver));
             if raced.absent.is_none() {
                 let lap = |raced: &mut SolverThroughput| -> Result<f64, RunError> {
                     let [short, long] = track.steps;
@@ -198,7 +206,6 @@ pub fn heat(
                     Err(reason) => raced.absent = Some(reason.to_string()),
                 }
             }
-            follow.done();
         }
     }
     let rates: Vec<(String, Vec<f64>)> =
@@ -213,8 +220,7 @@ pub fn heat(
 
 /// Returns the relative difference of the kinetic energies of a solver and its reference solver, or `None` if one of the
 /// energies is unknown.
-#[must_use]
-pub fn apart(heat: &SceneThroughput, raced: &SolverThroughput) -> Option<f64> {
+fn apart(heat: &SceneThroughput, raced: &SolverThroughput) -> Option<f64> {
     let other = heat.results.iter().find(|other| other.solver == raced.against)?;
     let (ours, theirs) = (raced.kinetic_energy?, other.kinetic_energy?);
     Some((ours - theirs).abs() / theirs.abs())

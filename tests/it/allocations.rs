@@ -1,5 +1,6 @@
 //! Loops over grains, contacts, points and nodes allocate no memory. Allocations are counted for each kernel of our solvers.
 
+use crate::common::temporary_with;
 use allocation_counter::measure;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
@@ -9,7 +10,6 @@ use grainbench::scene::scene::{Duration, Sampling, Scene};
 use grainbench::scene::source::SceneSource;
 use grainbench::solver::resolution::Resolution;
 use rayon::prelude::*;
-use std::fs;
 use std::path::Path;
 
 /// Number of steps before the counted steps.
@@ -138,8 +138,7 @@ const ROOF: &str = "solid roof\n\
 
 #[test]
 fn steps_of_grains_allocate_nothing() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("roof.stl"), ROOF).unwrap();
+    let directory = temporary_with("roof.stl", ROOF);
     let scenes = LAWS.iter().flat_map(|law| [(law, discs(law)), (law, spheres(law))]);
     let runs: Vec<_> = scenes
         .flat_map(|scene| [Convention::DEFAULT, Convention::LAMMPS].map(|convention| (convention, scene.clone())))
@@ -147,7 +146,7 @@ fn steps_of_grains_allocate_nothing() {
     let found: Vec<String> = runs
         .par_iter()
         .filter_map(|(convention, (law, text))| {
-            let found = of_grains(*convention, &scene(directory.path(), text));
+            let found = of_grains(*convention, &scene(&directory, text));
             let name = text.lines().next().unwrap_or_default();
             (found != 0).then(|| format!("{name}, {law}, {}: {found}", convention.name))
         })

@@ -1,36 +1,35 @@
 //! The cache of finished runs: a result from the cache equals the result of a run, and other results are never used.
+use crate::common::{ABSENT, Directory, temporary};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
 use std::time::{Duration, Instant};
 
 /// Command with runs of 0.5 s in total, of material points and of grains.
-const RUN: [&str; 4] = ["run", "column", "rolling-resistance", "--quiet"];
+const RUN: &str = "run column rolling-resistance --quiet";
 
 /// Returns a command that uses a separate cache.
 fn program(directory: &Path, out: &str) -> Command {
-    let mut command = crate::common::program();
-    command.env("GRAINBENCH_CACHE", directory.join("cache")).current_dir(directory).args(RUN).args(["--out", out]);
+    let mut command = directory.program(format!("{RUN} --out {out}"));
     // LAMMPS and LIGGGHTS are hidden, because their runs are not cached and take time to start.
-    command.envs([("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")]);
-    command.stdin(Stdio::null());
+    command.env("GRAINBENCH_CACHE", directory.join("cache")).envs(ABSENT);
     command
 }
 
 /// Returns the exit code and the number of runs taken from the cache, as stated in the report and on its page.
 fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u64) {
     let code = command.stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
-    let results = fs::read_to_string(directory.join(out).join("results.json")).unwrap();
+    let results = directory.join(out).read("results.json");
     let results: serde_json::Value = serde_json::from_str(&results).unwrap();
     let options = results["provenance"]["options"].as_array().unwrap();
     let count_text = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
-    let page = fs::read_to_string(directory.join(out).join("index.html")).unwrap();
+    let page = directory.join(out).read("index.html");
     assert_eq!(page.contains("runs taken from the cache"), count_text.is_some(), "the page shows it too");
     (code, count_text.map_or(0, |(number, _)| number.parse().unwrap()))
 }
 
 fn rows(directory: &Path, out: &str) -> String {
-    fs::read_to_string(directory.join(out).join("rows.csv")).unwrap()
+    directory.join(out).read("rows.csv")
 }
 
 fn entries(directory: &Path) -> Vec<PathBuf> {
@@ -42,22 +41,21 @@ fn entries(directory: &Path) -> Vec<PathBuf> {
 
 #[test]
 fn what_was_finished_is_taken_and_says_so() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    let here = temporary();
+    assert_eq!(taken(&mut program(&here, "first"), &here, "first"), (Some(0), 0));
     // A run that was too short for the cache may take longer when it is repeated.
-    let kept = entries(here).len() as u64;
-    let (code, again) = taken(&mut program(here, "second"), here, "second");
-    assert_eq!((code, rows(here, "second")), (Some(0), rows(here, "first")));
+    let kept = entries(&here).len() as u64;
+    let (code, again) = taken(&mut program(&here, "second"), &here, "second");
+    assert_eq!((code, rows(&here, "second")), (Some(0), rows(&here, "first")));
     assert_eq!(again, kept, "each is taken once");
     assert!(again > 5, "{again}");
     // With `--no-cache`, or if the cache is off, no run is taken from the cache.
-    assert_eq!(taken(program(here, "fresh").arg("--no-cache"), here, "fresh"), (Some(0), 0));
-    assert_eq!(taken(program(here, "off").env("GRAINBENCH_CACHE", "off"), here, "off"), (Some(0), 0));
-    assert_eq!(rows(here, "fresh"), rows(here, "off"));
+    assert_eq!(taken(program(&here, "fresh").arg("--no-cache"), &here, "fresh"), (Some(0), 0));
+    assert_eq!(taken(program(&here, "off").env("GRAINBENCH_CACHE", "off"), &here, "off"), (Some(0), 0));
+    assert_eq!(rows(&here, "fresh"), rows(&here, "off"));
     // Runs with another instruction set are not taken from the cache, but their results have the same bits.
-    let portable = taken(program(here, "portable").env("GRAINBENCH_PROCESSOR", "portable"), here, "portable");
-    assert_eq!((portable, rows(here, "portable")), ((Some(0), 0), rows(here, "first")));
+    let portable = taken(program(&here, "portable").env("GRAINBENCH_PROCESSOR", "portable"), &here, "portable");
+    assert_eq!((portable, rows(&here, "portable")), ((Some(0), 0), rows(&here, "first")));
 }
 
 /// A folder that every user can write is not used. In CI there is no cache, unless a folder is named.
@@ -65,23 +63,22 @@ fn what_was_finished_is_taken_and_says_so() {
 #[test]
 fn a_folder_of_everybody_is_not_used() {
     use std::os::unix::fs::PermissionsExt;
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    assert_eq!(taken(&mut program(here, "first"), here, "first"), (Some(0), 0));
+    let here = temporary();
+    assert_eq!(taken(&mut program(&here, "first"), &here, "first"), (Some(0), 0));
     let mode = |mode| fs::set_permissions(here.join("cache"), fs::Permissions::from_mode(mode)).unwrap();
     mode(0o777);
-    let answer = program(here, "open").output().unwrap();
+    let answer = program(&here, "open").output().unwrap();
     let message = String::from_utf8_lossy(&answer.stderr).into_owned();
     assert!(answer.status.success() && message.contains("not used") && message.contains("mode 777"), "{message}");
-    assert_eq!(taken(&mut program(here, "open"), here, "open"), (Some(0), 0));
+    assert_eq!(taken(&mut program(&here, "open"), &here, "open"), (Some(0), 0));
     mode(0o775);
-    assert!(taken(&mut program(here, "group"), here, "group").1 > 5);
-    let results = fs::read_to_string(here.join("group/results.json")).unwrap();
+    assert!(taken(&mut program(&here, "group"), &here, "group").1 > 5);
+    let results = here.read("group/results.json");
     assert!(results.contains("owned by user") && results.contains("writable by group"), "{results}");
     let in_ci = |out: &str| {
-        let mut command = program(here, out);
+        let mut command = program(&here, out);
         command.env_remove("GRAINBENCH_CACHE").envs([("CI", "true"), ("XDG_CACHE_HOME", here.to_str().unwrap())]);
-        taken(&mut command, here, out)
+        taken(&mut command, &here, out)
     };
     assert_eq!((in_ci("once"), in_ci("twice")), ((Some(0), 0), (Some(0), 0)));
     assert!(!here.join("grainbench").exists());
@@ -89,19 +86,18 @@ fn a_folder_of_everybody_is_not_used() {
 
 #[test]
 fn what_is_damaged_foreign_or_older_is_done_again() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    assert_eq!(taken(&mut program(here, "first"), here, "first").1, 0);
+    let here = temporary();
+    assert_eq!(taken(&mut program(&here, "first"), &here, "first").1, 0);
     let whole: Vec<(PathBuf, Vec<u8>)> =
-        entries(here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+        entries(&here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
     let count = whole.len() as u64;
     let spoil = |how: &dyn Fn(usize, &[u8]) -> Vec<u8>| {
-        entries(here).iter().for_each(|path| fs::remove_file(path).unwrap());
+        entries(&here).iter().for_each(|path| fs::remove_file(path).unwrap());
         for (at, (path, bytes)) in whole.iter().enumerate() {
             fs::write(path, how(at, bytes)).unwrap();
         }
-        let found = taken(&mut program(here, "spoiled"), here, "spoiled");
-        assert_eq!(rows(here, "spoiled"), rows(here, "first"));
+        let found = taken(&mut program(&here, "spoiled"), &here, "spoiled");
+        assert_eq!(rows(&here, "spoiled"), rows(&here, "first"));
         found
     };
     let flipped = |at: usize, bytes: &[u8]| {
@@ -119,35 +115,33 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
     let of_next = |at: usize, _: &[u8]| whole[(at + 1) % whole.len()].1.clone();
     assert_eq!(spoil(&of_next), (Some(0), 0), "the run of another name");
     // The repeated runs are in the cache again.
-    let (code, again) = taken(&mut program(here, "last"), here, "last");
+    let (code, again) = taken(&mut program(&here, "last"), &here, "last");
     assert!(code == Some(0) && 2 * again > count, "{again} of {count}");
 }
 
 #[test]
 fn two_at_once_share_it() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    let start = |out: &str| program(here, out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let here = temporary();
+    let start = |out: &str| program(&here, out).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     for mut child in [start("one"), start("two")] {
         assert_eq!(child.wait().unwrap().code(), Some(0));
     }
-    assert_eq!(rows(here, "one"), rows(here, "two"));
-    let kept = entries(here).len() as u64;
-    assert_eq!(taken(&mut program(here, "three"), here, "three"), (Some(0), kept));
+    assert_eq!(rows(&here, "one"), rows(&here, "two"));
+    let kept = entries(&here).len() as u64;
+    assert_eq!(taken(&mut program(&here, "three"), &here, "three"), (Some(0), kept));
 }
 
 /// Ctrl-C is sent at ten different times. Finished runs stay in the cache, and in the end no result is missing.
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_goes_on_from_what_was_finished() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
+    let here = temporary();
     let begun = Instant::now();
-    assert_eq!(taken(program(here, "whole").env("GRAINBENCH_CACHE", "off"), here, "whole"), (Some(0), 0));
+    assert_eq!(taken(program(&here, "whole").env("GRAINBENCH_CACHE", "off"), &here, "whole"), (Some(0), 0));
     let long = begun.elapsed();
     let mut last = 0;
     for moment in 0..10 {
-        let child = program(here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
+        let child = program(&here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(20).max(long.mul_f64(f64::from(moment) / 10.0)));
         // The process may already have ended.
         Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
@@ -156,11 +150,11 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
         // Before the handler is installed, a signal ends the process without a message.
         let is_announced = message.contains("the next run continues with the finished runs");
         assert!(ended.status.code() != Some(1) || is_announced, "{message}");
-        let now = if here.join("cache").exists() { entries(here).len() } else { 0 };
+        let now = if here.join("cache").exists() { entries(&here).len() } else { 0 };
         assert!(now >= last, "finished runs are lost: {now} after {last}");
         last = now;
     }
-    let (code, again) = taken(&mut program(here, "end"), here, "end");
-    assert_eq!((code, rows(here, "end")), (Some(0), rows(here, "whole")));
+    let (code, again) = taken(&mut program(&here, "end"), &here, "end");
+    assert_eq!((code, rows(&here, "end")), (Some(0), rows(&here, "whole")));
     assert!(last > 0 && again >= last as u64, "{again} of {last}");
 }

@@ -3,7 +3,7 @@
 
 mod edits;
 
-use crate::common::{Answer, files, grainbench};
+use crate::common::{Answer, Directory, Folder, files, temporary, temporary_with};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
@@ -16,16 +16,10 @@ const SWEEP: &str = include_str!("../scenes/sweep.toml");
 /// Number of points of the sweep, over all solvers and levels.
 const POINTS: usize = 45;
 
-fn ok(answer: &Answer) -> &Answer {
-    assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
-    answer
-}
-
 /// Returns a folder that contains the sweep and its plan.
-fn planned() -> tempfile::TempDir {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("sweep.toml"), SWEEP).unwrap();
-    ok(&grainbench(directory.path(), &["simulate", "sweep.toml", "--plan", "p"]));
+fn planned() -> Folder {
+    let directory = temporary_with("sweep.toml", SWEEP);
+    directory.ok("simulate sweep.toml --plan p");
     directory
 }
 
@@ -40,13 +34,9 @@ fn rows(file: &Path) -> Vec<String> {
     table.map(|line| line.rsplit_once(',').unwrap().0.to_owned()).collect()
 }
 
-fn json(file: &Path) -> Value {
-    serde_json::from_str(&fs::read_to_string(file).unwrap()).unwrap()
-}
-
 /// Returns the progress of a plan as JSON.
 fn status(directory: &Path, plan: &str) -> Value {
-    serde_json::from_str(&ok(&grainbench(directory, &["report", plan, "--progress", "--json"])).out).unwrap()
+    directory.ok(format!("report {plan} --progress --json")).json()
 }
 
 /// Returns the ids of all results of a plan, one for each complete line.
@@ -87,23 +77,22 @@ fn without_times(mut value: Value) -> Value {
 /// The report of a plan equals the report of its command without `--plan`, except for times and provenance.
 #[test]
 fn a_collected_plan_is_the_report_of_its_command() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
+    let here = temporary();
     for (command, shards, file) in [
-        (&["run", "squash", "collision"][..], 3, "report.json"),
-        (&["stability", "two-discs", "mass-ratio-1e6", "--solver=dem", "--solver=mpm"], 2, "study.json"),
-        (&["cost", "collision", "--solver=dem", "--solver=rigid"], 1, "study.json"),
-        (&["effects", "collision/gamma-zeta.1", "squash"], 2, "study.json"),
+        ("run squash collision", 3, "report.json"),
+        ("stability two-discs mass-ratio-1e6 --solver=dem --solver=mpm", 2, "study.json"),
+        ("cost collision --solver=dem --solver=rigid", 1, "study.json"),
+        ("effects collision/gamma-zeta.1 squash", 2, "study.json"),
     ] {
-        let direct = grainbench(here, &[command, &["--out", "direct"]].concat());
-        ok(&grainbench(here, &[command, &["--plan", "p"]].concat()));
+        let direct = here.run(format!("{command} --out direct"));
+        here.ok(format!("{command} --plan p"));
         for shard in 1..=shards {
-            ok(&grainbench(here, &["run", "--resume", "p", "--shard", &format!("{shard}/{shards}")]));
+            here.ok(format!("run --resume p --shard {shard}/{shards}"));
         }
-        let collected = grainbench(here, &["report", "p", "--out", "collected"]);
+        let collected = here.run("report p --out collected");
         assert_eq!(collected.code, direct.code, "{}", collected.err);
-        let [direct, collected] = ["direct", "collected"].map(|out| without_times(json(&here.join(out).join(file))));
-        assert_eq!(collected, direct, "{command:?}");
+        let [direct, collected] = ["direct", "collected"].map(|out| without_times(here.join(out).json(file)));
+        assert_eq!(collected, direct, "{command}");
         for folder in ["p", "direct", "collected"] {
             fs::remove_dir_all(here.join(folder)).unwrap();
         }
@@ -113,18 +102,16 @@ fn a_collected_plan_is_the_report_of_its_command() {
 /// A sweep that runs at once gives the same results as its plan. The old commands still work, and print a note.
 #[test]
 fn a_sweep_at_once_is_its_plan() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    fs::write(here.join("sweep.toml"), SWEEP).unwrap();
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--out", "once"]));
+    let here = temporary_with("sweep.toml", SWEEP);
+    here.ok("simulate sweep.toml --out once");
     for (old, arguments) in [
-        ("plan", &["sweep.toml", "--out", "old", "--chunks", "2"][..]),
-        ("work", &["old", "--chunk", "1/1"]),
-        ("status", &["old"]),
-        ("collect", &["old"]),
+        ("plan", "sweep.toml --out old --chunks 2"),
+        ("work", "old --chunk 1/1"),
+        ("status", "old"),
+        ("collect", "old"),
     ] {
-        let answer = grainbench(here, &[&[old], arguments].concat());
-        assert!(ok(&answer).err.contains(&format!("note: `{old}` is now `grainbench ")), "{}", answer.err);
+        let answer = here.ok(format!("{old} {arguments}"));
+        assert!(answer.err.contains(&format!("note: `{old}` is now `grainbench ")), "{}", answer.err);
     }
     let [once, old] = ["once", "old"].map(|plan| rows(&here.join(plan).join("report/rows.csv")));
     assert_eq!(once, old);
@@ -132,16 +119,14 @@ fn a_sweep_at_once_is_its_plan() {
 
 #[test]
 fn counts_want_no_times_and_are_those_of_the_command() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    let plan =
-        ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--counts", "--json", "--plan", "p"])).out.clone();
+    let here = temporary();
+    let plan = here.ok("cost collision --solver=dem --counts --json --plan p").out.clone();
     assert_eq!(serde_json::from_str::<Value>(&plan).unwrap()["timed"], false);
-    ok(&grainbench(here, &["run", "--resume", "p", "--jobs", "2"]));
-    ok(&grainbench(here, &["report", "p", "--out", "collected"]));
-    ok(&grainbench(here, &["cost", "collision", "--solver=dem", "--out", "direct"]));
+    here.ok("run --resume p --jobs 2");
+    here.ok("report p --out collected");
+    here.ok("cost collision --solver=dem --out direct");
     let counts = |out: &str| -> Vec<Value> {
-        let points = json(&here.join(out).join("results.json"))["points"].as_array().unwrap().clone();
+        let points = here.join(out).json("results.json")["points"].as_array().unwrap().clone();
         points.iter().map(|point| serde_json::json!([point["resolution"], point["error"], point["counts"]])).collect()
     };
     assert_eq!(counts("collected"), counts("direct"));
@@ -150,27 +135,22 @@ fn counts_want_no_times_and_are_those_of_the_command() {
 
 #[test]
 fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
-    let directory = planned();
-    let here = directory.path();
+    let here = planned();
     let shards: usize = (1..=4)
         .map(|shard| {
-            let words = ok(&grainbench(here, &["run", "--resume", "p", "--shard", &format!("{shard}/4"), "-j", "2"]))
-                .out
-                .clone();
+            let words = here.ok(format!("run --resume p --shard {shard}/4 -j 2")).out.clone();
             words.split_whitespace().next().unwrap().parse::<usize>().unwrap()
         })
         .sum();
     assert_eq!(shards, POINTS);
     assert_eq!(done(&here.join("p")).len(), POINTS);
     // With another number of shards, all tasks are already finished.
-    assert!(
-        ok(&grainbench(here, &["run", "--resume", "p", "--shard", "1/1"])).out.contains("45 were finished, 0 done now")
-    );
-    ok(&grainbench(here, &["report", "p"]));
+    assert!(here.ok("run --resume p --shard 1/1").out.contains("45 were finished, 0 done now"));
+    here.ok("report p");
     fs::rename(here.join("p"), here.join("first")).unwrap();
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    ok(&grainbench(here, &["report", "p"]));
+    here.ok("simulate sweep.toml --plan p");
+    here.ok("run --resume p");
+    here.ok("report p");
     let report = here.join("first/report");
     assert_eq!(rows(&report.join("rows.csv")), rows(&here.join("p/report/rows.csv")));
     assert_eq!(rows(&report.join("rows.csv")).len(), 2 * POINTS);
@@ -178,7 +158,7 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
         assert!(report.join(name).is_file(), "{name}");
     }
     // The disc rolls or slips with both methods as expected, because the springs of the case are stiff enough.
-    let results = json(&report.join("results.json"));
+    let results = report.json("results.json");
     let verdicts = results["verdicts"].as_array().unwrap();
     let count_of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
     assert!(
@@ -195,45 +175,37 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
 /// A report with unfinished tasks is red, also when its files are written again.
 #[test]
 fn a_report_of_some_tasks_is_red_everywhere() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
-    ok(&grainbench(here, &["run", "collision", "--solver", "dem", "--plan", "p", "--shards", "4"]));
-    ok(&grainbench(here, &["run", "--resume", "p", "--shard", "1/4"]));
-    assert_eq!(grainbench(here, &["report", "p"]).code, Some(1));
-    let again = grainbench(here, &["report", "p/report"]);
+    let here = temporary();
+    here.ok("run collision --solver dem --plan p --shards 4");
+    here.ok("run --resume p --shard 1/4");
+    assert_eq!(here.run("report p").code, Some(1));
+    let again = here.run("report p/report");
     assert!(again.code == Some(1) && again.out.contains("✗ unfinished: "), "{}{}", again.out, again.err);
-    let read = |name: &str| fs::read_to_string(here.join("p/report").join(name)).unwrap();
+    let read = |name: &str| here.join("p/report").read(name);
     assert!(read("badge.svg").contains("grainbench: unfinished<") && read("junit.xml").contains("errors=\"1\""));
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    ok(&grainbench(here, &["report", "p"]));
-    ok(&grainbench(here, &["report", "p/report"]));
+    here.ok("run --resume p");
+    here.ok("report p");
+    here.ok("report p/report");
     assert!(read("badge.svg").contains("pass"));
 }
 
 /// A sweep uses the cache of finished runs: cached runs are not repeated, and new runs are added.
 #[test]
 fn a_sweep_shares_the_cache_of_runs() {
-    let directory = planned();
-    let here = directory.path();
+    let here = planned();
     // The runs are long enough for the cache.
-    fs::write(here.join("sweep.toml"), SWEEP.replace("dt=.05", "dt=.0001")).unwrap();
+    here.write("sweep.toml", SWEEP.replace("dt=.05", "dt=.0001"));
     let work = |plan: &str, cache: &str| {
-        ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", plan]));
-        let done = crate::common::program()
-            .env("GRAINBENCH_CACHE", here.join(cache))
-            .args(["run", "--resume", plan])
-            .current_dir(here)
-            .output()
-            .unwrap();
-        assert!(done.status.success(), "{}", String::from_utf8_lossy(&done.stderr));
-        ok(&grainbench(here, &["report", plan]));
+        here.ok(format!("simulate sweep.toml --plan {plan}"));
+        Answer::of(here.program(format!("run --resume {plan}")).env("GRAINBENCH_CACHE", here.join(cache))).ok();
+        here.ok(format!("report {plan}"));
         fs::read_dir(here.join(cache)).unwrap().count()
     };
     let kept = work("p1", "cache");
     assert!(kept >= 15, "{kept}");
     assert!(work("p2", "cache") >= kept);
     let times = |plan: &str| -> Vec<String> {
-        let text = fs::read_to_string(here.join(plan).join("report/rows.csv")).unwrap();
+        let text = here.join(plan).read("report/rows.csv");
         let slow = text.lines().filter(|line| line.contains("dt=0.0001"));
         slow.map(|line| line.rsplit_once(',').unwrap().1.to_owned()).collect()
     };
@@ -243,52 +215,47 @@ fn a_sweep_shares_the_cache_of_runs() {
 /// A crash of a solver and an unsupported scene are results with their own outcome, which the report shows.
 #[test]
 fn failures_keep_their_type() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
+    let here = temporary();
     let sweep =
         SWEEP.replace("'incline-disc/60deg-mu.3'", "'nine-discs/kappa-1'").replace("[[record]]", "[[recorded]]");
     let sweep = sweep.split("[factors]").next().unwrap().to_owned()
         + "[[record]]\nquantity = 'velocity'\nunit = 'm/s'\nvalue = 'corner.vy'\n\
            [[solvers]]\nsolver = 'dem'\nlevels = ['dt=.1', 'dt=40']\n\
            [[solvers]]\nsolver = 'mpm'\nlevels = ['cells=4']\n";
-    fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    let progress = status(here, "p");
+    here.write("sweep.toml", sweep);
+    here.ok("simulate sweep.toml --plan p");
+    here.ok("run --resume p");
+    let progress = status(&here, "p");
     assert_eq!((progress["tasks"].as_u64(), progress["failed"].as_u64()), (Some(3), Some(2)), "{progress}");
-    assert_eq!(grainbench(here, &["report", "p"]).code, Some(1));
-    let results = json(&here.join("p/report/results.json"));
+    assert_eq!(here.run("report p").code, Some(1));
+    let results = here.json("p/report/results.json");
     let ended: Vec<&str> =
         results["verdicts"].as_array().unwrap().iter().filter_map(|row| row["verdict"].as_str()).collect();
     assert_eq!(ended, ["broken", "unsupported"], "{results}");
     // A failed task counts as finished, unless `--retry-failed` is given.
-    assert!(ok(&grainbench(here, &["run", "--resume", "p"])).out.contains("3 were finished, 0 done now"));
-    assert!(
-        ok(&grainbench(here, &["run", "--resume", "p", "--retry-failed"])).out.contains("2 done now, 2 of them failed")
-    );
+    assert!(here.ok("run --resume p").out.contains("3 were finished, 0 done now"));
+    assert!(here.ok("run --resume p --retry-failed").out.contains("2 done now, 2 of them failed"));
 }
 
 /// Workers are killed at random times, and lines are truncated. All remaining tasks are then run, and none is run twice.
 #[test]
 fn killed_workers_lose_nothing_and_do_nothing_twice() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
+    let here = temporary();
     // About two hundred tasks of a few milliseconds each.
     let sweep = SWEEP.replace("count = 5", "count = 22").replace("dt=.05", "dt=.002");
-    fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "whole"]));
-    ok(&grainbench(here, &["run", "--resume", "whole"]));
-    ok(&grainbench(here, &["report", "whole"]));
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
+    here.write("sweep.toml", sweep);
+    here.ok("simulate sweep.toml --plan whole");
+    here.ok("run --resume whole");
+    here.ok("report whole");
+    here.ok("simulate sweep.toml --plan p");
     let mut state = 7_u64;
     let (mut killed, mut at_work) = (0, 0);
     let results = || if here.join("p/results").is_dir() { done(&here.join("p")).len() } else { 0 };
     for round in 0..40 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
         let start = |shard: &str| {
-            let mut command = crate::common::program();
-            command.args(["run", "--resume", "p", "--shard", shard]).current_dir(here);
-            command.stdin(Stdio::null()).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
+            let mut command = here.program(format!("run --resume p --shard {shard}"));
+            command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
         };
         let before = results();
         let mut workers = [start("1/2"), start("2/2")];
@@ -316,15 +283,15 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
         killed > 10 && at_work > 10,
         "{killed} and {at_work}: too many end before they are killed, or begin nothing"
     );
-    ok(&grainbench(here, &["run", "--resume", "p"]));
+    here.ok("run --resume p");
     let ids = done(&here.join("p"));
     assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
-    let progress = status(here, "p");
+    let progress = status(&here, "p");
     assert_eq!(
         (progress["twice"].as_u64(), progress["waiting"].as_u64(), progress["running"].as_u64()),
         (Some(0), Some(0), Some(0))
     );
-    ok(&grainbench(here, &["report", "p"]));
+    here.ok("report p");
     assert_eq!(rows(&here.join("p/report/rows.csv")), rows(&here.join("whole/report/rows.csv")));
     assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
 }
@@ -332,34 +299,32 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
 /// A full disk ends the run but keeps the finished results. When there is space again, the remaining tasks are run.
 #[test]
 fn a_full_disk_loses_nothing() {
-    let directory = planned();
-    let here = directory.path();
+    let here = planned();
     // The files of this process are limited to 4 kB, which is about ten results.
     let full = std::process::Command::new("sh")
         .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
         .env("GRAINBENCH_CACHE", "off")
-        .current_dir(here)
+        .current_dir(&here)
         .output()
         .unwrap();
     let message = String::from_utf8_lossy(&full.stderr).into_owned();
     assert!(!full.status.success() && message.contains("cannot write"), "{message}");
     let before = done(&here.join("p")).len();
     assert!((1..POINTS).contains(&before), "{before}");
-    assert_eq!(status(here, "p")["damaged"], 0, "what the disk did not take whole is not there");
-    let rest = ok(&grainbench(here, &["run", "--resume", "p"])).out.clone();
+    assert_eq!(status(&here, "p")["damaged"], 0, "what the disk did not take whole is not there");
+    let rest = here.ok("run --resume p").out.clone();
     assert!(rest.contains(&format!("{before} were finished, {} done now", POINTS - before)), "{rest}");
 }
 
 /// If the disk is full, an earlier plan stays unchanged, and a new plan leaves no file.
 #[test]
 fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
-    let directory = planned();
-    let here = directory.path();
+    let here = planned();
     // The limit of 512 bytes per file is too small for the second plan.
     let plan = |out: &str, limit: &str| {
         let script = format!("trap '' XFSZ; {limit} exec \"$0\" run belt --plan {out}");
         let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
-        let ended = std::process::Command::new("sh").args(command).current_dir(here).output().unwrap();
+        let ended = std::process::Command::new("sh").args(command).current_dir(&here).output().unwrap();
         (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
     };
     let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
@@ -373,18 +338,15 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     fs::create_dir_all(here.join("new/.grainbench-1@elsewhere-x")).unwrap();
     for out in ["p", "new"] {
         assert_eq!(plan(out, ""), (Some(0), String::new()), "{out}");
-        ok(&grainbench(here, &["report", out, "--progress"]));
+        here.ok(format!("report {out} --progress"));
     }
 }
 
 /// Workers that run at the same time share a plan, and do each task once.
 #[test]
 fn two_at_once_do_each_task_once() {
-    let directory = planned();
-    let here = directory.path();
-    let start = || {
-        crate::common::program().args(["run", "--resume", "p"]).current_dir(here).stdout(Stdio::null()).spawn().unwrap()
-    };
+    let here = planned();
+    let start = || here.program("run --resume p").stdout(Stdio::null()).spawn().unwrap();
     for mut worker in [start(), start(), start()] {
         assert_eq!(worker.wait().unwrap().code(), Some(0));
     }
@@ -395,20 +357,14 @@ fn two_at_once_do_each_task_once() {
 /// Rejects plans with each kind of error in their files.
 #[test]
 fn what_is_no_plan_is_refused() {
-    let directory = planned();
-    let here = directory.path();
+    let here = planned();
     let plan = here.join("p");
     let whole: Vec<(PathBuf, Vec<u8>)> =
         ["plan.toml", "tasks.jsonl"].map(|name| (plan.join(name), fs::read(plan.join(name)).unwrap())).into();
     let refused = |what: &str| {
-        for command in [
-            &["run", "--resume", "p"][..],
-            &["report", "p", "--progress"],
-            &["report", "p"],
-            &["run", "--resume", "p", "--on", "slurm"],
-        ] {
-            let answer = grainbench(here, command);
-            assert_eq!(answer.code, Some(2), "{what}: {command:?}: {}{}", answer.out, answer.err);
+        for command in ["run --resume p", "report p --progress", "report p", "run --resume p --on slurm"] {
+            let answer = here.run(command);
+            assert_eq!(answer.code, Some(2), "{what}: {command}: {}{}", answer.out, answer.err);
             assert!(answer.err.contains("expected") && !answer.err.contains("panicked"), "{what}: {}", answer.err);
         }
     };
@@ -425,12 +381,9 @@ fn what_is_no_plan_is_refused() {
         fs::write(path, bytes).unwrap();
     }
     let head = String::from_utf8(whole[0].1.clone()).unwrap();
-    for (from, to) in [
-        ("format = 1", "format = 2"),
-        ("shards = 1", "shards = 0"),
-        ("lease_seconds = 60.0", "lease_seconds = nan"),
-        ("kind = \"sweep\"", "kind = \"sweet\""),
-    ] {
+    for (from, to) in
+        [("format = 1", "format = 2"), ("shards = 1", "shards = 0"), ("lease_seconds = 60.0", "lease_seconds = nan")]
+    {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
         refused(to);
@@ -441,41 +394,38 @@ fn what_is_no_plan_is_refused() {
     ] {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
-        let answer = grainbench(here, &["run", "--resume", "p"]);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+        here.run("run --resume p").refused(message);
     }
     // Plans of earlier versions list the words of the command. Their progress can be read.
     let mut earlier: toml::Table = head.parse().unwrap();
-    earlier["arguments"] = vec!["sweep.toml"].into();
+    earlier.insert("arguments".to_owned(), vec!["sweep.toml"].into());
+    earlier.insert("kind".to_owned(), "sweep".into());
     fs::write(&whole[0].0, earlier.to_string()).unwrap();
-    ok(&grainbench(here, &["report", "p", "--progress"]));
+    here.ok("report p --progress");
     fs::write(&whole[0].0, head).unwrap();
     // Other files in the folder of results are ignored.
     for (name, text) in
         [("a.log", &b""[..]), ("b.log", b"hello\n"), ("c.log", b"grainbench-results 1 {}\n\xff\n"), ("d.txt", b"x")]
     {
-        fs::write(plan.join("results").join(name), text).unwrap();
+        plan.join("results").write(name, text);
     }
-    fs::write(plan.join("running/x.json"), "{").unwrap();
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    ok(&grainbench(here, &["report", "p"]));
-    assert_eq!(status(here, "p")["damaged"], 2);
+    plan.write("running/x.json", "{");
+    here.ok("run --resume p");
+    here.ok("report p");
+    assert_eq!(status(&here, "p")["damaged"], 2);
     assert_eq!(rows(&plan.join("report/rows.csv")).len(), 2 * POINTS);
     // A plan is written only to an empty folder or over a plan.
-    fs::create_dir(here.join("full")).unwrap();
-    fs::write(here.join("full/notes"), "").unwrap();
-    let answer = grainbench(here, &["simulate", "sweep.toml", "--plan", "full"]);
-    assert!(answer.code == Some(2) && answer.err.contains("other files"), "{}", answer.err);
+    here.write("full/notes", "");
+    here.run("simulate sweep.toml --plan full").refused("other files");
     for shard in ["0/0", "5/3", "1/0", "0/1", "1", "a/b", "1/99999999999"] {
-        assert_eq!(grainbench(here, &["run", "--resume", "p", "--shard", shard]).code, Some(2), "{shard}");
+        assert_eq!(here.run(format!("run --resume p --shard {shard}")).code, Some(2), "{shard}");
     }
 }
 
 /// An external solver with a manifest runs every point of a sweep.
 #[test]
 fn a_program_by_its_manifest_takes_part() {
-    let directory = tempfile::tempdir().unwrap();
-    let here = directory.path();
+    let here = temporary();
     let manifest = crate::common::root("examples/python/SOLVER.toml");
     let sweep = SWEEP
         .replace(
@@ -483,10 +433,10 @@ fn a_program_by_its_manifest_takes_part() {
             &format!("solver = '{}'\nlevels = ['dt=.01']", manifest.display()),
         )
         .replace("count = 5", "count = 2");
-    fs::write(here.join("sweep.toml"), sweep).unwrap();
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p"]));
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    ok(&grainbench(here, &["report", "p"]));
+    here.write("sweep.toml", sweep);
+    here.ok("simulate sweep.toml --plan p");
+    here.ok("run --resume p");
+    here.ok("report p");
     let rows = rows(&here.join("p/report/rows.csv"));
     let theirs: Vec<&String> = rows.iter().filter(|row| row.contains(",one-grain,")).collect();
     assert_eq!(theirs.len(), 12);
@@ -495,27 +445,25 @@ fn a_program_by_its_manifest_takes_part() {
 
 #[test]
 fn a_trend_tells_which_rows_and_counts_changed() {
-    let directory = planned();
-    let here = directory.path();
-    ok(&grainbench(here, &["run", "--resume", "p"]));
-    ok(&grainbench(here, &["report", "p", "--out", "new"]));
+    let here = planned();
+    here.ok("run --resume p");
+    here.ok("report p --out new");
     // Results of an earlier commit: one claim failed, and one run had one step less.
-    let mut old = json(&here.join("new/results.json"));
+    let mut old = here.json("new/results.json");
     old["verdicts"][0]["verdict"] = "fail".into();
     let steps = old["points"][0]["steps"].as_u64().unwrap();
     old["points"][0]["steps"] = (steps - 1).into();
-    fs::create_dir(here.join("old")).unwrap();
-    fs::write(here.join("old/results.json"), old.to_string()).unwrap();
-    ok(&grainbench(here, &["report", "p", "--out", "new", "--against", "old", "--against", "new"]));
-    let page = fs::read_to_string(here.join("new/trend.html")).unwrap();
+    here.write("old/results.json", old.to_string());
+    here.ok("report p --out new --against old --against new");
+    let page = here.read("new/trend.html");
     assert!(page.contains("The trend over 3 reports") && page.contains(&format!("{} → {steps}", steps - 1)), "{page}");
     assert_eq!(page.matches("scope=\"row\"").count(), 1, "one row changed");
     assert!(here.join("new/index.html").is_file() && here.join("new/figures/map.svg").is_file());
     for (wrong, text) in [("missing", None), ("empty", Some("")), ("other", Some("[1]"))] {
         if let Some(text) = text {
-            fs::write(here.join(wrong), text).unwrap();
+            here.write(wrong, text);
         }
-        assert_eq!(grainbench(here, &["report", "p", "--out", "new", "--against", wrong]).code, Some(2), "{wrong}");
+        assert_eq!(here.run(format!("report p --out new --against {wrong}")).code, Some(2), "{wrong}");
     }
 }
 
@@ -539,70 +487,58 @@ fn fake_slurm(directory: &Path) -> String {
 /// queued nor running.
 #[test]
 fn slurm_is_asked_for_what_is_missing() {
-    let directory = planned();
-    let here = directory.path();
-    let path = fake_slurm(here);
-    ok(&grainbench(here, &["simulate", "sweep.toml", "--plan", "p", "--shards", "9"]));
-    let ask = |words: &[&str]| {
-        let output = crate::common::program()
-            .args(words)
-            .env("PATH", &path)
-            .env("FAKE", here)
-            .current_dir(here)
-            .output()
-            .unwrap();
-        let text = |bytes: Vec<u8>| String::from_utf8(bytes).unwrap();
-        Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
-    };
+    let here = planned();
+    let path = fake_slurm(&here);
+    here.ok("simulate sweep.toml --plan p --shards 9");
+    let ask = |line: &str| Answer::of(here.program(line).env("PATH", &path).env("FAKE", &*here));
     let asked = || fs::read_to_string(here.join("sbatch.txt")).unwrap_or_default().lines().count();
-    let submit = ["run", "--resume", "p", "--on", "slurm"];
+    let (submit, again) = ("run --resume p --on slurm", "run --resume p --on slurm --resubmit");
     for wrong in ["--array=1-2", "-a1", "--wrap=true"] {
-        assert_eq!(ask(&[&submit[..], &["--", wrong]].concat()).code, Some(2), "{wrong}");
+        assert_eq!(ask(&format!("{submit} -- {wrong}")).code, Some(2), "{wrong}");
     }
-    fs::write(here.join("broken"), "").unwrap();
-    let answer = ask(&submit);
+    here.write("broken", "");
+    let answer = ask(submit);
     assert!(answer.code == Some(1) && answer.err.contains("squeue failed") && asked() == 0, "{}", answer.err);
     fs::remove_file(here.join("broken")).unwrap();
-    let answer = ask(&[&submit[..], &["--", "--partition=short", "--time=5"]].concat());
+    let answer = ask(&format!("{submit} -- --partition=short --time=5"));
     // Array indices must be below MaxArraySize.
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: shards 1-3 of 3\n"), "{}", answer.err);
-    let submitted = fs::read_to_string(here.join("sbatch.txt")).unwrap();
+    let submitted = here.read("sbatch.txt");
     assert!(
         submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh"),
         "{submitted}"
     );
-    let script = fs::read_to_string(here.join("p/slurm/submit-1.sh")).unwrap();
+    let script = here.read("p/slurm/submit-1.sh");
     assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
     // Submitting a plan a second time needs `--resubmit`.
-    assert!(ask(&submit).code == Some(2) && asked() == 1);
-    let again = [&submit[..], &["--resubmit"]].concat();
-    fs::write(here.join("queue"), "7 2\n7 3\n9 1\n").unwrap();
-    fs::write(here.join("number"), "8").unwrap();
-    assert_eq!(ask(&again).out, "job 8: shards 1 of 3\n");
-    assert!(ask(&["report", "p", "--progress"]).out.contains("queued    2 shards"), "the job of another is not ours");
+    assert!(ask(submit).code == Some(2) && asked() == 1);
+    here.write("queue", "7 2\n7 3\n9 1\n");
+    here.write("number", "8");
+    assert_eq!(ask(again).out, "job 8: shards 1 of 3\n");
+    assert!(ask("report p --progress").out.contains("queued    2 shards"), "the job of another is not ours");
     for shard in ["1/3", "3/3"] {
-        ok(&ask(&["run", "--resume", "p", "--shard", shard]));
+        ask(&format!("run --resume p --shard {shard}")).ok();
     }
-    fs::write(here.join("queue"), "").unwrap();
-    assert_eq!(ask(&again).out, "job 8: shards 2 of 3\n");
-    fs::write(here.join("broken"), "").unwrap();
+    here.write("queue", "");
+    assert_eq!(ask(again).out, "job 8: shards 2 of 3\n");
+    here.write("broken", "");
     let before = asked();
-    assert!(ask(&again).code == Some(1) && asked() == before, "an unknown queue is no empty one");
-    assert!(ask(&["report", "p", "--progress"]).out.contains("queued    not known: squeue failed"));
-    let status: Value = serde_json::from_str(&ask(&["report", "p", "--progress", "--json"]).out).unwrap();
+    assert!(ask(again).code == Some(1) && asked() == before, "an unknown queue is no empty one");
+    assert!(ask("report p --progress").out.contains("queued    not known: squeue failed"));
+    let status = ask("report p --progress --json").json();
     assert!(status["queued"].is_null() && status["waiting"].as_u64() > Some(0), "{status}");
     fs::remove_file(here.join("broken")).unwrap();
-    ok(&ask(&["run", "--resume", "p"]));
-    assert!(ask(&again).out.starts_with("every missing task is queued or running"));
+    ask("run --resume p").ok();
+    assert!(ask(again).out.starts_with("every missing task is queued or running"));
     // A plan that measures times requests its node exclusively.
-    ok(&ask(&["cost", "collision", "--solver=dem", "--plan", "c"]));
-    ok(&ask(&["run", "--resume", "c", "--on", "slurm"]));
-    let script = fs::read_to_string(here.join("c/slurm/submit-1.sh")).unwrap();
+    ask("cost collision --solver=dem --plan c").ok();
+    ask("run --resume c --on slurm").ok();
+    let script = here.read("c/slurm/submit-1.sh");
     assert!(script.contains("#SBATCH --exclusive\n") && script.contains("--jobs 1"), "{script}");
-    assert_eq!(ask(&["run", "--resume", "c", "--jobs", "2"]).code, Some(2), "times are measured one at a time");
+    assert_eq!(ask("run --resume c --jobs 2").code, Some(2), "times are measured one at a time");
     // If `sbatch` does not print a job number, this is an error.
-    fs::write(here.join("number"), "Submitted").unwrap();
-    ok(&ask(&["simulate", "sweep.toml", "--plan", "q"]));
-    let answer = ask(&["run", "--resume", "q", "--on", "slurm"]);
+    here.write("number", "Submitted");
+    ask("simulate sweep.toml --plan q").ok();
+    let answer = ask("run --resume q --on slurm");
     assert!(answer.code == Some(1) && answer.err.contains("expected the number of a job"), "{}", answer.err);
 }

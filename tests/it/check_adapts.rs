@@ -1,81 +1,53 @@
 //! `check` adapts to the output: parameters that follow others, the start in a file, and contact conventions.
 
-use crate::common::{Answer, grainbench, root};
+use crate::common::{Directory, count, data, root, temporary, temporary_with, unpacked};
 use serde_json::Value;
-use std::fs;
-use std::io::Read;
 use std::path::Path;
 
-fn data(name: &str) -> String {
-    root("tests/data/check").join(name).display().to_string()
-}
-
-fn rows(answer: &Answer) -> Vec<Value> {
-    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
-    results["verdicts"].as_array().unwrap().clone()
-}
-
-fn count(rows: &[Value], verdict: &str) -> usize {
-    rows.iter().filter(|row| row["verdict"] == verdict).count()
-}
-
-/// Simulates a scene file, and returns the table of its probes.
-fn simulated(directory: &Path, scene: &str, solver: &str, step: &str, set: &[&str]) -> String {
-    let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-    let words = ["simulate", scene, "--solver", solver, "--time-step", step, "--out", "run", "--write", "none"];
-    let answer = grainbench(directory, &[&words[..], &set].concat());
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
-    "run/series.csv".to_owned()
+/// Simulates a scene file. The table of its probes is `run/series.csv`.
+fn simulate(directory: &Path, scene: &str, solver: &str, step: &str, set: &str) {
+    directory.ok(format!("simulate {scene} --solver {solver} --time-step {step} --out run --write none {set}"));
 }
 
 /// Parameters of the LIGGGHTS run of a sphere of 5 mm, as changes of the case.
-const NUMBERS: [&str; 8] = [
-    "--set",
-    "gravity={magnitude=9.81,slope_deg=30}",
-    "--set",
-    "duration=.5",
-    "--set",
-    "materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3}",
-    "--set",
-    "contacts.plane={law=\"hertz\",friction=.5,restitution=.5}",
-];
+const NUMBERS: &str = "--set gravity={magnitude=9.81,slope_deg=30} --set duration=.5 \
+     --set materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3} \
+     --set 'contacts.plane={law=\"hertz\",friction=.5,restitution=.5}'";
 
 /// The position follows the radius. The Hertz law removes the linear stiffness, and Young's modulus the bulk modulus.
 #[test]
 fn keys_follow_other_keys() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let dump = data("liggghts-slope/sphere.dump");
-    let checked = |more: &[&str]| {
-        let words = ["check", "incline-sphere/45deg-mu.495", "--dump", &dump, "--json"];
-        grainbench(directory.path(), &[&words[..], &NUMBERS, more].concat())
-    };
+    let checked =
+        |more: &str| directory.run(format!("check incline-sphere/45deg-mu.495 --dump {dump} --json {NUMBERS} {more}"));
     let exact = |rows: &[Value], verdict: &str| {
         rows.iter().filter(|row| row["evidence"] == "analytic" && row["verdict"] == verdict).count()
     };
-    for start in [&["--set", "grains.sphere.radius=.005"][..], &["--like", &dump]] {
+    for start in ["--set grains.sphere.radius=.005", &format!("--like {dump}")] {
         let answer = checked(start);
-        let rows = rows(&answer);
-        assert_eq!((answer.code, exact(&rows, "pass")), (Some(0), 3), "{start:?}: {rows:#?}");
+        let rows = answer.rows();
+        assert_eq!((answer.code, exact(&rows, "pass")), (Some(0), 3), "{start}: {rows:#?}");
     }
     // Another radius does not fit the file, and the start of a file does not excuse wrong physics.
-    let answer = checked(&["--set", "grains.sphere.radius=.0052"]);
-    assert!(answer.code == Some(2) && answer.err.contains("radius"), "{}{}", answer.err, answer.out);
-    let answer = checked(&["--like", &dump, "--set", "gravity.slope_deg=31"]);
-    assert!(answer.code == Some(1) && exact(&rows(&answer), "fail") > 0, "{}", answer.out);
+    let answer = checked("--set grains.sphere.radius=.0052");
+    answer.refused("radius");
+    let answer = checked(&format!("--like {dump} --set gravity.slope_deg=31"));
+    assert!(answer.code == Some(1) && exact(&answer.rows(), "fail") > 0, "{}", answer.out);
     // A file without grains, and one with another number of grains.
-    fs::write(directory.path().join("empty.dump"), "").unwrap();
+    directory.write("empty.dump", "");
     for (file, message) in
         [("empty.dump", "empty.dump"), (data("lammps-nine-static.dump.gz").as_str(), "expected 1 grains")]
     {
-        let answer = checked(&["--like", file]);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{file}: {}", answer.err);
+        let answer = checked(&format!("--like {file}"));
+        answer.refused(message);
     }
 }
 
 /// A grain on a floor keeps its static overlap, and grains on it move with it.
 #[test]
 fn grains_move_with_a_radius() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let scene = "title = 't'\ndimension = 2\nduration = 0.1\ngravity = [0.0, -10.0]\nmaterials.m.density = 1000.0\n\
          contacts.m = { between = ['m', 'm'], normal_stiffness = 1e6 }\n\
          [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
@@ -83,11 +55,10 @@ fn grains_move_with_a_radius() {
          [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.0996858407346410]\n\
          [grains.d]\nmaterial = 'm'\nradius = 0.1\nposition = [2.0, 0.5]\n\
          [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
-    fs::write(directory.path().join("s.toml"), scene).unwrap();
-    let heights = |set: &[&str]| -> Vec<f64> {
-        let words = [&["scene", "s.toml"], set].concat();
-        let answer = grainbench(directory.path(), &words);
-        let resolved: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+    directory.write("s.toml", scene);
+    let heights = |set: &str| -> Vec<f64> {
+        let answer = directory.run(format!("scene s.toml {set}"));
+        let resolved = answer.json();
         let grains = resolved["grains"].as_array().unwrap();
         grains.iter().map(|grain| grain["position"][1].as_f64().unwrap()).collect()
     };
@@ -96,14 +67,11 @@ fn grains_move_with_a_radius() {
         assert!(off < 1e-12, "{found:?}, expected {expected:?}");
     };
     let rest = |radius: f64| radius - 1000.0 * std::f64::consts::PI * radius * radius * 10.0 / 1e6;
-    near(&heights(&[]), [0.1, 0.3, rest(0.1), 0.5]);
-    near(&heights(&["--set", "grains.a.radius=0.2"]), [0.2, 0.5, rest(0.1), 0.5]);
-    near(&heights(&["--set", "grains.c.radius=0.05", "--set", "grains.d.radius=0.05"]), [0.1, 0.3, rest(0.05), 0.5]);
+    near(&heights(""), [0.1, 0.3, rest(0.1), 0.5]);
+    near(&heights("--set grains.a.radius=0.2"), [0.2, 0.5, rest(0.1), 0.5]);
+    near(&heights("--set grains.c.radius=0.05 --set grains.d.radius=0.05"), [0.1, 0.3, rest(0.05), 0.5]);
     // A position of the user stays.
-    near(
-        &heights(&["--set", "grains.a.radius=0.05", "--set", "grains.a.position=[0,.05]"]),
-        [0.05, 0.2, rest(0.1), 0.5],
-    );
+    near(&heights("--set grains.a.radius=0.05 --set grains.a.position=[0,.05]"), [0.05, 0.2, rest(0.1), 0.5]);
 }
 
 /// A sphere that hits a floor obliquely, with friction and dashpots. The contact conventions differ by 12 %.
@@ -117,15 +85,11 @@ const OBLIQUE: &str = "title = 'Oblique impact'\ndimension = 3\nduration = 0.1\n
 /// The output is compared with the nearest convention, with its own tolerance. The summary names the convention.
 #[test]
 fn the_nearest_convention_is_judged_by_its_own_tolerance() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("s.toml"), OBLIQUE).unwrap();
-    let checked = |more: &[&str]| {
-        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off"];
-        grainbench(directory.path(), &[&words[..], more].concat())
-    };
+    let directory = temporary_with("s.toml", OBLIQUE);
+    let checked = |more: &str| directory.run(format!("check s.toml --dump run/series.csv --power off {more}"));
     for (solver, words) in [("dem:liggghts", "LIGGGHTS' convention"), ("dem:1979", "Cundall & Strack")] {
-        simulated(directory.path(), "s.toml", solver, "1e-5", &[]);
-        let answer = checked(&[]);
+        simulate(&directory, "s.toml", solver, "1e-5", "");
+        let answer = checked("");
         assert!(answer.code == Some(0) && answer.out.contains(", 0 fail, 0 amber"), "{solver}: {}", answer.out);
         let first = answer.out.lines().next().unwrap();
         assert!(first.starts_with("The output agrees with") && first.contains(words), "{first}");
@@ -133,13 +97,13 @@ fn the_nearest_convention_is_judged_by_its_own_tolerance() {
         assert_eq!(answer.out.matches("series.csv · dt=").count(), 1, "{}", answer.out);
         assert!(answer.out.contains("exactly zero as expected: a.y, a.vy, a.omega_x, a.omega_z"), "{}", answer.out);
     }
-    simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &[]);
-    let answer = checked(&["--convention", "dem:lammps"]);
+    simulate(&directory, "s.toml", "dem:liggghts", "1e-5", "");
+    let answer = checked("--convention dem:lammps");
     assert!(answer.code == Some(1) && answer.out.contains("differs from LAMMPS' convention"), "{}", answer.out);
     // Friction that is wrong by 4 % has less effect than the choice of the convention, so the output may have a
     // convention that we do not have.
-    simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &["contacts.g.friction=.48"]);
-    let answer = checked(&[]);
+    simulate(&directory, "s.toml", "dem:liggghts", "1e-5", "--set contacts.g.friction=.48");
+    let answer = checked("");
     assert!(
         answer.out.contains("The output differs from ") && answer.out.contains("first outside at t = "),
         "{}",
@@ -150,11 +114,11 @@ fn the_nearest_convention_is_judged_by_its_own_tolerance() {
         "{}",
         answer.out
     );
-    assert_eq!(checked(&["--strict"]).code, Some(1));
-    assert_eq!(checked(&["--convention", "dem:liggghts"]).code, Some(1));
+    assert_eq!(checked("--strict").code, Some(1));
+    assert_eq!(checked("--convention dem:liggghts").code, Some(1));
     // A larger mistake is red.
-    simulated(directory.path(), "s.toml", "dem:liggghts", "1e-5", &["contacts.g.friction=.1"]);
-    assert_eq!(checked(&[]).code, Some(1));
+    simulate(&directory, "s.toml", "dem:liggghts", "1e-5", "--set contacts.g.friction=.1");
+    assert_eq!(checked("").code, Some(1));
 }
 
 /// Thirty discs fall into a box. After the horizon of the run, only means are compared.
@@ -170,15 +134,13 @@ const THIRTY: &str = "title = 'Thirty discs'\ndimension = 2\nduration = 0.3\ngra
 
 #[test]
 fn a_wrong_friction_of_many_grains_is_red() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("s.toml"), THIRTY).unwrap();
-    for (set, code) in [(&[][..], 0), (&["contacts.g.friction=.1"], 1)] {
-        simulated(directory.path(), "s.toml", "dem:lammps", "2e-5", set);
-        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off", "--json"];
-        let answer = grainbench(directory.path(), &words);
-        let rows = rows(&answer);
-        assert_eq!(answer.code, Some(code), "{set:?}: {rows:#?}");
-        assert_eq!(count(&rows, "fail") > 0, code == 1, "{set:?}: {rows:#?}");
+    let directory = temporary_with("s.toml", THIRTY);
+    for (set, code) in [("", 0), ("--set contacts.g.friction=.1", 1)] {
+        simulate(&directory, "s.toml", "dem:lammps", "2e-5", set);
+        let answer = directory.run("check s.toml --dump run/series.csv --power off --json");
+        let rows = answer.rows();
+        assert_eq!(answer.code, Some(code), "{set}: {rows:#?}");
+        assert_eq!(count(&rows, "fail") > 0, code == 1, "{set}: {rows:#?}");
     }
 }
 
@@ -197,24 +159,22 @@ const HOPPER: &str = "title = 'A hopper'\ndimension = 2\nduration = 1.6\ngravity
 /// another rounding lies within it. The result says how long a run must be to be conclusive.
 #[test]
 fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("s.toml"), HOPPER).unwrap();
-    let flow = |solver: &str, set: &[&str]| {
-        simulated(directory.path(), "s.toml", solver, "2.5e-4", set);
-        let words = ["check", "s.toml", "--dump", "run/series.csv", "--power", "off", "--json"];
-        let answer = grainbench(directory.path(), &words);
-        let rows = rows(&answer);
+    let directory = temporary_with("s.toml", HOPPER);
+    let flow = |solver: &str, set: &str| {
+        simulate(&directory, "s.toml", solver, "2.5e-4", set);
+        let answer = directory.run("check s.toml --dump run/series.csv --power off --json");
+        let rows = answer.rows();
         let is_flow = |row: &&Value| row["quantity"].as_str().unwrap().starts_with("discs.left, mean rate from t = ");
         let row = rows.iter().find(is_flow).unwrap_or_else(|| panic!("{rows:#?}")).clone();
         (answer.code, count(&rows, "fail"), row)
     };
     for solver in ["dem:lammps", "dem:1979"] {
-        let (code, failed, row) = flow(solver, &["grains.a.lattice.perturbation=1.00000001e-4"]);
+        let (code, failed, row) = flow(solver, "--set grains.a.lattice.perturbation=1.00000001e-4");
         assert_eq!((code, failed), (Some(0), 0), "{row}");
         let detail = row["detail"].as_str().unwrap_or("times as long, to t = ");
         assert!(detail.contains("times as long, to t = "), "{row}");
     }
-    let (code, _, row) = flow("dem:lammps", &["contacts.g.friction=.1"]);
+    let (code, _, row) = flow("dem:lammps", "--set contacts.g.friction=.1");
     assert_eq!((code, &row["verdict"]), (Some(1), &"fail".into()), "{row}");
     let detail = row["detail"].as_str().unwrap();
     assert!(detail.contains("larger than the mean of our runs, whose means lie between"), "{detail}");
@@ -225,8 +185,7 @@ fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
 /// An output with another stiffness: the result is red, and the overlap at rest leads to the cause.
 #[test]
 fn an_overlap_at_rest_tells_the_stiffness() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("s.toml"), OBLIQUE).unwrap();
+    let directory = temporary_with("s.toml", OBLIQUE);
     let dump = |overlap: f64| {
         let row = |step: u32| {
             let time = f64::from(step) * 1e-5;
@@ -239,10 +198,11 @@ fn an_overlap_at_rest_tells_the_stiffness() {
         (0..=10).map(|sample| row(1000 * sample)).collect::<String>()
     };
     let checked = |overlap: f64| {
-        fs::write(directory.path().join("d.dump"), dump(overlap)).unwrap();
-        let set = ["--set", "duration=.1", "--set", "output.every=.01", "--set", "gravity=[0,0,-500]"];
-        let words = ["check", "s.toml", "--dump", "d.dump", "--time-step", "1e-5", "--power", "off", "--partial"];
-        grainbench(directory.path(), &[&words[..], &set].concat())
+        directory.write("d.dump", dump(overlap));
+        directory.run(
+            "check s.toml --dump d.dump --time-step 1e-5 --power off --partial --set duration=.1 --set output.every=.01 \
+             --set gravity=[0,0,-500]",
+        )
     };
     let answer = checked(2e-5);
     assert!(answer.code == Some(1) && answer.out.contains("is the stiffness yours?"), "{}", answer.out);
@@ -254,10 +214,8 @@ fn an_overlap_at_rest_tells_the_stiffness() {
 /// A dump of contacts with the columns of our decks needs no `--map`.
 #[test]
 fn contacts_of_a_deck_need_no_names() {
-    let directory = tempfile::tempdir().unwrap();
-    let mut text = String::new();
-    let file = fs::File::open(data("lammps-nine-static.contacts.gz")).unwrap();
-    flate2::read::GzDecoder::new(file).read_to_string(&mut text).unwrap();
+    let directory = temporary();
+    let text = unpacked("lammps-nine-static.contacts.gz");
     // The stored dump has the columns distance, two ids and two components of the force.
     let row = |order: &str, line: &str| match line.split_whitespace().collect::<Vec<_>>()[..] {
         ["ITEM:", "ENTRIES", ..] => format!("ITEM: ENTRIES {order}\n"),
@@ -266,45 +224,30 @@ fn contacts_of_a_deck_need_no_names() {
     };
     let checked = |order: &str| {
         let contacts: String = text.lines().map(|line| row(order, line)).collect();
-        fs::write(directory.path().join("dump.contacts"), contacts).unwrap();
+        directory.write("dump.contacts", contacts);
         let dump = data("lammps-nine-static.dump.gz");
-        let words = ["check", "nine-discs/static-0", "--dump", &dump, "dump.contacts", "--partial", "--json"];
-        grainbench(directory.path(), &words)
+        directory.run(format!("check nine-discs/static-0 --dump {dump} dump.contacts --partial --json"))
     };
     let answer = checked("c_pairs[1] c_pairs[2] c_pairs[4] c_pairs[5] c_pairs[6]");
-    let rows = rows(&answer);
+    let rows = answer.rows();
     let forces =
         rows.iter().filter(|row| row["evidence"] == "analytic" && row["unit"] == "N" && row["verdict"] == "pass");
     assert!(answer.code == Some(0) && forces.count() > 0, "{rows:#?}");
     // Columns in another order are not those of a deck.
     let answer = checked("c_pairs[2] c_pairs[1] c_pairs[4] c_pairs[5] c_pairs[6]");
-    assert!(answer.code == Some(2) && answer.err.contains("expected columns `id1` and `id2`"), "{}", answer.err);
+    answer.refused("expected columns `id1` and `id2`");
 }
 
 /// The stored runs of this case have a time step three times as short as a run of its solver-independent claim.
 #[test]
 fn a_longer_step_than_that_of_the_stored_run_passes() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let scene = root("cases/chung-ooi/scene.toml").display().to_string();
-    for (set, code) in [(None, 0), (Some("materials.sphere.young_modulus=48.5e9"), 1)] {
-        let set: Vec<&str> = set.iter().flat_map(|set| ["--set", set]).collect();
-        let words = [
-            "simulate",
-            &scene,
-            "--variant",
-            "1-glass",
-            "--solver",
-            "dem:lammps",
-            "--time-step-fraction",
-            "0.003",
-            "--out",
-            "run",
-        ];
-        let answer = grainbench(directory.path(), &[&words[..], &set].concat());
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
-        let answer =
-            grainbench(directory.path(), &["check", "chung-ooi/1-glass", "--dump", "run/series.csv", "--json"]);
-        let rows = rows(&answer);
+    for (set, code) in [("", 0), ("--set materials.sphere.young_modulus=48.5e9", 1)] {
+        let solver = "--solver dem:lammps --time-step-fraction 0.003";
+        directory.ok(format!("simulate {scene} --variant 1-glass {solver} --out run {set}"));
+        let answer = directory.run("check chung-ooi/1-glass --dump run/series.csv --json");
+        let rows = answer.rows();
         let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run"));
         let red = stored.clone().filter(|row| row["verdict"] == "fail").count();
         assert!(stored.count() > 0 && answer.code == Some(code) && (red > 0) == (code == 1), "{rows:#?}");
@@ -314,20 +257,16 @@ fn a_longer_step_than_that_of_the_stored_run_passes() {
 /// `check` and `deck` accept the folder of a case.
 #[test]
 fn the_folder_of_a_case_is_accepted() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let folder = root("examples/case").display().to_string();
     let scene = root("examples/case/scene.toml").display().to_string();
-    simulated(directory.path(), &scene, "dem", "1e-5", &[]);
-    let answer =
-        grainbench(directory.path(), &["check", &format!("{folder}/plain"), "--dump", "run/series.csv", "--json"]);
-    let rows = rows(&answer);
+    simulate(&directory, &scene, "dem", "1e-5", "");
+    let answer = directory.run(format!("check {folder}/plain --dump run/series.csv --json"));
+    let rows = answer.rows();
     assert_eq!(answer.code, Some(0), "{rows:#?}");
     assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 2, "{rows:#?}");
     // Both variants have this start.
-    let answer = grainbench(directory.path(), &["check", &folder, "--dump", "run/series.csv"]);
-    assert!(answer.code == Some(2) && answer.err.contains("expected the name of a variant"), "{}", answer.err);
-    let answer = grainbench(directory.path(), &["deck", &folder, "--for", "lammps", "--out", "deck"]);
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
-    let answer = grainbench(directory.path(), &["check", "run", "--dump", "run/series.csv"]);
-    assert!(answer.code == Some(2) && answer.err.contains("claims.toml"), "{}", answer.err);
+    directory.run(format!("check {folder} --dump run/series.csv")).refused("expected the name of a variant");
+    directory.ok(format!("deck {folder} --for lammps --out deck"));
+    directory.run("check run --dump run/series.csv").refused("claims.toml");
 }

@@ -1,6 +1,6 @@
 //! `check` with a scene file, with a case with other parameters, with VTK files, and with a folder of many outputs.
 
-use crate::common::grainbench;
+use crate::common::{Answer, Directory, root, temporary, temporary_with};
 use grainbench::cases::registry::read_grains;
 use grainbench::scene::source::SceneSource;
 use serde_json::Value;
@@ -9,7 +9,7 @@ use std::path::{Path, PathBuf};
 
 /// Returns the folder of a LIGGGHTS run whose input was written by hand.
 fn slope() -> PathBuf {
-    [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "liggghts-slope"].iter().collect()
+    root("tests/data/check/liggghts-slope")
 }
 
 fn file(name: &str) -> String {
@@ -17,43 +17,34 @@ fn file(name: &str) -> String {
 }
 
 /// Returns all VTK files of the run, including those of its box, in the order of a shell pattern.
-fn vtk() -> Vec<String> {
+fn vtk() -> String {
     let mut files: Vec<String> = fs::read_dir(slope())
         .unwrap()
         .map(|entry| entry.unwrap().path().display().to_string())
         .filter(|path| path.ends_with(".vtk"))
         .collect();
     files.sort();
-    files
+    files.join(" ")
 }
 
 /// Parameters of the run, as changes of the case of a sphere on a slope.
-const NUMBERS: [&str; 11] = [
-    "gravity={magnitude=9.81,slope_deg=30}",
-    "duration=.5",
-    "materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3}",
-    "materials.rock.bulk_modulus=",
-    "materials.rock.shear_modulus=",
-    "contacts.plane={law=\"hertz\",friction=.5,restitution=.5}",
-    "contacts.plane.normal_stiffness=",
-    "contacts.plane.tangential_stiffness=",
-    "contacts.plane.normal_damping=",
-    "contacts.plane.tangential_damping=",
-    "grains.sphere={radius=.005,position=[0,0,.005]}",
-];
+const NUMBERS: &str = "--set gravity={magnitude=9.81,slope_deg=30} --set duration=.5 \
+     --set materials.rock={density=2500,young_modulus=5e6,poisson_ratio=.3} \
+     --set materials.rock.bulk_modulus= --set materials.rock.shear_modulus= \
+     --set 'contacts.plane={law=\"hertz\",friction=.5,restitution=.5}' \
+     --set contacts.plane.normal_stiffness= --set contacts.plane.tangential_stiffness= \
+     --set contacts.plane.normal_damping= --set contacts.plane.tangential_damping= \
+     --set grains.sphere={radius=.005,position=[0,0,.005]}";
 
-fn judged(words: &[&str]) -> (Option<i32>, Vec<Value>) {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &[&["check"], words, &["--json"]].concat());
-    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
-    (answer.code, results["verdicts"].as_array().unwrap().clone())
+fn judged(words: &str) -> (Option<i32>, Vec<Value>) {
+    let directory = temporary();
+    let answer = directory.run(format!("check {words} --json"));
+    (answer.code, answer.rows())
 }
 
 /// Returns the exit code and the results at the parameters of the run, with further changes.
-fn at_numbers(files: &[&str], others: &[&str]) -> (Option<i32>, Vec<Value>) {
-    let set = NUMBERS.iter().chain(others).flat_map(|set| ["--set", set]);
-    let words = [&["incline-sphere/45deg-mu.495"], &set.collect::<Vec<_>>()[..], &["--dump"], files].concat();
-    judged(&words)
+fn at_numbers(files: &str, others: &str) -> (Option<i32>, Vec<Value>) {
+    judged(&format!("incline-sphere/45deg-mu.495 {NUMBERS} {others} --dump {files}"))
 }
 
 fn count(rows: &[Value], condition: impl Fn(&Value) -> bool) -> usize {
@@ -65,10 +56,10 @@ fn count(rows: &[Value], condition: impl Fn(&Value) -> bool) -> usize {
 fn a_scene_of_ones_own_is_compared_with_our_solvers() {
     let dump = file("sphere.dump");
     let vtk = vtk();
-    assert!(vtk.iter().any(|path| path.contains("boundingBox")) || vtk.len() == 11);
-    for files in [vec![dump.as_str()], vtk.iter().map(String::as_str).collect()] {
+    assert!(vtk.contains("boundingBox") || vtk.split(' ').count() == 11);
+    for files in [dump, vtk] {
         let scene = file("slope.toml");
-        let (code, rows) = judged(&[&[&scene, "--dump"], &files[..]].concat());
+        let (code, rows) = judged(&format!("{scene} --dump {files}"));
         let nearest = |row: &Value| row["source"].as_str().is_some_and(|source| source.starts_with("dem:liggghts"));
         // LIGGGHTS adds a tangential dashpot to Hertz contacts, which the scene lacks. Its effect, below a thousandth, is
         // amber. All other compared quantities pass. Changes of the scene that the output does not reveal are amber.
@@ -89,8 +80,8 @@ fn a_scene_of_ones_own_is_compared_with_our_solvers() {
 fn exact_answers_follow_other_numbers() {
     let dump = file("sphere.dump");
     let is_exact = |row: &Value| row["evidence"] == "analytic";
-    for files in [vec![dump.as_str()], vtk().iter().map(String::as_str).collect()] {
-        let (code, rows) = at_numbers(&files, &[]);
+    for files in [&dump, &vtk()] {
+        let (code, rows) = at_numbers(files, "");
         assert_eq!((code, count(&rows, is_exact)), (Some(0), 3), "{rows:#?}");
         // v = (5/7) g t sin θ at t = 0.5 s. The tolerance is the Hertz overlap divided by the radius, plus the
         // oscillation of the contact spring.
@@ -104,8 +95,8 @@ fn exact_answers_follow_other_numbers() {
         assert!(allowed > overlap / 0.005 && allowed < 1.3 * overlap / 0.005, "{allowed:e} {:e}", overlap / 0.005);
     }
     for wrong in ["gravity.slope_deg=30.5", "gravity.magnitude=9.7"] {
-        let set = [wrong, "grains.sphere.position=[0,0,.005]"];
-        let (code, rows) = at_numbers(&[&dump], &set);
+        let set = format!("--set {wrong} --set grains.sphere.position=[0,0,.005]");
+        let (code, rows) = at_numbers(&dump, &set);
         let red = count(&rows, |row| is_exact(row) && row["verdict"] == "fail");
         assert!(code == Some(1) && red >= 1, "{wrong}: {rows:#?}");
     }
@@ -114,9 +105,9 @@ fn exact_answers_follow_other_numbers() {
 /// A folder with a subfolder for each case or variant is checked with one command. Other files in it are reported.
 #[test]
 fn a_folder_of_outputs_is_judged_together() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let into = |place: &str, name: &str| {
-        let folder = directory.path().join("runs").join(place);
+        let folder = directory.join("runs").join(place);
         fs::create_dir_all(&folder).unwrap();
         let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/check").join(name);
         fs::copy(from, folder.join(name)).unwrap();
@@ -125,48 +116,47 @@ fn a_folder_of_outputs_is_judged_together() {
     into("backspin/sphere", "liggghts-backspin.dump.gz");
     let log = "liggghts-backspin.log";
     into("backspin/sphere", log);
-    let folder = directory.path().join("runs/backspin/sphere");
+    let folder = directory.join("runs/backspin/sphere");
     fs::rename(folder.join(log), folder.join("log.liggghts")).unwrap();
-    let runs = directory.path().join("runs").display().to_string();
-    let (code, rows) = judged(&["--all", &runs]);
+    let runs = directory.join("runs").display().to_string();
+    let (code, rows) = judged(&format!("--all {runs}"));
     let passes = |case: &str| count(&rows, |row| row["case"] == case && row["verdict"] == "pass");
     assert!(code == Some(0) && passes("incline-disc") == 11 && passes("backspin") > 5, "{rows:#?}");
     // The content of a file decides if it is output, not its name. A file that is not judged is red, unless its name is ignored.
-    let place = directory.path().join("runs/incline-disc/60deg-mu.9");
+    let place = directory.join("runs/incline-disc/60deg-mu.9");
     fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
     for input in ["in.lammps", "data.grains"] {
-        fs::write(place.join(input), "units si\n").unwrap();
+        place.write(input, "units si\n");
     }
-    let (code, rows) = judged(&["--all", &runs]);
+    let (code, rows) = judged(&format!("--all {runs}"));
     assert_eq!((code, count(&rows, |row| row["case"] == "incline-disc")), (Some(0), 11), "{rows:#?}");
-    fs::write(place.join("notes.txt"), "a run of yesterday\n").unwrap();
-    fs::write(directory.path().join("runs/stray.dump"), "").unwrap();
-    let (code, rows) = judged(&["--all", &runs]);
+    place.write("notes.txt", "a run of yesterday\n");
+    directory.write("runs/stray.dump", "");
+    let (code, rows) = judged(&format!("--all {runs}"));
     let files: Vec<&Value> = rows.iter().filter(|row| row["case"] == "files").map(|row| &row["quantity"]).collect();
     let names = ["incline-disc/60deg-mu.9/notes.txt, not judged", "stray.dump, not judged"];
     assert_eq!((code, &files[..]), (Some(1), &names.map(Value::from).iter().collect::<Vec<_>>()[..]), "{rows:#?}");
-    let (code, rows) = judged(&["--all", &runs, "--ignore", "notes.txt", "--ignore", "*.dump"]);
+    let (code, rows) = judged(&format!("--all {runs} --ignore notes.txt --ignore *.dump"));
     assert_eq!((code, count(&rows, |row| row["case"] == "files")), (Some(0), 0));
     fs::remove_file(place.join("notes.txt")).unwrap();
-    fs::remove_file(directory.path().join("runs/stray.dump")).unwrap();
+    fs::remove_file(directory.join("runs/stray.dump")).unwrap();
     fs::rename(place.join("dump.grains"), place.join("lammps-incline.dump.gz")).unwrap();
     into("incline-disc/60deg-mu.9", "lammps-incline-half-friction.dump.gz");
-    fs::remove_file(directory.path().join("runs/incline-disc/60deg-mu.9/lammps-incline.dump.gz")).unwrap();
-    assert_eq!(judged(&["--all", &runs]).0, Some(1));
+    fs::remove_file(directory.join("runs/incline-disc/60deg-mu.9/lammps-incline.dump.gz")).unwrap();
+    assert_eq!(judged(&format!("--all {runs}")).0, Some(1));
     let refused = |folder: &Path, message: &str| {
-        let answer = grainbench(directory.path(), &["check", "--all", &folder.display().to_string()]);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+        directory.run(format!("check --all {}", folder.display())).refused(message);
     };
-    refused(&directory.path().join("nowhere"), "expected a folder that can be read");
+    refused(&directory.join("nowhere"), "expected a folder that can be read");
     // The folder of a case without output is red, also if it contains only a log, or if no case has its name.
-    let partly = directory.path().join("partly");
+    let partly = directory.join("partly");
     for place in ["incline-disc/60deg-mu.9", "oblique-impact", "backspin/sphere", "incline-dics", "nine-discs/kappa"] {
         fs::create_dir_all(partly.join(place)).unwrap();
     }
-    fs::write(partly.join("oblique-impact/log.lammps"), "timestep 1\n").unwrap();
+    partly.write("oblique-impact/log.lammps", "timestep 1\n");
     fs::copy(folder.join("liggghts-backspin.dump.gz"), partly.join("backspin/sphere/dump.gz")).unwrap();
     fs::copy(folder.join("log.liggghts"), partly.join("backspin/sphere/log.liggghts")).unwrap();
-    let (code, rows) = judged(&["--all", &partly.display().to_string()]);
+    let (code, rows) = judged(&format!("--all {}", partly.display()));
     let red = |name: &str, message: &str| {
         let is_it = |row: &Value| row["quantity"] == format!("{name}, not judged") && row["verdict"] == "fail";
         count(&rows, |row| is_it(row) && row["detail"].as_str().unwrap().contains(message)) == 1
@@ -174,31 +164,27 @@ fn a_folder_of_outputs_is_judged_together() {
     assert!(code == Some(1) && count(&rows, |row| row["case"] == "files") == 4, "{rows:#?}");
     assert!(red("incline-disc/60deg-mu.9", "found none") && red("oblique-impact", "found none"), "{rows:#?}");
     assert!(red("incline-dics", "did you mean `incline-disc`?") && red("nine-discs/kappa", "`kappa`"), "{rows:#?}");
-    let ignored = ["incline-*", "oblique-impact", "nine-discs"].into_iter().flat_map(|name| ["--ignore", name]);
-    let words = [&["--all", partly.to_str().unwrap()], &ignored.collect::<Vec<_>>()[..]].concat();
-    assert_eq!(judged(&words).0, Some(0));
-    fs::create_dir(directory.path().join("empty")).unwrap();
-    refused(&directory.path().join("empty"), "expected outputs in its folders `CASE` or `CASE/VARIANT`, found none");
+    let ignored = "--ignore incline-* --ignore oblique-impact --ignore nine-discs";
+    assert_eq!(judged(&format!("--all {} {ignored}", partly.display())).0, Some(0));
+    fs::create_dir(directory.join("empty")).unwrap();
+    refused(&directory.join("empty"), "expected outputs in its folders `CASE` or `CASE/VARIANT`, found none");
     into("backspinn", "liggghts-backspin.dump.gz");
-    refused(&directory.path().join("runs"), "did you mean `backspin`?");
+    refused(&directory.join("runs"), "did you mean `backspin`?");
 }
 
 /// Returns the path of a file about a ball that bounces along a floor.
 fn of_ball(name: &str) -> String {
-    let path: PathBuf = [env!("CARGO_MANIFEST_DIR"), "tests", "data", "check", "ball", name].iter().collect();
-    path.display().to_string()
+    root("tests/data/check/ball").join(name).display().to_string()
 }
 
 /// Returns the exit code, the results and the messages of `check` with files of the ball.
-fn ball(files: &[&str], more: &[&str]) -> (Option<i32>, Vec<Value>, String) {
-    let directory = tempfile::tempdir().unwrap();
+fn ball(files: &[&str], more: &str) -> (Option<i32>, Vec<Value>, String) {
+    let directory = temporary();
     let scene = of_ball(if files[0].starts_with("same-ids") { "two-balls.toml" } else { "ball.toml" });
     let files: Vec<String> = files.iter().map(|file| of_ball(file)).collect();
-    let files: Vec<&str> = files.iter().map(String::as_str).collect();
-    let words = [&["check", &scene, "--json", "--power", "off", "--dump"], &files[..], more].concat();
-    let answer = grainbench(directory.path(), &words);
-    let rows = serde_json::from_str(&answer.out).map(|results: Value| results["verdicts"].as_array().unwrap().clone());
-    (answer.code, rows.unwrap_or_default(), answer.err)
+    let answer = directory.run(format!("check {scene} --json --power off --dump {} {more}", files.join(" ")));
+    let rows = if answer.out.is_empty() { Vec::new() } else { answer.rows() };
+    (answer.code, rows, answer.err)
 }
 
 fn fails(rows: &[Value]) -> usize {
@@ -210,22 +196,19 @@ fn fails(rows: &[Value]) -> usize {
 #[test]
 fn each_run_of_a_log_has_its_own_time_step() {
     let log = of_ball("twosteps.log.gz");
-    for (file, more) in [
-        ("twosteps.dump.gz", &["--log", &log][..]),
-        ("twosteps-time.dump.gz", &["--log", &log]),
-        ("twosteps-time.dump.gz", &[]),
-    ] {
+    let log = format!("--log {log}");
+    for (file, more) in [("twosteps.dump.gz", &*log), ("twosteps-time.dump.gz", &log), ("twosteps-time.dump.gz", "")] {
         let (code, rows, err) = ball(&[file], more);
         assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
         assert_eq!(rows[1]["resolution"], "dt=0.00001 s to 0.00002 s", "{}", rows[1]);
     }
     // With one time step for all steps, the output belongs to another motion.
-    assert_eq!(ball(&["twosteps.dump.gz"], &["--time-step", "2e-5"]).0, Some(1));
+    assert_eq!(ball(&["twosteps.dump.gz"], "--time-step 2e-5").0, Some(1));
 }
 
 #[test]
 fn a_run_that_starts_late_counts_from_its_first_sample() {
-    let (code, rows, err) = ball(&["late-start.dump.gz"], &["--time-step", "1e-5"]);
+    let (code, rows, err) = ball(&["late-start.dump.gz"], "--time-step 1e-5");
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
     assert!(rows[0]["because"].as_str().unwrap().contains("first sample, step 3000000000 (t = 30000"), "{}", rows[0]);
 }
@@ -233,24 +216,21 @@ fn a_run_that_starts_late_counts_from_its_first_sample() {
 /// A difference between the times of log and table is accepted if it is within their printed digits.
 #[test]
 fn a_rounded_time_step_in_a_log_is_accepted() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("log.lammps"), "timestep 1.0001e-5\nStep KinEng\n0 0\n").unwrap();
-    fs::write(directory.path().join("table.csv"), "step,time,ball.x\n0,0,0\n400,0.004,0.0008\n").unwrap();
-    let words = ["check", &of_ball("ball.toml"), "--power", "off", "--dump", "table.csv"];
-    assert_ne!(grainbench(directory.path(), &words).code, Some(2));
+    let directory = temporary_with("log.lammps", "timestep 1.0001e-5\nStep KinEng\n0 0\n");
+    directory.write("table.csv", "step,time,ball.x\n0,0,0\n400,0.004,0.0008\n");
+    assert_ne!(directory.run(format!("check {} --power off --dump table.csv", of_ball("ball.toml"))).code, Some(2));
 }
 
 #[test]
 fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
-    let (code, rows, _) = ball(&["cut-off.dump.gz"], &["--time-step", "1e-5", "--partial"]);
+    let (code, rows, _) = ball(&["cut-off.dump.gz"], "--time-step 1e-5 --partial");
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{rows:#?}");
     assert_eq!(rows[0]["verdict"], "known");
     assert!(rows[0]["detail"].as_str().unwrap().contains("cut-off.dump.gz:361: expected a step"), "{}", rows[0]);
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let cut = of_ball("cut-off.dump.gz");
-    for words in [&["compare", &cut, &cut][..], &["fields", &cut, "--cell", "0.02", "--time-step", "1e-5"]] {
-        let answer = grainbench(directory.path(), &[words, &["--partial"]].concat());
-        assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
+    for words in [format!("compare {cut} {cut}"), format!("fields {cut} --cell 0.02 --time-step 1e-5")] {
+        let answer = directory.ok(format!("{words} --partial"));
         assert!((answer.out + &answer.err).contains("cut-off.dump.gz:361: expected a step"));
     }
 }
@@ -258,13 +238,13 @@ fn whole_frames_of_a_cut_off_dump_are_judged_where_that_is_meant() {
 /// In tables of ParaView, `TimeStep` is the number of a frame, and `Time` is in seconds. A table for one time contains no time.
 #[test]
 fn tables_of_grains_are_read_as_grains() {
-    let (code, rows, err) = ball(&["paraview-all.csv.gz"], &["--time-step", "1e-5"]);
+    let (code, rows, err) = ball(&["paraview-all.csv.gz"], "--time-step 1e-5");
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
     let series =
         ["series/ball_0.csv", "series/ball_1.csv", "series/ball_2.csv", "series/ball_3.csv", "series/ball_4.csv"];
-    let (code, rows, err) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.002", "--partial"]);
+    let (code, rows, err) = ball(&series, "--time-step 1e-5 --frame-interval 0.002 --partial");
     assert_eq!((code, fails(&rows), rows.len()), (Some(0), 0, 10), "{err}{rows:#?}");
-    let (code, rows, _) = ball(&series, &["--time-step", "1e-5", "--frame-interval", "0.003", "--partial"]);
+    let (code, rows, _) = ball(&series, "--time-step 1e-5 --frame-interval 0.003 --partial");
     assert!(code == Some(1) && fails(&rows) > 0);
 }
 
@@ -272,43 +252,34 @@ fn tables_of_grains_are_read_as_grains() {
 #[test]
 fn units_are_those_of_the_scene_or_of_the_other_file() {
     let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
-    let answer = checked_flight(&lj, &[]);
-    assert!(answer.code == Some(2) && answer.err.contains("expected the units `si`"), "{}", answer.err);
-    assert_eq!(checked_flight(&lj.replace("\nlj\n", "\nsi\n"), &[]).code, Some(0));
+    let answer = checked_flight(&lj, "");
+    answer.refused("expected the units `si`");
+    assert_eq!(checked_flight(&lj.replace("\nlj\n", "\nsi\n"), "").code, Some(0));
     let cgs = of_ball("cgs.dump.gz");
-    assert_eq!(grainbench(tempfile::tempdir().unwrap().path(), &["compare", &cgs, &cgs]).code, Some(0));
+    temporary().ok(format!("compare {cgs} {cgs}"));
 }
 
 /// Rejects a time step at or above the critical one, because our solvers would be unstable and give no reference.
 #[test]
 fn a_time_step_above_the_critical_one_is_refused() {
     let text = "time,ball.x,ball.y,ball.z\n0,0,0,0.02\n0.004,0.0008,0,0.0179215\n";
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("coarse.csv"), text).unwrap();
-    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", "2e-3", "--partial"];
-    assert_ne!(grainbench(directory.path(), &[&words[..], &["--allow-unstable"]].concat()).code, Some(2));
+    let directory = temporary_with("coarse.csv", text);
+    let check = format!("check {} --dump coarse.csv --partial", of_ball("ball.toml"));
+    assert_ne!(directory.run(format!("{check} --time-step 2e-3 --allow-unstable")).code, Some(2));
     // The critical time step itself is rejected too, as in `simulate`.
     let scene = SceneSource::read(Path::new(&of_ball("ball.toml"))).unwrap().scene(&read_grains).unwrap();
     let critical = format!("{:?}", scene.critical_time_step());
-    let words = ["check", &of_ball("ball.toml"), "--dump", "coarse.csv", "--time-step", &critical, "--partial"];
-    let answer = grainbench(directory.path(), &words);
-    assert!(
-        answer.code == Some(2) && answer.err.contains("expected a time step below the critical one"),
-        "{}",
-        answer.err
-    );
+    directory.run(format!("{check} --time-step {critical}")).refused("expected a time step below the critical one");
 }
 
 /// The ball sticks to the floor during contact. Friction therefore has almost no effect, but dashpot and spring have.
 #[test]
 fn a_check_says_which_changes_the_output_would_reveal() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let checked = |how: &str| {
         let (scene, dump, log) = (of_ball("ball.toml"), of_ball("twosteps.dump.gz"), of_ball("twosteps.log.gz"));
-        let words = ["check", &scene, "--dump", &dump, "--log", &log, "--power", how, "--json"];
-        let answer = grainbench(directory.path(), &words);
-        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
-        (answer.code, results["verdicts"].as_array().unwrap().clone())
+        let answer = directory.run(format!("check {scene} --dump {dump} --log {log} --power {how} --json"));
+        (answer.code, answer.rows())
     };
     for how in ["limited", "full"] {
         let (code, rows) = checked(how);
@@ -363,16 +334,14 @@ fn flight(from: u32, change: &dyn Fn(u32, &mut [Row; 3])) -> String {
 }
 
 /// Checks a dump of the three discs, and returns the output of the command.
-fn checked_flight(dump: &str, more: &[&str]) -> crate::common::Answer {
+fn checked_flight(dump: &str, more: &str) -> Answer {
     checked_scene(FLIGHT, dump, more)
 }
 
-fn checked_scene(scene: &str, dump: &str, more: &[&str]) -> crate::common::Answer {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("flight.toml"), scene).unwrap();
-    fs::write(directory.path().join("flight.dump"), dump).unwrap();
-    let words = ["check", "flight.toml", "--dump", "flight.dump", "--time-step", "1e-3", "--power", "off"];
-    grainbench(directory.path(), &[&words[..], more].concat())
+fn checked_scene(scene: &str, dump: &str, more: &str) -> Answer {
+    let directory = temporary_with("flight.toml", scene);
+    directory.write("flight.dump", dump);
+    directory.run(format!("check flight.toml --dump flight.dump --time-step 1e-3 --power off {more}"))
 }
 
 /// The first sample is compared with the initial state of all grains, with or without probes.
@@ -385,7 +354,7 @@ fn every_grain_starts_as_in_the_scene() {
         (0, &|_, rows| rows[1][0] += 4.0),
     ];
     for (from, change) in right {
-        let answer = checked_flight(&flight(from, change), &[]);
+        let answer = checked_flight(&flight(from, change), "");
         assert_eq!(answer.code, Some(0), "{}{}", answer.out, answer.err);
     }
     let wrong: [(Change<'_>, &str); 6] = [
@@ -397,15 +366,15 @@ fn every_grain_starts_as_in_the_scene() {
         (&|_, rows| rows.swap(0, 1), "x of grain 1 = 0.25 m; found 1.5 m"),
     ];
     for (change, message) in wrong {
-        for (from, more) in [(0, &[][..]), (0, &["--partial"]), (700, &[])] {
+        for (from, more) in [(0, ""), (0, "--partial"), (700, "")] {
             let answer = checked_flight(&flight(from, change), more);
-            assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
+            answer.refused(message);
         }
     }
     // Six digits are enough if the numbers have no more digits.
     let six =
         flight(0, &|_, rows| rows.iter_mut().flatten().for_each(|number| *number = (*number * 1e5).round() / 1e5));
-    assert_eq!(checked_flight(&six, &[]).code, Some(0));
+    assert_eq!(checked_flight(&six, "").code, Some(0));
 }
 
 /// Grains of a two-dimensional scene must stay in their plane.
@@ -421,12 +390,12 @@ fn motion_out_of_the_plane_is_refused() {
         (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` = 0.0, found 1.0"),
     ];
     for (change, message) in wrong {
-        let answer = checked_flight(&flight(0, change), &[]);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{message}: {}{}", answer.out, answer.err);
+        let answer = checked_flight(&flight(0, change), "");
+        answer.refused(message);
     }
     // The plane may be at any height, and rounding errors do not count as motion out of the plane.
     let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
-    assert_eq!(checked_flight(&right, &[]).code, Some(0));
+    assert_eq!(checked_flight(&right, "").code, Some(0));
 }
 
 /// The sampling interval in the scene file limits the interval between samples. No option replaces it.
@@ -437,22 +406,22 @@ fn no_option_allows_samples_far_apart() {
     let head = samples.next().unwrap();
     let ends = [samples.next().unwrap(), samples.last().unwrap()].concat();
     let ends = format!("{head}{ends}");
-    let set = ["--set", "output.every=1"];
-    assert_eq!(checked_flight(&ends, &[]).code, Some(1));
-    assert_eq!(checked_flight(&ends, &set).code, Some(1));
+    let set = "--set output.every=1";
+    assert_eq!(checked_flight(&ends, "").code, Some(1));
+    assert_eq!(checked_flight(&ends, set).code, Some(1));
     let own = FLIGHT.replace("every = 0.01", "every = 0.1");
-    assert_eq!(checked_scene(&own, &ends, &[]).code, Some(0));
-    assert_eq!(checked_scene(&own, &ends, &set).code, Some(0));
+    assert_eq!(checked_scene(&own, &ends, "").code, Some(0));
+    assert_eq!(checked_scene(&own, &ends, set).code, Some(0));
 }
 
 /// A sample at a time between two steps counts as missing and is reported.
 #[test]
 fn a_sample_between_steps_is_missing() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let scene = "title = 't'\ndimension = 2\nduration = 0.04\n[materials.m]\ndensity = 1000.0\n\
          [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n[grains.a]\nmaterial = 'm'\nradius = 0.1\n\
          position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
-    fs::write(directory.path().join("s.toml"), scene).unwrap();
+    directory.write("s.toml", scene);
     let judged = |time: &str| {
         // 20 samples are 2000 steps apart. A further sample after one step makes our run sample every step.
         let row = |step: u32, time: &str| format!("{step},{time},{:.6},1.000000\n", f64::from(step) * 1e-6);
@@ -464,12 +433,9 @@ fn a_sample_between_steps_is_missing() {
                 })
                 .collect();
         let table = format!("step,time,a.x,a.vx\n{rows}");
-        fs::write(directory.path().join("t.csv"), table).unwrap();
-        let words = ["check", "s.toml", "--dump", "t.csv", "--dt", "1e-6", "--power", "off", "--json"];
-        let answer = grainbench(directory.path(), &words);
-        let results: Value =
-            serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
-        let rows = results["verdicts"].as_array().unwrap().clone();
+        directory.write("t.csv", table);
+        let answer = directory.run("check s.toml --dump t.csv --dt 1e-6 --power off --json");
+        let rows = answer.rows();
         rows.into_iter().find(|row| row["quantity"].as_str().unwrap().starts_with("a.x, worst of")).unwrap()
     };
     assert_eq!(judged("0.020000")["verdict"], "pass");
@@ -480,13 +446,11 @@ fn a_sample_between_steps_is_missing() {
 /// A file agrees with itself, whatever its number of digits is.
 #[test]
 fn a_file_is_equal_to_itself() {
-    let directory = tempfile::tempdir().unwrap();
-    fs::write(directory.path().join("a.csv"), "time,x,q\n0.0,0.0,0.0\n1.0,2.0,0.3\n2.0,7.0,0.1\n").unwrap();
-    let answer = grainbench(directory.path(), &["compare", "a.csv", "a.csv", "--json"]);
-    let results: Value = serde_json::from_str(&answer.out).unwrap();
-    let rows = results["verdicts"].as_array().unwrap();
+    let directory = temporary_with("a.csv", "time,x,q\n0.0,0.0,0.0\n1.0,2.0,0.3\n2.0,7.0,0.1\n");
+    let answer = directory.run("compare a.csv a.csv --json");
+    let rows = answer.rows();
     assert!(rows.iter().all(|row| row["verdict"] == "pass"), "{rows:#?}");
-    fs::write(directory.path().join("b.csv"), "time,x,q\n0.0,0.0,0.00\n1.0,2.0,0.30\n2.0,7.0,0.10\n").unwrap();
-    let answer = grainbench(directory.path(), &["compare", "a.csv", "b.csv", "--json"]);
+    directory.write("b.csv", "time,x,q\n0.0,0.0,0.00\n1.0,2.0,0.30\n2.0,7.0,0.10\n");
+    let answer = directory.run("compare a.csv b.csv --json");
     assert!(answer.out.contains("inconclusive"), "the second file has more digits: {}", answer.out);
 }

@@ -1,6 +1,6 @@
 //! The command line: help, tables, files, JSON and exit codes.
 
-use crate::common::{files, grainbench};
+use crate::common::{Directory, files, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
 use serde_json::Value;
 use std::path::Path;
@@ -38,8 +38,8 @@ left = { grain = "left" }
 "#;
 
 /// Returns the standard output of a command that must succeed without messages.
-fn printed(directory: &Path, arguments: &[&str]) -> String {
-    let answer = grainbench(directory, arguments);
+fn printed(directory: &Path, arguments: &str) -> String {
+    let answer = directory.run(arguments);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{}", answer.out);
     answer.out
 }
@@ -49,31 +49,31 @@ fn json(text: &str) -> Value {
 }
 
 /// Returns a help text without spaces at the ends of lines. clap prints such spaces, and editors remove them.
-fn help(arguments: &[&str]) -> String {
-    let directory = tempfile::tempdir().unwrap();
-    printed(directory.path(), arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+fn help(arguments: &str) -> String {
+    let directory = temporary();
+    printed(&directory, arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
 }
 
 #[test]
 fn help_of_every_command() {
-    insta::assert_snapshot!("help", help(&["--help"]));
+    insta::assert_snapshot!("help", help("--help"));
     for command in ["list", "run", "simulate", "deck", "check", "compare", "scene", "report"] {
-        insta::assert_snapshot!(format!("help_{command}"), help(&[command, "--help"]));
+        insta::assert_snapshot!(format!("help_{command}"), help(&format!("{command} --help")));
     }
 }
 
 #[test]
 fn version() {
     assert_eq!(
-        help(&["--version"]),
+        help("--version"),
         concat!("grainbench ", env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")\n")
     );
 }
 
 #[test]
 fn list_tells_of_every_case() {
-    let directory = tempfile::tempdir().unwrap();
-    let text = printed(directory.path(), &["list"]);
+    let directory = temporary();
+    let text = printed(&directory, "list");
     for case in CASES {
         assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
     }
@@ -85,25 +85,21 @@ fn list_tells_of_every_case() {
         .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
         .collect();
     insta::assert_snapshot!(squash.join("\n"));
-    let entries = json(&printed(directory.path(), &["list", "--json"]));
+    let entries = json(&printed(&directory, "list --json"));
     assert_eq!(entries.as_array().unwrap().len(), CASES.len());
     for entry in entries.as_array().unwrap() {
         for key in ["name", "title", "claim", "variants", "gates", "default_level", "levels", "solvers"] {
             assert!(!entry[key].is_null() && entry[key] != "", "{key} of {entry}");
         }
     }
-    assert!(files(directory.path()).is_empty());
+    assert!(files(&directory).is_empty());
 }
 
 #[cfg(unix)]
 #[test]
 fn a_reader_who_has_seen_enough_is_no_error() {
-    let mut program = crate::common::program()
-        .args(["scene", "--schema"])
-        .stdout(Stdio::piped())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut program =
+        temporary().program("scene --schema").stdout(Stdio::piped()).stderr(Stdio::piped()).spawn().unwrap();
     drop(program.stdout.take());
     let output = program.wait_with_output().unwrap();
     assert_eq!((output.status.code(), output.stderr.as_slice()), (Some(0), &b""[..]));
@@ -129,8 +125,8 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
 
 #[test]
 fn schema_documents_every_key() {
-    let directory = tempfile::tempdir().unwrap();
-    let schema = json(&printed(directory.path(), &["scene", "--schema"]));
+    let directory = temporary();
+    let schema = json(&printed(&directory, "scene --schema"));
     assert!(schema["properties"]["grains"].is_object());
     assert!(schema["$defs"].as_object().unwrap().len() > 5);
     let mut found = Vec::new();
@@ -141,18 +137,18 @@ fn schema_documents_every_key() {
 /// The schema file in the repository, which editors use, equals the schema that the program prints.
 #[test]
 fn the_schema_in_the_tree_is_that_of_the_program() {
-    let directory = tempfile::tempdir().unwrap();
-    crate::common::expect_file("scene.schema.json", &printed(directory.path(), &["scene", "--schema"]));
+    let directory = temporary();
+    crate::common::expect_file("scene.schema.json", &printed(&directory, "scene --schema"));
 }
 
 #[test]
 fn run_leaves_its_files_and_a_summary() {
-    let directory = tempfile::tempdir().unwrap();
-    let text = printed(directory.path(), &["run", "squash", "--out", "deep/out"]);
+    let directory = temporary();
+    let text = printed(&directory, "run squash --out deep/out");
     // The worst claim depends on rounding, which differs between mathematical libraries. Column widths depend on it too.
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
-    let out = directory.path().join("deep/out");
+    let out = directory.join("deep/out");
     let expected = [
         "badge.svg",
         "figures/squash-elastic.csv",
@@ -168,9 +164,9 @@ fn run_leaves_its_files_and_a_summary() {
         "rows.csv",
     ];
     assert_eq!(files(&out), expected);
-    assert_eq!(files(directory.path()).len(), expected.len());
+    assert_eq!(files(&directory).len(), expected.len());
 
-    let results = json(&std::fs::read_to_string(out.join("results.json")).unwrap());
+    let results = out.json("results.json");
     assert_eq!(results["verdicts"].as_array().unwrap().len(), results["controls"].as_array().unwrap().len());
     assert_eq!(results["provenance"]["options"], json(r#"["squash"]"#));
     assert!(results["provenance"]["rustc"].as_str().unwrap().starts_with("rustc "));
@@ -179,7 +175,7 @@ fn run_leaves_its_files_and_a_summary() {
     assert!(date.ends_with(" UTC") && date.len() == "2000-01-01 00:00:00 UTC".len(), "{date}");
 
     let page = std::fs::read(out.join("index.html")).unwrap();
-    let again = printed(directory.path(), &["report", "deep/out"]);
+    let again = printed(&directory, "report deep/out");
     assert_eq!(again, text);
     assert_eq!(std::fs::read(out.join("index.html")).unwrap(), page);
     assert_eq!(files(&out), expected);
@@ -198,9 +194,9 @@ fn without_worst(line: &str) -> String {
 
 #[test]
 fn run_prints_what_it_writes_as_json() {
-    let directory = tempfile::tempdir().unwrap();
-    let text = printed(directory.path(), &["run", "squash/plain", "--levels", "dt=0.05", "--no-controls", "--json"]);
-    assert_eq!(text, std::fs::read_to_string(directory.path().join("grainbench-out/results.json")).unwrap());
+    let directory = temporary();
+    let text = printed(&directory, "run squash/plain --levels dt=0.05 --no-controls --json");
+    assert_eq!(text, directory.read("grainbench-out/results.json"));
     let results = json(&text);
     assert!(results["verdicts"].as_array().unwrap().iter().all(|row| row["verdict"] == "pass"));
     assert_eq!(results["controls"], json("[]"));
@@ -209,9 +205,8 @@ fn run_prints_what_it_writes_as_json() {
 /// Old spellings are accepted until the next version, and a note is printed.
 #[test]
 fn an_old_spelling_is_reported() {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &["run", "squash/plain", "--rungs=dt=0.05", "--fresh", "--no-controls"]);
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let directory = temporary();
+    let answer = directory.ok("run squash/plain --rungs=dt=0.05 --fresh --no-controls");
     for [old, new] in [["--rungs", "--levels"], ["--fresh", "--no-cache"]] {
         assert!(answer.err.contains(&format!("`{old}` is now `{new}`")), "{}", answer.err);
     }
@@ -219,9 +214,9 @@ fn an_old_spelling_is_reported() {
 
 #[test]
 fn a_red_report_ends_with_one() {
-    let directory = tempfile::tempdir().unwrap();
-    printed(directory.path(), &["run", "squash", "--out", "out"]);
-    let path = directory.path().join("out/report.json");
+    let directory = temporary();
+    printed(&directory, "run squash --out out");
+    let path = directory.join("out/report.json");
     let text = std::fs::read_to_string(&path).unwrap();
     for (green, red) in [
         (r#""verdict":"pass""#, r#""verdict":"fail""#),
@@ -229,25 +224,24 @@ fn a_red_report_ends_with_one() {
         (r#""turned_red":true"#, r#""turned_red":false"#),
     ] {
         std::fs::write(&path, text.replacen(green, red, 1)).unwrap();
-        let answer = grainbench(directory.path(), &["report", "out"]);
+        let answer = directory.run("report out");
         assert_eq!(answer.code, Some(1), "{red}");
         assert!(answer.out.contains('✗'), "{}", answer.out);
     }
     // An amber result counts neither as passed nor as failed.
     std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
-    assert_eq!(grainbench(directory.path(), &["report", "out"]).code, Some(0));
+    directory.ok("report out");
 }
 
 #[test]
 fn simulate_leaves_its_record() {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
-    let text = printed(directory.path(), &["simulate", "scene.toml", "--solver", "dem", "--out", "out"]);
+    let directory = temporary_with("scene.toml", SCENE);
+    let text = printed(&directory, "simulate scene.toml --solver dem --out out");
     let settled: Vec<&str> =
         text.lines().map(|line| if line.starts_with("took ") { "took       [time]" } else { line }).collect();
     insta::assert_snapshot!(settled.join("\n"));
     assert_eq!(
-        files(&directory.path().join("out")),
+        files(&directory.join("out")),
         [
             "manifest.json",
             "record.json",
@@ -265,7 +259,7 @@ fn simulate_leaves_its_record() {
             "vtk/grains.pvd",
         ]
     );
-    let series = std::fs::read_to_string(directory.path().join("out/series.csv")).unwrap();
+    let series = directory.read("out/series.csv");
     assert_eq!(series.lines().count(), 1 + 11, "{series}");
 }
 
@@ -276,26 +270,21 @@ fn simulate_warns_above_the_stable_fraction() {
          [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1e6\n\
          [grains.g]\nmaterial = 'm'\nradius = 0.1\nlattice = { origin = [0.0, 0.0], spacing = [0.3, 0.3], count = [2, 2] }\n\
          [probes]\nall = { system = true }\n";
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("four.toml"), scene).unwrap();
-    std::fs::write(directory.path().join("two.toml"), scene.replace("[2, 2]", "[2, 1]")).unwrap();
+    let directory = temporary_with("four.toml", scene);
+    directory.write("two.toml", scene.replace("[2, 2]", "[2, 1]"));
     // Two grains have only one contact, whose critical step is exact.
     for (file, fraction, warns) in [("four.toml", "0.9", true), ("four.toml", "0.1", false), ("two.toml", "0.9", false)]
     {
-        let words = ["simulate", file, "--solver", "dem", "--time-step-fraction", fraction];
-        let answer = grainbench(directory.path(), &words);
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        let answer = directory.ok(format!("simulate {file} --solver dem --time-step-fraction {fraction}"));
         assert_eq!(answer.err.contains("a packing can be unstable"), warns, "{file} {fraction}: {}", answer.err);
     }
 }
 
 #[test]
 fn simulate_prints_the_run_as_json() {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("scene.toml"), SCENE).unwrap();
-    let arguments = ["simulate", "scene.toml", "--solver", "dem:liggghts", "--time-step", "1e-4", "--json"];
-    let longer = ["--set", "duration_cycles=400", "--set", "title=Longer"];
-    let run = json(&printed(directory.path(), &[&arguments[..], &longer].concat()));
+    let directory = temporary_with("scene.toml", SCENE);
+    let arguments = "--solver dem:liggghts --time-step 1e-4 --json --set duration_cycles=400 --set title=Longer";
+    let run = directory.ok(format!("simulate scene.toml {arguments}")).json();
     assert_eq!(run["provenance"]["scene"], "Longer");
     assert_eq!(run["provenance"]["solver"], "dem:liggghts");
     assert_eq!(run["provenance"]["time_step"], 1e-4);
@@ -304,33 +293,30 @@ fn simulate_prints_the_run_as_json() {
     // The impact of two equal discs is elastic and conserves the energy ρπR² v²/2.
     let energy = run["end"]["kinetic_energy"].as_f64().unwrap();
     assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
-    assert!(directory.path().join("grainbench-out/record.json").is_file());
+    assert!(directory.join("grainbench-out/record.json").is_file());
 }
 
 #[test]
 fn report_makes_pictures_of_simulations() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
+    let path = temporary_with("scene.toml", SCENE);
     for (solver, out) in [("dem", "one"), ("dem:lammps", "two")] {
-        printed(path, &["simulate", "scene.toml", "--solver", solver, "--out", out]);
+        printed(&path, &format!("simulate scene.toml --solver {solver} --out {out}"));
     }
-    printed(path, &["report", "one", "--beside", "two", "--fringe-stress", "1e3"]);
-    let page = std::fs::read_to_string(path.join("one/index.html")).unwrap();
+    printed(&path, "report one --beside two --fringe-stress 1e3");
+    let page = path.read("one/index.html");
     // The page has one picture of the speed, with both solvers side by side.
-    let svg = std::fs::read_to_string(path.join("one/figures/speed.svg")).unwrap();
+    let svg = path.read("one/figures/speed.svg");
     assert!(page.contains(&svg) && svg.matches("data:image/png;base64,").count() == 2, "{}", svg.len());
     assert!(page.contains("Two discs collide") && svg.contains(">dem, t") && svg.contains(">dem:lammps, t"), "{svg}");
 
     // A contact with a missing grain is not drawn. An invalid record is an error that names file and position.
-    let record = std::fs::read_to_string(path.join("one/record.json")).unwrap();
-    std::fs::write(path.join("one/record.json"), record.replace("\"grain\":1,", "\"grain\":900,")).unwrap();
-    printed(path, &["report", "one"]);
-    let refused = |arguments: &[&str], what: &str| {
-        let answer = grainbench(path, arguments);
-        assert!(answer.code == Some(2) && answer.err.contains(what), "{:?} {}", answer.code, answer.err);
+    let record = path.read("one/record.json");
+    path.write("one/record.json", record.replace("\"grain\":1,", "\"grain\":900,"));
+    printed(&path, "report one");
+    let refused = |arguments: &str, what: &str| {
+        path.run(arguments).refused(what);
     };
-    refused(&["report", "one", "--beside", "nowhere"], "record.json");
-    std::fs::write(path.join("two/record.json"), record.replacen("\"step\":[", "\"step\":[true,", 1)).unwrap();
-    refused(&["report", "two"], "at `series.step[0]`: invalid type: boolean `true`");
+    refused("report one --beside nowhere", "record.json");
+    path.write("two/record.json", record.replacen("\"step\":[", "\"step\":[true,", 1));
+    refused("report two", "at `series.step[0]`: invalid type: boolean `true`");
 }

@@ -5,8 +5,15 @@
 
 use grainbench::solver::kept_record;
 use grainbench::solver::record::{Cost, Record};
+use serde_json::Value;
+use std::io::Read;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
+use tempfile::TempDir;
+
+/// Environment that hides LAMMPS and LIGGGHTS from the program.
+pub(crate) const ABSENT: [(&str, &str); 2] =
+    [("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")];
 
 pub(crate) struct Answer {
     /// Exit code; `None` if the process was killed.
@@ -17,46 +24,144 @@ pub(crate) struct Answer {
     pub(crate) err: String,
 }
 
+impl Answer {
+    /// Runs a command.
+    pub(crate) fn of(command: &mut Command) -> Self {
+        let output = command.output().expect("the program starts");
+        let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");
+        Self { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
+    }
+
+    /// Returns the answer of a command that must have succeeded.
+    pub(crate) fn ok(self) -> Self {
+        assert_eq!(self.code, Some(0), "{}{}", self.out, self.err);
+        self
+    }
+
+    /// Checks that the program rejected its input with a message.
+    pub(crate) fn refused(&self, message: &str) {
+        let Self { code, out, err } = self;
+        assert!(*code == Some(2) && err.contains(message), "{message}: {code:?} {out}{err}");
+    }
+
+    /// Returns the standard output as JSON.
+    pub(crate) fn json(&self) -> Value {
+        serde_json::from_str(&self.out).unwrap_or_else(|error| panic!("{error}: {}{}", self.out, self.err))
+    }
+
+    /// Returns the results of a report that was printed as JSON.
+    pub(crate) fn rows(&self) -> Vec<Value> {
+        self.json()["verdicts"].as_array().unwrap().clone()
+    }
+}
+
+/// Temporary directory, removed at the end of a test.
+pub(crate) struct Folder(TempDir);
+
+impl std::ops::Deref for Folder {
+    type Target = Path;
+
+    fn deref(&self) -> &Path {
+        self.0.path()
+    }
+}
+
+impl AsRef<Path> for Folder {
+    fn as_ref(&self) -> &Path {
+        self
+    }
+}
+
+/// Returns an empty temporary directory.
+pub(crate) fn temporary() -> Folder {
+    Folder(tempfile::tempdir().expect("a temporary directory"))
+}
+
+/// Returns a temporary directory with one file.
+pub(crate) fn temporary_with(name: &str, content: impl AsRef<[u8]>) -> Folder {
+    let folder = temporary();
+    folder.write(name, content);
+    folder
+}
+
+/// Directory in which a test writes files and runs the program.
+pub(crate) trait Directory: AsRef<Path> {
+    /// Writes a file and creates its folders.
+    fn write(&self, name: impl AsRef<Path>, content: impl AsRef<[u8]>) {
+        let path = self.as_ref().join(name);
+        std::fs::create_dir_all(path.parent().unwrap()).unwrap();
+        std::fs::write(path, content).unwrap();
+    }
+
+    /// Returns the text of a file.
+    fn read(&self, name: impl AsRef<Path>) -> String {
+        let path = self.as_ref().join(name);
+        std::fs::read_to_string(&path).unwrap_or_else(|error| panic!("{}: {error}", path.display()))
+    }
+
+    /// Returns the content of a JSON file.
+    fn json(&self, name: impl AsRef<Path>) -> Value {
+        serde_json::from_str(&self.read(name)).unwrap()
+    }
+
+    /// Returns the program with a command line, with quotes as in a shell. Messages contain paths relative to this directory. The
+    /// program does not use its cache, so that each test does its own runs.
+    fn program(&self, line: impl AsRef<str>) -> Command {
+        let mut command = Command::new(env!("CARGO_BIN_EXE_grainbench"));
+        command
+            .args(words(line.as_ref()))
+            .env("GRAINBENCH_CACHE", "off")
+            .current_dir(self.as_ref())
+            .stdin(Stdio::null());
+        command
+    }
+
+    /// Runs the program with a command line.
+    fn run(&self, line: impl AsRef<str>) -> Answer {
+        Answer::of(&mut self.program(line))
+    }
+
+    /// Runs the program with a command line that must succeed.
+    fn ok(&self, line: impl AsRef<str>) -> Answer {
+        self.run(line).ok()
+    }
+
+    /// Runs the program with a command line, with LAMMPS and LIGGGHTS hidden from it.
+    fn run_alone(&self, line: impl AsRef<str>) -> Answer {
+        Answer::of(self.program(line).envs(ABSENT))
+    }
+}
+
+impl Directory for Path {}
+
+/// Splits a command line into words, with quotes as in a shell. `[ROOT]` is the repository.
+pub(crate) fn words(line: &str) -> Vec<String> {
+    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
+    for letter in line.replace("[ROOT]", env!("CARGO_MANIFEST_DIR")).chars() {
+        match (letter, quote) {
+            ('\'' | '"', None) => {
+                quote = Some(letter);
+                word.get_or_insert_default();
+            }
+            (letter, Some(open)) if letter == open => quote = None,
+            (' ' | '\n', None) => words.extend(word.take()),
+            _ => word.get_or_insert_default().push(letter),
+        }
+    }
+    words.extend(word);
+    words
+}
+
 /// Returns a record as bytes, without its run time. Comparing printed numbers would take longer than most runs.
 pub(crate) fn bits(record: Record) -> Vec<u8> {
     let untimed = Record { cost: Cost { wall_seconds: 0.0, ..record.cost }, ..record };
     kept_record::body("", &untimed).expect("a record can be kept")
 }
 
-/// Returns a command that runs the program without its cache, so that each test does its own runs.
-pub(crate) fn program() -> Command {
-    let mut command = Command::new(env!("CARGO_BIN_EXE_grainbench"));
-    command.env("GRAINBENCH_CACHE", "off");
-    command
-}
-
-/// Runs the program in a directory, so that messages contain relative paths.
-pub(crate) fn grainbench(directory: &Path, arguments: &[&str]) -> Answer {
-    grainbench_in(directory, arguments, &[])
-}
-
-/// Runs the program in a directory, with LAMMPS and LIGGGHTS hidden from it.
-pub(crate) fn grainbench_alone(directory: &Path, arguments: &[&str]) -> Answer {
-    let absent = [("GRAINBENCH_LAMMPS", "nowhere/lmp"), ("GRAINBENCH_LIGGGHTS", "nowhere/liggghts")];
-    grainbench_in(directory, arguments, &absent)
-}
-
-fn grainbench_in(directory: &Path, arguments: &[&str], environment: &[(&str, &str)]) -> Answer {
-    let output = program()
-        .args(arguments)
-        .envs(environment.iter().copied())
-        .current_dir(directory)
-        .stdin(Stdio::null())
-        .output()
-        .expect("the program starts");
-    let text = |bytes| String::from_utf8(bytes).expect("the program writes UTF-8");
-    Answer { code: output.status.code(), out: text(output.stdout), err: text(output.stderr) }
-}
-
 /// Returns the largest resident memory of a run (kB), as the operating system reports it.
 #[cfg(target_os = "linux")]
-pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
-    let mut child = program().args(arguments).current_dir(path).stdout(Stdio::null()).spawn().unwrap();
+pub(crate) fn peak_memory(path: &Path, line: &str) -> u64 {
+    let mut child = path.program(line).stdout(Stdio::null()).spawn().unwrap();
     let mut peak = 0;
     while child.try_wait().unwrap().is_none() {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap_or_default();
@@ -64,7 +169,7 @@ pub(crate) fn peak_memory(path: &Path, arguments: &[&str]) -> u64 {
         peak = line.and_then(|line| line.split_whitespace().next()?.parse().ok()).unwrap_or(peak);
         std::thread::sleep(std::time::Duration::from_millis(2));
     }
-    assert!(child.wait().unwrap().success(), "{arguments:?}");
+    assert!(child.wait().unwrap().success(), "{line}");
     peak
 }
 
@@ -87,6 +192,24 @@ pub(crate) fn files(directory: &Path) -> Vec<String> {
     }
     found.sort();
     found
+}
+
+/// Returns the number of results with an outcome.
+pub(crate) fn count(rows: &[Value], verdict: &str) -> usize {
+    rows.iter().filter(|row| row["verdict"] == verdict).count()
+}
+
+/// Returns the path of a stored output of another program.
+pub(crate) fn data(name: &str) -> String {
+    root("tests/data/check").join(name).display().to_string()
+}
+
+/// Returns the text of a stored output of another program.
+pub(crate) fn unpacked(name: &str) -> String {
+    let mut whole = String::new();
+    let file = std::fs::File::open(data(name)).unwrap();
+    flate2::read::GzDecoder::new(file).read_to_string(&mut whole).unwrap();
+    whole
 }
 
 /// Returns the path of a file in the repository.

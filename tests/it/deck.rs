@@ -1,6 +1,6 @@
 //! Input decks for external programs: their contents, messages about unsupported scenes, and the files that the command writes.
 
-use crate::common::{files, grainbench};
+use crate::common::{Directory, files, temporary};
 use grainbench::cases::registry::{CASES, by_name};
 use grainbench::harness::case::Case;
 use grainbench::reference::deck::{DeckError, Program, write_deck};
@@ -223,12 +223,12 @@ fn a_title_is_no_part_of_the_script() {
 
 #[test]
 fn the_command_leaves_a_whole_deck() {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &["deck", "nine-discs/kappa-0", "--for", "liggghts", "--out", "d"]);
+    let directory = temporary();
+    let answer = directory.run("deck nine-discs/kappa-0 --for liggghts --out d");
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     insta::assert_snapshot!(answer.out);
     assert_eq!(
-        files(directory.path()),
+        files(&directory),
         [
             "d/data.grains",
             "d/in.liggghts",
@@ -244,22 +244,21 @@ fn the_command_leaves_a_whole_deck() {
 /// The first solver-independent claim of this case has a resolution in grid cells, which is not a time step.
 #[test]
 fn an_exact_scene_is_stepped_in_time() {
-    let directory = tempfile::tempdir().unwrap();
-    let exact = ["deck", "incline-disc/30deg-mu.5", "--for", "lammps", "--exact", "--out", "d"];
-    let answer = grainbench(directory.path(), &exact);
+    let directory = temporary();
+    let answer = directory.run("deck incline-disc/30deg-mu.5 --for lammps --exact --out d");
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
-    let script = std::fs::read_to_string(directory.path().join("d/in.lammps")).unwrap();
+    let script = directory.read("d/in.lammps");
     assert!(script.contains("timestep"), "{script}");
 }
 
 /// A second deck replaces the first one, because the files of the first deck belong to another scene.
 #[test]
 fn a_directory_holds_one_deck() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     for (program, script) in [("lammps", "in.lammps"), ("liggghts", "in.liggghts")] {
-        let answer = grainbench(directory.path(), &["deck", "incline-sphere", "--for", program, "--out", "d"]);
+        let answer = directory.run(format!("deck incline-sphere --for {program} --out d"));
         assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
-        let found = files(&directory.path().join("d"));
+        let found = files(&directory.join("d"));
         assert!(found.contains(&"manifest.json".to_owned()), "{found:?}");
         let scripts: Vec<&String> = found.iter().filter(|name| name.starts_with("in.")).collect();
         assert_eq!(scripts, [script]);

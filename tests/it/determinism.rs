@@ -1,6 +1,6 @@
 //! The same scene, solver and time step give the same bits when a run is repeated, also while other runs are in progress.
 
-use crate::common::bits;
+use crate::common::{Answer, Directory, bits, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::solver::observer::RunOptions;
@@ -63,28 +63,22 @@ const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_leng
 #[test]
 fn threads_leave_no_trace() {
     for (scene, solver) in [(MANY, "dem"), (BLOCKS, "mpm"), (BLOCKS, "mpm:no-slip"), (BLOCKS, "mpm+usf")] {
-        let directory = tempfile::tempdir().unwrap();
-        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
-        let left = |threads: &str, more: &[&str]| {
-            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
-                .args(["simulate", "s.toml", "--solver", solver, "--write", "dump,vtk", "--out", "out"])
-                .args(if solver == "dem" { &[][..] } else { &["--cells", "14"][..] })
-                .args(["--checkpoint-every", "60", "--checkpoint", "c", "--threads", threads])
-                .args(more)
-                .current_dir(directory.path())
-                .output()
-                .unwrap();
-            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
-            let read = |name: &str| std::fs::read(directory.path().join(name)).unwrap();
+        let directory = temporary_with("s.toml", scene);
+        let cells = if solver == "dem" { "" } else { "--cells 14" };
+        let simulate = format!("simulate s.toml --solver {solver} {cells} --write dump,vtk --out out");
+        let left = |threads: &str, more: &str| {
+            let checkpoints = "--checkpoint-every 60 --checkpoint c";
+            directory.ok(format!("{simulate} {checkpoints} --threads {threads} {more}"));
+            let read = |name: &str| std::fs::read(directory.join(name)).unwrap();
             [read("out/series.csv"), read("out/snapshots.dump"), read("c")]
         };
-        let expected = left("1", &[]);
-        std::fs::rename(directory.path().join("c"), directory.path().join("of-one")).unwrap();
+        let expected = left("1", "");
+        std::fs::rename(directory.join("c"), directory.join("of-one")).unwrap();
         for threads in ["2", "3"] {
-            assert!(left(threads, &[]) == expected, "{solver}, {threads} threads");
-            assert!(left(threads, &["--restart", "of-one"]) == expected, "{solver}, {threads} threads go on");
+            assert!(left(threads, "") == expected, "{solver}, {threads} threads");
+            assert!(left(threads, "--restart of-one") == expected, "{solver}, {threads} threads go on");
         }
-        assert!(left("1", &["--restart", "c"]) == expected, "{solver}, one goes on");
+        assert!(left("1", "--restart c") == expected, "{solver}, one goes on");
     }
 }
 
@@ -114,18 +108,13 @@ const SCENES: [(&str, &str); 2] = [
 /// functions, so their results do not change.
 #[test]
 fn the_library_of_the_system_has_no_part_in_the_bits() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     for (solver, scene) in SCENES.into_iter().chain([("rigid", SCENES[0].1)]) {
-        std::fs::write(directory.path().join("s.toml"), scene).unwrap();
+        directory.write("s.toml", scene);
         let series = |masked: &str| {
-            let out = std::process::Command::new(env!("CARGO_BIN_EXE_grainbench"))
-                .args(["simulate", "s.toml", "--solver", solver, "--write", "dump", "--out", "out"])
-                .current_dir(directory.path())
-                .env("GLIBC_TUNABLES", masked)
-                .output()
-                .unwrap();
-            assert!(out.status.success(), "{solver}: {}", String::from_utf8_lossy(&out.stderr));
-            let read = |name: &str| std::fs::read(directory.path().join("out").join(name)).unwrap();
+            let mut simulate = directory.program(format!("simulate s.toml --solver {solver} --write dump --out out"));
+            Answer::of(simulate.env("GLIBC_TUNABLES", masked)).ok();
+            let read = |name: &str| std::fs::read(directory.join("out").join(name)).unwrap();
             (read("series.csv"), read("snapshots.dump"))
         };
         let all = series("");

@@ -1,6 +1,6 @@
 //! Continuum fields on the command line, from our runs, from dumps of external programs, and from invalid files.
 
-use crate::common::grainbench;
+use crate::common::{Directory, temporary, temporary_with};
 use grainbench::cases::solvers;
 use grainbench::fields::element::{elements, whole_stress};
 use grainbench::fields::grid::Grid;
@@ -132,16 +132,13 @@ fn column(folder: &Path, file: &str, name: &str) -> Vec<Option<f64>> {
 
 #[test]
 fn a_strangers_dump_says_as_much_as_our_own_record() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let packing = packing();
-    std::fs::write(path.join("grains.dump"), dump(&packing)).unwrap();
-    std::fs::write(path.join("contacts.dump"), contacts(&packing)).unwrap();
-    let cells = ["--cell", "1.25,2.5,1.25", "--fewest", "1"];
-    let command = ["fields", "grains.dump", "--contacts", "contacts.dump", "--map", MAP, "--out", "told"];
-    let answer = grainbench(path, &[&command[..], &cells].concat());
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
-    let untold = grainbench(path, &[&["fields", "grains.dump", "--out", "untold"][..], &cells].concat());
+    path.write("grains.dump", dump(&packing));
+    path.write("contacts.dump", contacts(&packing));
+    let cells = "--cell 1.25,2.5,1.25 --fewest 1";
+    path.ok(format!("fields grains.dump --contacts contacts.dump --map {MAP} --out told {cells}"));
+    let untold = path.run(format!("fields grains.dump --out untold {cells}"));
     assert!(untold.out.contains("No contacts were recorded, so there is no stress."), "{}", untold.out);
 
     // Expected values: the fields from the library without wall contacts, which the dump does not contain.
@@ -174,44 +171,37 @@ fn a_strangers_dump_says_as_much_as_our_own_record() {
     // If the contacts are unknown, the stress is missing and not zero.
     same("untold", "stress_zz (Pa)", &|_| None);
     same("untold", "pressure (Pa)", &|_| None);
-    let image = std::fs::read_to_string(path.join("untold/elements/elements-000000.vti")).unwrap();
+    let image = path.read("untold/elements/elements-000000.vti");
     assert!(image.contains("Name=\"pressure\" format=\"ascii\">\nnan\n"), "an undefined pressure is written as NaN");
 }
 
 /// A dump without velocities and times gives packing fraction and stress, but no motion. Its step number serves as time.
 #[test]
 fn what_a_dump_does_not_tell_is_nowhere() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let packing = packing();
     let still = |text: String, step: &str| text.replace("vx vy vz", "p q r").replace("TIMESTEP\n7", step);
     let steps = ["TIMESTEP\n7", "TIMESTEP\n9"];
-    std::fs::write(path.join("still.dump"), steps.map(|step| still(dump(&packing), step)).concat()).unwrap();
-    std::fs::write(path.join("contacts.dump"), steps.map(|step| still(contacts(&packing), step)).concat()).unwrap();
-    let fields = ["fields", "still.dump", "--contacts", "contacts.dump", "--map", MAP, "--cell", "2.5,5,2.5"];
-    let answer = grainbench(path, &[&fields[..], &["--fewest", "1", "--flowing", "0.1", "--out", "out"]].concat());
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    path.write("still.dump", steps.map(|step| still(dump(&packing), step)).concat());
+    path.write("contacts.dump", steps.map(|step| still(contacts(&packing), step)).concat());
+    let options = "--cell 2.5,5,2.5 --fewest 1 --flowing 0.1 --out out";
+    path.ok(format!("fields still.dump --contacts contacts.dump --map {MAP} {options}"));
     let known = |name: &str| column(&path.join("out"), "elements.csv", name).iter().flatten().count();
     for name in ["speed (m/s)", "shear_rate (1/s)", "residual_velocity (m/s)", "angle_of_largest (deg)", "time (s)"] {
         assert_eq!(known(name), 0, "{name}");
     }
     assert!(known("packing_fraction (1)") == 16 && known("pressure (Pa)") == 16);
-    let table = std::fs::read_to_string(path.join("out/elements.csv")).unwrap();
+    let table = path.read("out/elements.csv");
     assert!(table.lines().skip(1).all(|row| row.contains("still")), "what has no rate of shear does not flow");
-    let clock = std::fs::read_to_string(path.join("out/elements/elements.pvd")).unwrap();
+    let clock = path.read("out/elements/elements.pvd");
     assert!(!clock.contains("NaN") && clock.contains("\"9.0\"") || clock.contains("\"9\""), "{clock}");
 }
 
 #[test]
 fn a_run_of_ours_becomes_tables_images_films_and_trails() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("scene.toml"), SCENE).unwrap();
-    let simulate = ["simulate", "scene.toml", "--solver", "dem", "--write", "parquet", "--out", "run"];
-    assert_eq!(grainbench(path, &simulate).code, Some(0));
-    let fields = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "seen"];
-    let answer = grainbench(path, &fields);
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
+    let path = temporary_with("scene.toml", SCENE);
+    path.ok("simulate scene.toml --solver dem --write parquet --out run");
+    path.ok("fields run --cell 1.25,5,1.25 --tracers 2.5,5,2.5 --out seen");
     for file in ["elements.csv", "means.csv", "tracers.csv", "summary.json", "index.html", "elements/elements.pvd"] {
         assert!(path.join("seen").join(file).is_file(), "{file}");
     }
@@ -220,8 +210,7 @@ fn a_run_of_ours_becomes_tables_images_films_and_trails() {
     let strains = column(&path.join("seen"), "tracers.csv", "hencky_strain (1)");
     assert!(strains.iter().flatten().any(|&strain| strain > 0.05) && strains[0].is_some_and(|strain| strain < 1e-12));
     // A repeated command writes the same file.
-    let again = ["fields", "run", "--cell", "1.25,5,1.25", "--tracers", "2.5,5,2.5", "--out", "again"];
-    grainbench(path, &again);
+    path.ok("fields run --cell 1.25,5,1.25 --tracers 2.5,5,2.5 --out again");
     let bytes = |folder: &str| std::fs::read(path.join(folder).join("elements.csv")).unwrap();
     assert!(bytes("seen") == bytes("again"));
 }
@@ -229,29 +218,12 @@ fn a_run_of_ours_becomes_tables_images_films_and_trails() {
 /// Grains outside the cells are counted and reported. An option gives the radius if the file lacks it.
 #[test]
 fn grains_outside_are_counted() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let packing = packing();
-    std::fs::write(path.join("bare.dump"), dump(&packing).replace("radius", "colour")).unwrap();
+    path.write("bare.dump", dump(&packing).replace("radius", "colour"));
     let high = packing.grains.iter().filter(|grain| grain.position.z >= 2.0).count();
-    let answer = grainbench(
-        path,
-        &[
-            "fields",
-            "bare.dump",
-            "--radius",
-            "0.5",
-            "--cell",
-            "2.5,2.5,1",
-            "--low",
-            "0,0,0",
-            "--high",
-            "5,5,2",
-            "--json",
-        ],
-    );
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
-    let summary: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+    let answer = path.ok("fields bare.dump --radius 0.5 --cell 2.5,2.5,1 --low 0,0,0 --high 5,5,2 --json");
+    let summary = answer.json();
     assert_eq!(summary["outside"], high);
     assert_eq!(summary["cells"], serde_json::json!([2, 2, 2]));
     assert_eq!(summary["stress"], false);

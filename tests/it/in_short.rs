@@ -1,5 +1,6 @@
 //! Snapshots that need not be stored are reduced to a summary and use no memory.
 
+use crate::common::{Directory, temporary};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::scene::scene::Scene;
@@ -89,14 +90,13 @@ fn what_is_near_and_does_not_touch_is_no_row() {
 /// A large run that crashes stores its last state, although it would otherwise have stored only a summary.
 #[test]
 fn the_last_state_of_a_large_run_that_breaks_is_kept() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let fall = "title = 'fall'\ndimension = 2\nduration_cycles = 6\ngravity = [0.0, -1.0e9]\n\
         materials.m.density = 2500.0\ncontacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6 }\n\
         [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
         lattice = { origin = [0.05, 0.05], spacing = [0.2, 0.2], count = [460, 460] }\n[output]\nevery_cycles = 3\n";
-    std::fs::write(path.join("fall.toml"), fall).unwrap();
-    let run = crate::common::grainbench(path, &["simulate", "fall.toml", "--solver", "dem", "--out", "out"]);
+    path.write("fall.toml", fall);
+    let run = path.run("simulate fall.toml --solver dem --out out");
     assert!(run.code == Some(1) && run.err.contains("with its last state"), "{:?} {}", run.code, run.err);
     let files = crate::common::files(&path.join("out"));
     assert!(files.iter().any(|file| file.ends_with("grains.parquet")), "{files:?}");
@@ -104,9 +104,8 @@ fn the_last_state_of_a_large_run_that_breaks_is_kept() {
 
 /// Returns the largest memory of a run of the program (bytes).
 #[cfg(target_os = "linux")]
-fn memory(path: &Path, arguments: &[&str]) -> f64 {
-    let arguments = [arguments, &["--threads", "1", "--out", "out"]].concat();
-    1000.0 * crate::common::peak_memory(path, &arguments) as f64
+fn memory(path: &Path, simulate: &str) -> f64 {
+    1000.0 * crate::common::peak_memory(path, &format!("{simulate} --threads 1 --out out")) as f64
 }
 
 /// In `simulate`, a grain with three contacts takes at most 700 bytes, and a material point at most 350 bytes. Both
@@ -114,8 +113,7 @@ fn memory(path: &Path, arguments: &[&str]) -> f64 {
 #[test]
 #[cfg(target_os = "linux")]
 fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let spheres = |layers: u32| {
         format!(
             "title = 'spheres'\ndimension = 3\nduration_cycles = 3\ngravity = [0.0, 0.0, -1.0]\n\
@@ -130,18 +128,18 @@ fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {
              [output]\nevery_cycles = 3\n"
         )
     };
-    std::fs::write(path.join("few.toml"), spheres(50)).unwrap();
-    std::fs::write(path.join("many.toml"), spheres(150)).unwrap();
-    let [few, many] = ["few.toml", "many.toml"].map(|scene| memory(path, &["simulate", scene, "--solver", "dem"]));
+    path.write("few.toml", spheres(50));
+    path.write("many.toml", spheres(150));
+    let [few, many] = ["few.toml", "many.toml"].map(|scene| memory(&path, &format!("simulate {scene} --solver dem")));
     let grain = (many - few) / f64::from(40 * 40 * 100);
     assert!(grain > 300.0 && grain <= 700.0, "{grain} B a grain");
     let block = "title = 'block'\ndimension = 2\nduration = 0.002\nreference_length = 1.0\n\
         materials.m = { density = 1.0, young_modulus = 1.0, poisson_ratio = 0.3 }\n\
         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\nstretch = [0.02, -0.02]\n\
         [output]\nevery = 0.002\n";
-    std::fs::write(path.join("block.toml"), block).unwrap();
+    path.write("block.toml", block);
     let [few, many] = ["160", "240"]
-        .map(|cells| memory(path, &["simulate", "block.toml", "--solver", "mpm", "--cells", cells, "--points", "3"]));
+        .map(|cells| memory(&path, &format!("simulate block.toml --solver mpm --cells {cells} --points 3")));
     let point = (many - few) / f64::from(9 * (240 * 240 - 160 * 160));
     assert!(point > 150.0 && point <= 350.0, "{point} B a point");
 }

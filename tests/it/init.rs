@@ -1,6 +1,6 @@
 //! Files of `init`, the command `judge`, and colours.
 
-use crate::common::{files, grainbench, program};
+use crate::common::{Answer, Directory, files, temporary};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
@@ -24,12 +24,11 @@ fn a_written_solver_runs_at_once() {
     for (language, compiler, source, right, wrong) in
         languages.into_iter().filter(|(_, compiler, ..)| is_here(compiler))
     {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path();
-        let made = grainbench(path, &["init", "solver", "mine", "--language", language]);
+        let path = temporary();
+        let made = path.run(format!("init solver mine --language {language}"));
         assert_eq!((made.code, made.err.as_str()), (Some(0), ""), "{compiler}");
         assert_eq!(made.out, "grainbench judge mine/SOLVER.toml incline-disc backspin\n");
-        let judge = || grainbench(path, &["judge", "mine/SOLVER.toml", CASES[0], CASES[1], "--no-controls", "--quiet"]);
+        let judge = || path.run(format!("judge mine/SOLVER.toml {} {} --no-controls --quiet", CASES[0], CASES[1]));
         let answer = judge();
         assert!(
             answer.code == Some(0) && answer.out.contains("9 pass, 0 fail"),
@@ -37,11 +36,11 @@ fn a_written_solver_runs_at_once() {
             answer.out,
             answer.err
         );
-        let text = fs::read_to_string(path.join("mine").join(source)).unwrap();
+        let text = path.join("mine").read(source);
         assert!(text.contains(right), "{language}");
         // `make` compares times of files.
         let _ = fs::remove_file(path.join("mine/one_grain"));
-        fs::write(path.join("mine").join(source), text.replace(right, wrong)).unwrap();
+        path.join("mine").write(source, text.replace(right, wrong));
         assert_eq!(judge().code, Some(1), "{language}: a wrong friction passes");
     }
 }
@@ -49,72 +48,56 @@ fn a_written_solver_runs_at_once() {
 /// A written case and a written scene run. Nothing is overwritten, and a refusal writes nothing.
 #[test]
 fn a_written_case_and_scene_run_at_once() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    let done = |arguments: &[&str]| {
-        let answer = grainbench(path, arguments);
-        assert_eq!(answer.code, Some(0), "{arguments:?}: {}{}", answer.out, answer.err);
-        answer.out
-    };
-    assert_eq!(done(&["init", "case", "mine"]), "grainbench run mine\n");
-    assert!(done(&["run", "mine", "--quiet"]).starts_with("3 pass, 0 fail; negative controls: 3 of 3"));
-    assert_eq!(done(&["init", "scene", "ball.toml"]), "grainbench simulate ball.toml --solver dem\n");
-    assert!(done(&["simulate", "ball.toml", "--solver", "dem", "--out", "ball"]).contains("A ball on a slope"));
-    let before = files(path);
-    fs::write(path.join("ball.toml"), "mine").unwrap();
+    let path = temporary();
+    let done = |arguments: &str| path.ok(arguments).out;
+    assert_eq!(done("init case mine"), "grainbench run mine\n");
+    assert!(done("run mine --quiet").starts_with("3 pass, 0 fail; negative controls: 3 of 3"));
+    assert_eq!(done("init scene ball.toml"), "grainbench simulate ball.toml --solver dem\n");
+    assert!(done("simulate ball.toml --solver dem --out ball").contains("A ball on a slope"));
+    let before = files(&path);
+    path.write("ball.toml", "mine");
     for (arguments, found) in [
-        (&["init", "case", "mine"][..], "mine: expected a new or empty directory, found `"),
-        (&["init", "solver", "mine"], "mine: expected a new or empty directory, found `"),
-        (&["init", "solver", "ball.toml"], "ball.toml: "),
-        (&["init", "scene", "ball.toml"], "ball.toml: expected the name of a new `.toml` file, found an existing file"),
-        (&["init", "scene", "ball"], "ball: expected the name of a new `.toml` file, found another name"),
-        (&["init", "solver", "other", "--language", "cobol"], "invalid value 'cobol'"),
+        ("init case mine", "mine: expected a new or empty directory, found `"),
+        ("init solver mine", "mine: expected a new or empty directory, found `"),
+        ("init solver ball.toml", "ball.toml: "),
+        ("init scene ball.toml", "ball.toml: expected the name of a new `.toml` file, found an existing file"),
+        ("init scene ball", "ball: expected the name of a new `.toml` file, found another name"),
+        ("init solver other --language cobol", "invalid value 'cobol'"),
     ] {
-        let answer = grainbench(path, arguments);
-        assert!(
-            answer.code == Some(2) && answer.err.contains(found),
-            "{arguments:?}: {:?} {}",
-            answer.code,
-            answer.err
-        );
+        path.run(arguments).refused(found);
     }
-    assert_eq!(files(path), before);
-    assert_eq!(fs::read_to_string(path.join("ball.toml")).unwrap(), "mine");
+    assert_eq!(files(&path), before);
+    assert_eq!(path.read("ball.toml"), "mine");
     fs::create_dir(path.join("empty")).unwrap();
-    assert_eq!(done(&["init", "case", "empty"]), "grainbench run empty\n", "an empty directory is not refused");
+    assert_eq!(done("init case empty"), "grainbench run empty\n", "an empty directory is not refused");
 }
 
 /// `judge NAME` gives the results of `run --solver NAME`.
 #[test]
 fn judge_and_run_give_the_same_results() {
-    let directory = tempfile::tempdir().unwrap();
-    let results = |arguments: &[&str]| -> Value {
-        let answer = grainbench(directory.path(), arguments);
-        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
-        results["verdicts"].clone()
-    };
-    let by_run = results(&["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--json"]);
+    let directory = temporary();
+    let results = |arguments: &str| -> Value { directory.run(arguments).json()["verdicts"].clone() };
+    let by_run = results(&format!("run {} --solver dem:lammps --no-controls --json", CASES[1]));
     assert!(!by_run.as_array().unwrap().is_empty());
-    assert_eq!(results(&["judge", "dem:lammps", CASES[1], "--no-controls", "--json"]), by_run);
-    assert_ne!(results(&["judge", "rigid", CASES[1], "--no-controls", "--json"]), by_run);
+    assert_eq!(results(&format!("judge dem:lammps {} --no-controls --json", CASES[1])), by_run);
+    assert_ne!(results(&format!("judge rigid {} --no-controls --json", CASES[1])), by_run);
 }
 
 /// A Python function needs `python3` and the package. A misspelled built-in solver is no function.
 #[cfg(unix)]
 #[test]
 fn a_python_function_needs_python() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let judge = |name: &str, script: Option<&str>| {
         let bin = path.join("bin");
         fs::create_dir_all(&bin).unwrap();
         if let Some(script) = script {
             use std::os::unix::fs::PermissionsExt;
-            fs::write(bin.join("python3"), format!("#!/bin/sh\n{script}\n")).unwrap();
+            bin.write("python3", format!("#!/bin/sh\n{script}\n"));
             fs::set_permissions(bin.join("python3"), fs::Permissions::from_mode(0o755)).unwrap();
         }
-        let output = program().args(["judge", name, CASES[1]]).current_dir(path).env("PATH", &bin).output().unwrap();
-        (output.status.code(), String::from_utf8(output.stderr).unwrap())
+        let answer = Answer::of(path.program(format!("judge {name} {}", CASES[1])).env("PATH", &bin));
+        (answer.code, answer.err)
     };
     let (code, message) = judge("sphere:sphere", None);
     assert_eq!(code, Some(2));
@@ -126,16 +109,15 @@ fn a_python_function_needs_python() {
     assert!(!message.contains("pip install"), "{message}");
     let (code, message) = judge("dem:lamps", Some("exit 1"));
     assert!(code == Some(2) && message.contains("did you mean `dem:lammps`?"), "{message}");
-    let answer = grainbench(path, &["judge", "sphere.py:sphere", "--plan", "plan"]);
-    assert!(answer.code == Some(2) && answer.err.contains("--plan: expected a manifest"), "{}", answer.err);
+    path.run("judge sphere.py:sphere --plan plan").refused("--plan: expected a manifest");
 }
 
 /// Without arguments, the program prints its help and ends with 2. At most 18 commands are shown.
 #[test]
 fn without_arguments_there_is_help() {
-    let directory = tempfile::tempdir().unwrap();
-    let answer = grainbench(directory.path(), &[]);
-    let help = grainbench(directory.path(), &["--help"]).out;
+    let directory = temporary();
+    let answer = directory.run("");
+    let help = directory.run("--help").out;
     assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""));
     assert!(answer.err.contains("Judge solvers with the cases:") && help.contains("Judge solvers with the cases:"));
     let commands = help
@@ -149,24 +131,19 @@ fn without_arguments_there_is_help() {
 
 #[test]
 fn colours_are_as_requested() {
-    let directory = tempfile::tempdir().unwrap();
-    let is_colored = |color: &[&str], variables: &[(&str, &str)]| {
-        let run = ["run", CASES[1], "--solver", "dem:lammps", "--no-controls"];
-        let output =
-            program().args(run).args(color).envs(variables.iter().copied()).current_dir(directory.path()).output();
-        String::from_utf8(output.unwrap().stdout).unwrap().contains("\u{1b}[32m✓\u{1b}[0m All ")
+    let directory = temporary();
+    let is_colored = |color: &str, variables: &[(&str, &str)]| {
+        let mut run = directory.program(format!("run {} --solver dem:lammps --no-controls {color}", CASES[1]));
+        Answer::of(run.envs(variables.iter().copied())).out.contains("\u{1b}[32m✓\u{1b}[0m All ")
     };
-    assert!(is_colored(&["--color", "always"], &[]));
-    assert!(is_colored(&["--color=always"], &[("NO_COLOR", "1")]), "an option is stronger than the environment");
-    for (color, variables) in
-        [(&[][..], &[][..]), (&["--color", "never"], &[]), (&["--color", "auto"], &[("NO_COLOR", "1")])]
-    {
+    assert!(is_colored("--color always", &[]));
+    assert!(is_colored("--color=always", &[("NO_COLOR", "1")]), "an option is stronger than the environment");
+    for (color, variables) in [("", &[][..]), ("--color never", &[]), ("--color auto", &[("NO_COLOR", "1")])] {
         assert!(!is_colored(color, variables), "{color:?}: a pipe has colours");
     }
-    let answer = grainbench(directory.path(), &["list", "--color", "red"]);
-    assert!(answer.code == Some(2) && answer.err.contains("invalid value 'red'"), "{}", answer.err);
-    let error = program().args(["run", "sqash", "--color", "always"]).current_dir(directory.path()).output().unwrap();
-    assert!(String::from_utf8(error.stderr).unwrap().starts_with("\u{1b}[31merror:\u{1b}[0m expected a case"));
+    directory.run("list --color red").refused("invalid value 'red'");
+    let answer = directory.run("run sqash --color always");
+    assert!(answer.err.starts_with("\u{1b}[31merror:\u{1b}[0m expected a case"));
 }
 
 /// The citation of a page is that of `CITATION.cff`.
@@ -184,17 +161,14 @@ fn the_citation_is_that_of_the_file() {
 /// A style changes the figures of a stored report and nothing else. A wrong style changes nothing.
 #[test]
 fn figures_have_the_style_of_a_file() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    let run =
-        grainbench(path, &["run", CASES[1], "--solver", "dem:lammps", "--no-controls", "--out", "out", "--quiet"]);
-    assert_eq!(run.code, Some(0), "{}", run.err);
+    let path = temporary();
+    path.ok(format!("run {} --solver dem:lammps --no-controls --out out --quiet", CASES[1]));
     let figures = || -> Vec<String> {
         let names =
             files(&path.join("out")).into_iter().filter(|name| name.ends_with(".svg") && name.starts_with("figures"));
-        names.map(|name| fs::read_to_string(path.join("out").join(name)).unwrap()).collect()
+        names.map(|name| path.join("out").read(name)).collect()
     };
-    let (plain, page) = (figures(), fs::read_to_string(path.join("out/index.html")).unwrap());
+    let (plain, page) = (figures(), path.read("out/index.html"));
     assert!(!plain.is_empty());
     for (style, message) in [
         ("width = -86", "style.toml: width: expected a width in mm, at most 2000, found -86"),
@@ -205,9 +179,8 @@ fn figures_have_the_style_of_a_file() {
         ("colours = []", "unknown field `colours`"),
         ("colors = [\"red\"]", "style.toml: colors: expected colours as `#rrggbb`, found `red`"),
     ] {
-        fs::write(path.join("style.toml"), style).unwrap();
-        let answer = grainbench(path, &["report", "out", "--style", "style.toml"]);
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{}", answer.err);
+        path.write("style.toml", style);
+        path.run("report out --style style.toml").refused(message);
         assert_eq!(figures(), plain);
     }
     fs::write(
@@ -215,7 +188,7 @@ fn figures_have_the_style_of_a_file() {
         "width = 86\nfont_size = 8\nfont = \"No Such Family, serif\"\ncolors = [\"#123456\"]",
     )
     .unwrap();
-    let answer = grainbench(path, &["report", "out", "--style", "style.toml"]);
+    let answer = path.run("report out --style style.toml");
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     for svg in figures() {
         assert!(
@@ -224,13 +197,13 @@ fn figures_have_the_style_of_a_file() {
                 && !svg.contains("#0072b2")
         );
     }
-    assert_eq!(fs::read_to_string(path.join("out/index.html")).unwrap(), page, "the page keeps its figures");
-    let formats = ["--figures", "pdf", "--figures", "png"];
-    let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
+    assert_eq!(path.read("out/index.html"), page, "the page keeps its figures");
+    let report = "report out --style style.toml --figures pdf --figures png";
+    let answer = path.run(report);
     assert_eq!(answer.code, Some(2), "the family is not installed");
     assert!(answer.err.contains("font: expected the name of an installed family"), "{}", answer.err);
-    fs::write(path.join("style.toml"), "width = 86").unwrap();
-    let answer = grainbench(path, &[&["report", "out", "--style", "style.toml"], &formats[..]].concat());
+    path.write("style.toml", "width = 86");
+    let answer = path.run(report);
     assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
     for svg in files(&path.join("out")).into_iter().filter(|name| name.starts_with("figures") && name.ends_with(".svg"))
     {
@@ -239,6 +212,6 @@ fn figures_have_the_style_of_a_file() {
         // 86 mm with 300 pixels in an inch.
         assert_eq!(read("png")[16..20], 1016_u32.to_be_bytes());
     }
-    let answer = grainbench(path, &["report", ".", "--style", "style.toml"]);
+    let answer = path.run("report . --style style.toml");
     assert_eq!(answer.code, Some(2), "a directory without a report");
 }

@@ -2,7 +2,7 @@
 //! marked as mixed. The next run removes temporary files beside it. The default is ten kills, and `GRAINBENCH_LONG`
 //! gives 120 kills. The unit tests of `store/src/staged.rs` interrupt each disk operation of a commit in turn.
 
-use crate::common::{files, grainbench};
+use crate::common::{Directory, files, temporary};
 use grainbench::store::refuse_mixed;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
@@ -21,14 +21,14 @@ const SCENE: &str = "title = 't'\ndimension = 2\nduration_cycles = 4000\n[materi
 
 /// Two runs that write different files. Each run is given by its command line.
 struct Pair {
-    runs: [&'static [&'static str]; 2],
+    runs: [&'static str; 2],
     /// Function that identifies the run that wrote a file, whatever times the file contains.
     kind: fn(&Path, &str) -> String,
 }
 
 /// Returns the length and a hash of a file of a simulation, without its run time.
 fn simulated(directory: &Path, name: &str) -> String {
-    let text = fs::read_to_string(directory.join(name)).unwrap();
+    let text = directory.read(name);
     let mut parts = text.split("\"wall_seconds\":");
     let first = parts.next().unwrap_or_default().to_owned();
     let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
@@ -38,7 +38,7 @@ fn simulated(directory: &Path, name: &str) -> String {
 
 /// Returns the names of the cases that a file of a report contains.
 fn reported(directory: &Path, name: &str) -> String {
-    let text = fs::read_to_string(directory.join(name)).unwrap();
+    let text = directory.read(name);
     let case_name = |case: &str| text.contains(case).then(|| case.to_owned());
     let named =
         ["rolling-resistance", "oblique-impact"].into_iter().filter_map(case_name).collect::<Vec<_>>().join(" ");
@@ -47,16 +47,10 @@ fn reported(directory: &Path, name: &str) -> String {
 }
 
 const SIMULATE: Pair = Pair {
-    runs: [
-        &["simulate", "s.toml", "--solver", "dem", "--out", "out"],
-        &["simulate", "s.toml", "--solver", "dem", "--variant", "shorter", "--out", "out"],
-    ],
+    runs: ["simulate s.toml --solver dem --out out", "simulate s.toml --solver dem --variant shorter --out out"],
     kind: simulated,
 };
-const RUN: Pair = Pair {
-    runs: [&["run", "rolling-resistance", "--out", "out"], &["run", "oblique-impact", "--out", "out"]],
-    kind: reported,
-};
+const RUN: Pair = Pair { runs: ["run rolling-resistance --out out", "run oblique-impact --out out"], kind: reported };
 
 /// Returns the files of a directory with the runs that wrote them. Hidden files and the manifest are left out.
 fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<String, String> {
@@ -69,15 +63,14 @@ fn standing(directory: &Path, kind: fn(&Path, &str) -> String) -> BTreeMap<Strin
 
 /// Starts runs in the same directory one after another, and kills each at a random time.
 fn kill(pair: &Pair, times: usize, seed: u64) {
-    let directory = tempfile::tempdir().unwrap();
-    let (path, out) = (directory.path(), directory.path().join("out"));
-    fs::write(path.join("s.toml"), SCENE).unwrap();
+    let directory = temporary();
+    let (path, out) = (&directory, directory.join("out"));
+    path.write("s.toml", SCENE);
     let (mut whole, mut longest) = (Vec::new(), Duration::ZERO);
     for arguments in pair.runs {
         let begun = Instant::now();
-        let answer = grainbench(path, arguments);
+        path.ok(arguments);
         longest = longest.max(begun.elapsed());
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
         whole.push(standing(&out, pair.kind));
     }
     assert_ne!(whole[0], whole[1], "the runs cannot be distinguished");
@@ -95,14 +88,8 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
         }
         let before = standing(&out, pair.kind);
         let was_mixed = refuse_mixed(&out).is_err();
-        let mut child = crate::common::program()
-            .args(pair.runs[number % 2])
-            .current_dir(path)
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut command = path.program(pair.runs[number % 2]);
+        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         // In every second run, the time is near the end, when files are moved to the directory.
         let part = (0.0..1.0_f64).new_tree(&mut lot).unwrap().current();
         let part = if number % 2 == 0 { part } else { 1.0 - 0.3 * part };
@@ -125,11 +112,11 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
         assert!(number < 20 * times, "too many end before they are killed");
     }
     let [ended, as_before, new, mixed] = seen;
-    let command = pair.runs[0][0];
+    let command = pair.runs[0];
     eprintln!(
         "{killed} kills of {command}, of {number} runs: {ended} had ended, {as_before} as before, {new} new, {mixed} mixed"
     );
-    assert_eq!(grainbench(path, pair.runs[0]).code, Some(0));
+    path.ok(pair.runs[0]);
     assert_eq!(standing(&out, pair.kind), whole[0]);
     assert!(refuse_mixed(&out).is_ok());
     let hidden = |path: &Path| -> Vec<String> {

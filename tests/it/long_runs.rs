@@ -1,5 +1,6 @@
 //! Warning before the first step of a run that takes hours.
 
+use crate::common::temporary_with;
 use std::io::{BufRead, BufReader};
 use std::process::{Command, Stdio};
 
@@ -16,11 +17,10 @@ fn scene(young_modulus: f64, duration: f64) -> String {
 
 /// Starts a run, ends it after its first line on the standard error, and returns this line.
 fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("disc.toml"), scene(young_modulus, duration)).unwrap();
+    let directory = temporary_with("disc.toml", scene(young_modulus, duration));
     let mut run = Command::new(env!("CARGO_BIN_EXE_grainbench"))
         .args(["simulate", "disc.toml", "--solver", "mpm", "--cells", cells, "--out", "out"])
-        .current_dir(directory.path())
+        .current_dir(&directory)
         .stdout(Stdio::null())
         .stderr(Stdio::piped())
         .spawn()

@@ -1,7 +1,7 @@
 //! Walls of triangles. They give the same results as other walls with the same surface, also with motion and with
 //! inserted and removed grains. Invalid files are rejected.
 
-use crate::common::bits;
+use crate::common::{Directory, bits, temporary, temporary_with};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::scene::scene::Scene;
@@ -69,9 +69,8 @@ fn scene_in(directory: &Path, text: &str) -> Result<Scene, String> {
 }
 
 fn scene(triangles: &[Triangle], text: &str) -> Scene {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("wall.stl"), stl(triangles)).unwrap();
-    scene_in(directory.path(), text).unwrap()
+    let directory = temporary_with("wall.stl", stl(triangles));
+    scene_in(&directory, text).unwrap()
 }
 
 fn run(scene: &Scene, observer: &mut dyn Observer) -> Record {
@@ -221,7 +220,7 @@ fn valid_files_are_read() {
     let mut nearly = cube.clone();
     nearly[0][0][0] += 1e-7;
     let large: Vec<Triangle> = cube.iter().map(|triangle| triangle.map(|corner| corner.map(|x| 1e3 * x))).collect();
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     for (bytes, more) in [
         (stl(&large).into_bytes(), "unit = 'mm'"),
         (stl(&nearly).into_bytes(), "unit = 'm', merge = 1e-6"),
@@ -229,8 +228,8 @@ fn valid_files_are_read() {
         (stl(&turned).into_bytes(), "unit = 'm', inward = true"),
         (stl(&cube[2..]).into_bytes(), "unit = 'm', open = true"),
     ] {
-        std::fs::write(directory.path().join("wall.stl"), bytes).unwrap();
+        directory.write("wall.stl", bytes);
         let text = format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
-        scene_in(directory.path(), &text).unwrap();
+        scene_in(&directory, &text).unwrap();
     }
 }

@@ -1,6 +1,6 @@
 //! External solvers with manifests: one that moves a grain correctly, and several with wrong output.
 
-use crate::common::{Answer, grainbench};
+use crate::common::{Answer, Directory, Folder, temporary};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::fs;
@@ -12,8 +12,8 @@ const HEAD: &str = "step,id,x,y,z,vx,vy,vz,omegax,omegay,omegaz";
 const CASE: &str = "incline-disc/30deg-mu.5";
 
 fn write(folder: &Path, manifest: &str, script: &str) {
-    fs::write(folder.join("SOLVER.toml"), manifest).unwrap();
-    fs::write(folder.join("liar.sh"), script).unwrap();
+    folder.write("SOLVER.toml", manifest);
+    folder.write("liar.sh", script);
 }
 
 /// Returns the command lines of all processes on this machine.
@@ -22,9 +22,9 @@ fn running() -> String {
     running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
 }
 
-fn judged(folder: &Path, further: &[&str]) -> (Answer, Value) {
-    let answer = grainbench(folder, &[&["run", CASE, "--solver", "SOLVER.toml", "--json"], further].concat());
-    let results = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+fn judged(folder: &Path, further: &str) -> (Answer, Value) {
+    let answer = folder.run(format!("run {CASE} --solver SOLVER.toml --json {further}"));
+    let results = answer.json();
     (answer, results)
 }
 
@@ -71,9 +71,9 @@ fn a_program_that_lies_is_found_out() {
         ("cannot", "echo 'no friction here'; exit 64".to_owned(), "unsupported", "no friction here"),
     ];
     for (what, script, verdict, message) in lies {
-        let directory = tempfile::tempdir().unwrap();
-        write(directory.path(), MANIFEST, &script);
-        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        let directory = temporary();
+        write(&directory, MANIFEST, &script);
+        let (answer, results) = judged(&directory, "--no-controls");
         assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
         let rows = results["verdicts"].as_array().unwrap();
         assert!(!rows.is_empty(), "{what}");
@@ -89,13 +89,13 @@ fn a_program_that_lies_is_found_out() {
 /// A folder that is a symbolic link is rejected, because its files may belong to another run.
 #[test]
 fn grains_in_a_linked_folder_are_refused() {
-    let directory = tempfile::tempdir().unwrap();
+    let directory = temporary();
     let script = format!(
         "mkdir elsewhere; printf '{HEAD}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > elsewhere/grains.csv; \
          ln -s \"$PWD/elsewhere\" \"$2/sub\""
     );
-    write(directory.path(), &MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\""), &script);
-    let (answer, results) = judged(directory.path(), &["--no-controls"]);
+    write(&directory, &MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\""), &script);
+    let (answer, results) = judged(&directory, "--no-controls");
     assert_eq!(answer.code, Some(1), "{}", answer.err);
     for row in results["verdicts"].as_array().unwrap() {
         let detail = row["detail"].as_str().unwrap_or_default();
@@ -124,9 +124,9 @@ fn a_worker_that_lies_is_found_out() {
         ("cannot", "echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
     ];
     for (what, script, verdict, message) in lies {
-        let directory = tempfile::tempdir().unwrap();
-        write(directory.path(), &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
-        let (answer, results) = judged(directory.path(), &["--no-controls"]);
+        let directory = temporary();
+        write(&directory, &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
+        let (answer, results) = judged(&directory, "--no-controls");
         assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
         for row in results["verdicts"].as_array().unwrap() {
             assert_eq!(row["verdict"], verdict, "{what}: {row}");
@@ -139,11 +139,10 @@ fn a_worker_that_lies_is_found_out() {
 /// If the manifest does not declare an effect, scenes with this effect are not run. The results of a missing program are amber.
 #[test]
 fn what_is_not_declared_is_not_asked_for() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let reason = |manifest: &str| {
-        write(path, manifest, "exit 0");
-        let (answer, results) = judged(path, &[]);
+        write(&path, manifest, "exit 0");
+        let (answer, results) = judged(&path, "");
         assert_eq!(answer.code, Some(1), "{}", answer.err);
         assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be expressed has no control");
         let row = &results["verdicts"][0];
@@ -166,32 +165,27 @@ fn what_is_not_declared_is_not_asked_for() {
 /// External solvers get a resolved scene. It has the same content as JSON and as TOML.
 #[test]
 fn a_scene_is_printed_as_programs_are_given_it() {
-    let directory = tempfile::tempdir().unwrap();
-    let print = |further: &[&str]| {
-        let answer = grainbench(directory.path(), &[&["scene", "incline-disc/60deg-mu.9"], further].concat());
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
-        answer.out
-    };
-    let json: Value = serde_json::from_str(&print(&[])).unwrap();
-    let toml: toml::Table = print(&["--format", "toml"]).parse().unwrap();
+    let directory = temporary();
+    let print = |further: &str| directory.ok(format!("scene incline-disc/60deg-mu.9 {further}"));
+    let json = print("").json();
+    let toml: toml::Table = print("--format toml").out.parse().unwrap();
     assert_eq!(json, serde_json::to_value(toml).unwrap());
     assert!(
         json["format"] == 1 && json["steps"]["count"].as_u64() > Some(0) && json["columns"][0] == "grain.x",
         "{json}"
     );
     assert_eq!(json["laws"][0]["friction"], 0.9);
-    let other: Value = serde_json::from_str(&print(&["--set", "contacts.plane.friction=0.25"])).unwrap();
+    let other = print("--set contacts.plane.friction=0.25").json();
     assert_eq!(other["laws"][0]["friction"], 0.25);
     // The printed scene has every key that the schema of resolved scenes requires.
-    let schema: Value =
-        serde_json::from_str(&grainbench(directory.path(), &["scene", "--schema=resolved"]).out).unwrap();
+    let schema = directory.ok("scene --schema=resolved").json();
     let required = schema["required"].as_array().unwrap();
     assert!(required.len() > 5 && required.iter().all(|key| json.get(key.as_str().unwrap()).is_some()), "{schema}");
 }
 
 /// Copies the files of an example to a separate folder, optionally with a defect in one file.
-fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::TempDir {
-    let directory = tempfile::tempdir().unwrap();
+fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> Folder {
+    let directory = temporary();
     let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
     for entry in fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
         let name = entry.file_name().unwrap();
@@ -203,7 +197,7 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> tempfile::T
         }
         // An executable in the source folder is skipped, because it does not belong to the copied sources.
         if name != "one_grain" {
-            fs::write(directory.path().join(name), text).unwrap();
+            directory.write(name, text);
         }
     }
     directory
@@ -217,15 +211,13 @@ fn is_here(program: &str) -> bool {
 }
 
 /// Returns the exit code of a run of an example, and the number of passed results.
-fn passes(folder: &Path, cases: &[&str], further: &[&str]) -> (Option<i32>, usize) {
-    let run = [&["run"], cases, &["--solver", "SOLVER.toml", "--json"], further].concat();
-    let answer = grainbench(folder, &run);
-    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
-    let rows = results["verdicts"].as_array().unwrap();
+fn passes(folder: &Path, cases: &str, further: &str) -> (Option<i32>, usize) {
+    let answer = folder.run(format!("run {cases} --solver SOLVER.toml --json {further}"));
+    let rows = answer.rows();
     (answer.code, rows.iter().filter(|row| row["verdict"] == "pass").count())
 }
 
-const EASY: [&str; 4] = ["incline-disc/30deg-mu.5", "incline-sphere/45deg-mu.495", "backspin/sphere", "oblique-impact"];
+const EASY: &str = "incline-disc/30deg-mu.5 incline-sphere/45deg-mu.495 backspin/sphere oblique-impact";
 
 /// A solver for one grain in forty lines of Python passes its claims. A defect in any line of its physics makes claims fail.
 #[test]
@@ -234,7 +226,7 @@ fn a_grain_in_python_is_judged_line_by_line() {
         return;
     }
     let whole = example("python", "", None);
-    let (code, passed) = passes(whole.path(), &EASY, &[]);
+    let (code, passed) = passes(&whole, EASY, "");
     assert!(code == Some(0) && passed > 5, "{passed} pass");
     let spoiled = [
         ("mass * g for", "0.99 * mass * g for"),
@@ -262,7 +254,7 @@ fn a_grain_in_python_is_judged_line_by_line() {
     ];
     spoiled.into_par_iter().for_each(|(right, wrong)| {
         let folder = example("python", "one_grain.py", Some((right, wrong)));
-        let mut codes = EASY.iter().map(|case| passes(folder.path(), &[case], &["--no-controls"]).0);
+        let mut codes = EASY.split(' ').map(|case| passes(&folder, case, "--no-controls").0);
         assert!(codes.any(|code| code == Some(1)), "{wrong}: every row passes");
     });
 }
@@ -274,11 +266,11 @@ fn a_grain_in_cpp_is_built_and_judged() {
         return;
     }
     let whole = example("cpp", "", None);
-    assert!(matches!(passes(whole.path(), &EASY, &[]), (Some(0), 6..)));
+    assert!(matches!(passes(&whole, EASY, ""), (Some(0), 6..)));
     let spoiled = example("cpp", "one_grain.cpp", Some(("dot(x + -1.0", "0.99 * dot(x + -1.0")));
-    assert_eq!(passes(spoiled.path(), &EASY, &["--no-controls"]).0, Some(1));
+    assert_eq!(passes(&spoiled, EASY, "--no-controls").0, Some(1));
     let broken = example("cpp", "one_grain.cpp", Some(("int main", "int mian")));
-    let answer = grainbench(broken.path(), &["run", "backspin", "--solver", "SOLVER.toml", "--json"]);
+    let answer = broken.run("run backspin --solver SOLVER.toml --json");
     assert!(answer.code == Some(1) && answer.out.contains("`make --silent` ended with 2"), "{}", answer.out);
 }
 
@@ -289,9 +281,9 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     if !is_here("python3") {
         return;
     }
-    let bodies = ["column", "vibrating-bar"];
+    let bodies = "column vibrating-bar";
     let whole = example("continuum", "", None);
-    assert_eq!(passes(whole.path(), &bodies, &[]), (Some(0), 7), "only its energy is not reported");
+    assert_eq!(passes(&whole, bodies, ""), (Some(0), 7), "only its energy is not reported");
     let spoiled = [
         ("+ m * scene[\"gravity\"]", "+ 0.95 * m * scene[\"gravity\"]"),
         ("4 / 3 * material", "1 / 3 * material"),
@@ -306,14 +298,14 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
     ];
     for (right, wrong) in spoiled {
         let folder = example("continuum", "line.py", Some((right, wrong)));
-        assert_eq!(passes(folder.path(), &bodies, &["--no-controls"]).0, Some(1), "{wrong}: every row passes");
+        assert_eq!(passes(&folder, bodies, "--no-controls").0, Some(1), "{wrong}: every row passes");
     }
     let reason = |manifest: &[(&str, &str)], case: &str| {
-        let text = fs::read_to_string(whole.path().join("SOLVER.toml")).unwrap();
+        let text = whole.read("SOLVER.toml");
         let text = manifest.iter().fold(text, |text, (right, wrong)| text.replace(right, wrong));
-        fs::write(whole.path().join("other.toml"), text).unwrap();
-        let answer = grainbench(whole.path(), &["run", case, "--solver", "other.toml", "--json", "--no-controls"]);
-        let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}", answer.err));
+        whole.write("other.toml", text);
+        let answer = whole.run(format!("run {case} --solver other.toml --json --no-controls"));
+        let results = answer.json();
         let row = &results["verdicts"][0];
         assert_eq!(row["verdict"], "unsupported", "{row}");
         row["detail"].as_str().unwrap_or_default().to_owned()
@@ -331,23 +323,21 @@ fn a_program_is_held_to_what_is_kept_of_it() {
         return;
     }
     let folder = example("continuum", "line.py", Some(("/ h - 0.5", "/ h")));
-    let judge = |further: &[&str]| {
-        grainbench(folder.path(), &[&["run", "--solver", "SOLVER.toml", "--out", "out"], further].concat())
-    };
-    let before = judge(&["--expect-stored"]);
-    assert!(before.code == Some(2) && before.err.contains("(`--update-stored` writes the file)"), "{}", before.err);
-    let part = judge(&["--update-stored", "column"]);
-    assert!(part.code == Some(2) && !folder.path().join("judged.json").exists(), "{}", part.err);
-    assert_eq!(judge(&["--update-stored"]).code, Some(1), "stresses of other places are red");
-    let kept: Value = serde_json::from_slice(&fs::read(folder.path().join("judged.json")).unwrap()).unwrap();
+    let judge = |further: &str| folder.run(format!("run --solver SOLVER.toml --out out {further}"));
+    let before = judge("--expect-stored");
+    before.refused("(`--update-stored` writes the file)");
+    let part = judge("--update-stored column");
+    assert!(part.code == Some(2) && !folder.join("judged.json").exists(), "{}", part.err);
+    assert_eq!(judge("--update-stored").code, Some(1), "stresses of other places are red");
+    let kept: Value = serde_json::from_slice(&fs::read(folder.join("judged.json")).unwrap()).unwrap();
     assert!(kept["rows"].as_array().unwrap().iter().any(|row| row["verdict"] == "fail"), "{kept}");
-    assert_eq!(judge(&["--expect-stored", "column", "vibrating-bar"]).code, Some(0), "it is red as it was");
-    let script = fs::read_to_string(folder.path().join("line.py")).unwrap();
-    fs::write(folder.path().join("line.py"), script.replace("x + dt * w", "x + 0.98 * dt * w")).unwrap();
-    let other = judge(&["--expect-stored", "column", "vibrating-bar"]);
+    assert_eq!(judge("--expect-stored column vibrating-bar").code, Some(0), "it is red as it was");
+    let script = folder.read("line.py");
+    folder.write("line.py", script.replace("x + dt * w", "x + 0.98 * dt * w"));
+    let other = judge("--expect-stored column vibrating-bar");
     assert!(other.code == Some(1) && other.err.contains("fail, its control red; kept: pass"), "{}", other.err);
-    fs::write(folder.path().join("judged.json"), "{").unwrap();
-    assert_eq!(judge(&["--expect-stored", "column"]).code, Some(2));
+    folder.write("judged.json", "{");
+    assert_eq!(judge("--expect-stored column").code, Some(2));
 }
 
 /// Studies include an external solver in the same way as our solvers. Results of an older version of it are not used.
@@ -357,12 +347,8 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
         return;
     }
     let folder = example("cpp", "", None);
-    let study = |words: &[&str], out: &str| {
-        let further = ["--solver", "SOLVER.toml", "--json", "--out", out];
-        let answer = grainbench(folder.path(), &[words, &further].concat());
-        serde_json::from_str::<Value>(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err))
-    };
-    let cost = study(&["cost", "incline-disc/60deg-mu.9"], "cost");
+    let study = |words: &str, out: &str| folder.run(format!("{words} --solver SOLVER.toml --json --out {out}")).json();
+    let cost = study("cost incline-disc/60deg-mu.9", "cost");
     let points: Vec<&Value> = cost["points"].as_array().unwrap().iter().collect();
     assert!(points.len() >= 12 && points.iter().all(|point| point["solver"] == "one-grain-cpp"), "{points:#?}");
     let closest = points.iter().filter_map(|point| point["error"].as_f64()).fold(f64::INFINITY, f64::min);
@@ -373,25 +359,24 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
         !floors.is_empty() && floors.iter().all(|floor| floor.starts_with("error that smaller steps")),
         "{floors:?}"
     );
-    let page = fs::read_to_string(folder.path().join("cost/index.html")).unwrap();
+    let page = folder.read("cost/index.html");
     assert!(page.contains("<th scope=\"col\">one-grain-cpp</th>"), "it has its column beside ours");
-    let stability = study(&["stability", "disc-on-a-wall"], "stability");
+    let stability = study("stability disc-on-a-wall", "stability");
     for limit in stability["stability"]["limits"].as_array().unwrap() {
         assert!(limit["error"].as_f64().is_some_and(|error| error.abs() < 5e-3), "{limit}");
     }
-    let again =
-        grainbench(folder.path(), &["cost", "incline-disc/60deg-mu.9", "--solver", "SOLVER.toml", "--out", "cost"]);
+    let again = folder.run("cost incline-disc/60deg-mu.9 --solver SOLVER.toml --out cost");
     assert!(again.out.contains("\n0 of "), "{}", again.out);
 }
 
 /// A study is red if all runs of a solver end with exit code 0 but without output.
 #[test]
 fn a_study_of_failed_runs_alone_is_red() {
-    let folder = tempfile::tempdir().unwrap();
-    write(folder.path(), MANIFEST, "exit 0");
-    for cases in [&["free-pair"][..], &["mass-ratio"], &["free-pair", "mass-ratio"]] {
-        let answer = grainbench(folder.path(), &[&["stability"], cases, &["--solver", "SOLVER.toml"]].concat());
-        assert_eq!(answer.code, Some(1), "{cases:?}: {}{}", answer.out, answer.err);
+    let folder = temporary();
+    write(&folder, MANIFEST, "exit 0");
+    for cases in ["free-pair", "mass-ratio", "free-pair mass-ratio"] {
+        let answer = folder.run(format!("stability {cases} --solver SOLVER.toml"));
+        assert_eq!(answer.code, Some(1), "{cases}: {}{}", answer.out, answer.err);
     }
 }
 
@@ -410,11 +395,11 @@ fn energy_gained_in_mid_run_is_red() {
             for g in scene['grains']:\n        \
                 v = [(3 if n / 4 < k < n / 2 else 1) * a for a in g['velocity']]\n        \
                 print(k, g['id'], *g['position'], *v, *g['spin'], sep=',', file=table)\n";
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temporary();
     let manifest = MANIFEST.replace("[\"sh\", \"liar.sh\"", "[\"python3\", \"liar.sh\"");
-    write(folder.path(), &manifest.replace("seconds = 2", "seconds = 20"), script);
-    let answer = grainbench(folder.path(), &["conform", "SOLVER.toml", "--json"]);
-    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    write(&folder, &manifest.replace("seconds = 2", "seconds = 20"), script);
+    let answer = folder.run("conform SOLVER.toml --json");
+    let results = answer.json();
     let rows = results["verdicts"].as_array().unwrap().iter();
     let gains: Vec<&Value> =
         rows.filter(|row| row["quantity"].as_str().unwrap().starts_with("energy gained")).collect();
@@ -433,9 +418,9 @@ fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     let read = "scene = json.load(open(sys.argv[1]))\n";
     let picky = format!("{read}if scene[\"laws\"][0][\"friction\"] != 0.3: sys.exit(64)\n");
     let folder = example("python", "one_grain.py", Some((read, &picky)));
-    assert_eq!(passes(folder.path(), &["incline-disc/60deg-mu.3"], &["--no-controls"]).1, 3);
-    let answer = grainbench(folder.path(), &["run", "incline-disc/60deg-mu.3", "--solver", "SOLVER.toml", "--json"]);
-    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    assert_eq!(passes(&folder, "incline-disc/60deg-mu.3", "--no-controls").1, 3);
+    let answer = folder.run("run incline-disc/60deg-mu.3 --solver SOLVER.toml --json");
+    let results = answer.json();
     for row in results["verdicts"].as_array().unwrap() {
         let says = row["detail"].as_str().unwrap_or_default();
         assert!(
@@ -461,21 +446,19 @@ fn an_interrupt_ends_a_silent_program() {
     for (number, (manifest, signal)) in
         [(&silent, "-TERM"), (&worker, "-INT"), (&worker, "-TERM")].into_iter().enumerate()
     {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temporary();
         let mark = format!("314{number}5.9");
-        write(folder.path(), manifest, &format!("touch {}/begun; sleep {mark}", folder.path().display()));
-        let mut program = crate::common::program();
-        program.args(["run", CASE, "--solver", "SOLVER.toml", "--out", "out", "-q"]).current_dir(folder.path());
+        write(&folder, manifest, &format!("touch {}/begun; sleep {mark}", folder.display()));
+        let mut program = folder.program(format!("run {CASE} --solver SOLVER.toml --out out -q"));
         let mut child =
             program.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).spawn().unwrap();
-        while !folder.path().join("begun").exists() {
+        while !folder.join("begun").exists() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
         assert_eq!(child.wait().unwrap().code(), Some(1));
         assert!(!running().contains(&mark), "it goes on");
-        let results: Value =
-            serde_json::from_str(&fs::read_to_string(folder.path().join("out/results.json")).unwrap()).unwrap();
+        let results = folder.json("out/results.json");
         assert_eq!(results["verdicts"].as_array().unwrap().len(), 0, "a run that was ended is no result");
         assert!(results["provenance"]["options"].to_string().contains("interrupted: "));
     }

@@ -1,29 +1,29 @@
 //! A case of the user: a scene and claims in files, without Rust code.
 
-use crate::common::{Answer, grainbench};
+use crate::common::{Answer, Directory, Folder, temporary};
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
 
 /// Copies the example case to a separate folder, with replacements in one of its files.
-fn case(file: &str, replaced: &[(&str, &str)]) -> tempfile::TempDir {
-    let directory = tempfile::tempdir().unwrap();
+fn case(file: &str, replaced: &[(&str, &str)]) -> Folder {
+    let directory = temporary();
     let example = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples/case");
-    fs::create_dir(directory.path().join("slope")).unwrap();
+    fs::create_dir(directory.join("slope")).unwrap();
     for name in ["scene.toml", "claims.toml"] {
-        let mut text = fs::read_to_string(example.join(name)).unwrap();
+        let mut text = example.read(name);
         for (right, wrong) in replaced.iter().filter(|_| name == file) {
             assert!(text.contains(right), "{right}");
             text = text.replacen(right, wrong, 1);
         }
-        fs::write(directory.path().join("slope").join(name), text).unwrap();
+        directory.join("slope").write(name, text);
     }
     directory
 }
 
 fn run(folder: &Path) -> (Answer, Vec<Value>, Vec<Value>) {
-    let answer = grainbench(folder, &["run", "slope", "--json"]);
-    let results: Value = serde_json::from_str(&answer.out).unwrap_or_else(|_| panic!("{}{}", answer.out, answer.err));
+    let answer = folder.run("run slope --json");
+    let results = answer.json();
     let list = |name: &str| results[name].as_array().unwrap().clone();
     let (verdicts, controls) = (list("verdicts"), list("controls"));
     (answer, verdicts, controls)
@@ -32,7 +32,7 @@ fn run(folder: &Path) -> (Answer, Vec<Value>, Vec<Value>) {
 #[test]
 fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     let whole = case("", &[]);
-    let (answer, verdicts, controls) = run(whole.path());
+    let (answer, verdicts, controls) = run(&whole);
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(verdicts.len() == 3 && verdicts.iter().all(|row| row["verdict"] == "pass"), "{verdicts:#?}");
     assert!(controls.len() == 3 && controls.iter().all(|control| control["turned_red"] == true), "{controls:#?}");
@@ -44,7 +44,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
     let found = verdicts[1]["expected"].as_f64().unwrap() / spin;
     assert!((0.199..0.201).contains(&found), "{found}");
-    let page = fs::read_to_string(whole.path().join("grainbench-out/index.html")).unwrap();
+    let page = whole.read("grainbench-out/index.html");
     assert!(page.contains("A ball on a slope") && page.contains("velocity, rolling"));
 }
 
@@ -65,7 +65,7 @@ fn a_list_of_solvers_gives_a_claim_for_each() {
 fn what_is_wrong_is_red() {
     let red = |file: &str, replaced: &[(&str, &str)], verdicts_red: usize, controls_green: usize| {
         let folder = case(file, replaced);
-        let (answer, verdicts, controls) = run(folder.path());
+        let (answer, verdicts, controls) = run(&folder);
         assert_eq!(answer.code, Some(1), "{replaced:?}");
         let count_of = |rows: &[Value], key: &str, is: Value| rows.iter().filter(|row| row[key] == is).count();
         assert_eq!(count_of(&verdicts, "verdict", "fail".into()), verdicts_red, "{replaced:?}: {verdicts:#?}");
@@ -89,19 +89,18 @@ fn a_tolerance_as_large_as_the_scale_is_amber() {
         ("'20*duration/0.2'", "no-reference", 1),
     ] {
         let folder = case("claims.toml", &[("allowed = 1e-6", &format!("allowed = {allowed}"))]);
-        let run = |further: &[&str]| {
-            let words = [&["run", "slope", "--no-controls", "--json"], further].concat();
-            let answer = grainbench(folder.path(), &words);
-            let results: Value = serde_json::from_str(&answer.out).unwrap();
+        let run = |further: &str| {
+            let answer = folder.run(format!("run slope --no-controls --json {further}"));
+            let results = answer.json();
             (answer.code, results["verdicts"][2].clone())
         };
-        let (code, row) = run(&[]);
+        let (code, row) = run("");
         assert!(code == Some(0) && row["verdict"] == verdict, "{allowed}: {row:#?}");
         let detail = row["detail"].as_str().unwrap_or_default();
         assert_eq!(detail.contains("% of the scale, 100 % or more"), verdict != "pass", "{detail}");
-        assert_eq!(run(&["--strict"]).0, Some(strict), "{allowed}");
+        assert_eq!(run("--strict").0, Some(strict), "{allowed}");
         // Writing the report again gives the exit code of the run.
-        assert_eq!(grainbench(folder.path(), &["report", "grainbench-out"]).code, Some(strict), "{allowed}");
+        assert_eq!(folder.run("report grainbench-out").code, Some(strict), "{allowed}");
     }
 }
 
@@ -128,9 +127,9 @@ fn a_claim_may_be_a_course_a_moment_or_a_bound() {
         (format!("at_least = {}\nderived = \"v = at\"", 0.199 * acceleration), "analytic"),
     ] {
         let folder = case("", &[]);
-        fs::write(folder.path().join("slope/claims.toml"), claims(&expected)).unwrap();
-        fs::write(folder.path().join("slope/v.csv"), format!("t (s),v (m/s)\n{course}")).unwrap();
-        let (answer, verdicts, controls) = run(folder.path());
+        folder.write("slope/claims.toml", claims(&expected));
+        folder.write("slope/v.csv", format!("t (s),v (m/s)\n{course}"));
+        let (answer, verdicts, controls) = run(&folder);
         assert_eq!(answer.code, Some(0), "{expected}: {}{}", answer.err, answer.out);
         assert!(verdicts[0]["verdict"] == "pass" && verdicts[0]["evidence"] == evidence, "{expected}: {verdicts:#?}");
         assert_eq!(controls[0]["turned_red"], true, "{expected}: {controls:#?}");
@@ -153,8 +152,8 @@ fn a_constant_at_a_time_between_samples_has_no_sample() {
              equals = {equals}\nderived = \"v = at\"\nallowed = 0.002\nbecause = \"the springs yield\"\n\
              control = {{ name = \"half the weight\", set = {{ gravity.magnitude = 4.9 }} }}\n"
         );
-        fs::write(folder.path().join("slope/claims.toml"), claims).unwrap();
-        let (_, verdicts, _) = run(folder.path());
+        folder.write("slope/claims.toml", claims);
+        let (_, verdicts, _) = run(&folder);
         let row = &verdicts[0];
         assert_eq!(row["verdict"], verdict, "{at} {equals}: {row:#?}");
         let has_no_sample = row["detail"].as_str().unwrap_or_default().contains("has no sample within");
@@ -172,9 +171,9 @@ fn a_missing_column_is_found_before_the_run() {
             "claims.toml",
             &[("value = \"ball.vx\"", &wrong), ("resolution = { time_step_fraction = 0.02 }", resolution)],
         );
-        let answer = grainbench(folder.path(), &["run", "slope"]);
+        let answer = folder.run("run slope");
         let message = "value: expected one of the columns of the record, ball.x";
-        assert!(answer.code == Some(2) && answer.err.contains(message), "{solver}: {}{}", answer.out, answer.err);
+        answer.refused(message);
     }
 }
 
@@ -182,9 +181,9 @@ fn a_missing_column_is_found_before_the_run() {
 #[test]
 fn a_folder_named_as_a_case_is_told_of() {
     let whole = case("", &[]);
-    fs::rename(whole.path().join("slope"), whole.path().join("squash")).unwrap();
-    let of_registry = grainbench(whole.path(), &["run", "squash", "--solver", "rigid", "-q"]);
+    fs::rename(whole.join("slope"), whole.join("squash")).unwrap();
+    let of_registry = whole.run("run squash --solver rigid -q");
     assert!(of_registry.err.contains("write ./squash to select the folder"), "{}", of_registry.err);
-    let own = grainbench(whole.path(), &["run", "./squash", "-q"]);
+    let own = whole.run("run ./squash -q");
     assert_eq!((own.code, own.err.as_str()), (Some(0), ""), "{}", own.out);
 }

@@ -1,4 +1,5 @@
 //! Solver-independent claims. They apply to any solver, and their negative controls detect wrong physics.
+use crate::common::{Directory, Folder, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
@@ -174,27 +175,27 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
 /// All programs in one executable, compiled against the library of this test. For a crate outside the workspace, cargo
 /// would build all crates again, which takes minutes and gives the same code.
 struct ForeignCrate {
-    folder: tempfile::TempDir,
+    folder: Folder,
 }
 
 impl ForeignCrate {
     fn build(programs: &[(&str, String)]) -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temporary();
         let mut main = "fn main() -> Result<(), Box<dyn std::error::Error>> {\n".to_owned();
         main += "    match std::env::args().nth(1).unwrap().as_str() {\n";
         for (name, source) in programs {
             let module = source.replace("\nfn main()", "\npub fn main()");
-            fs::write(folder.path().join(format!("{name}.rs")), module).unwrap();
+            fs::write(folder.join(format!("{name}.rs")), module).unwrap();
             main = format!("mod {name};\n{main}        {name:?} => {name}::main(),\n");
         }
         main += "        _ => unreachable!(),\n    }\n}\n";
-        fs::write(folder.path().join("main.rs"), &main).unwrap();
+        folder.write("main.rs", &main);
         let built = std::env::current_exe().unwrap().parent().unwrap().to_owned();
         let output = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
             .args(["--edition", "2024", "--crate-name", "foreign", "--out-dir", ".", "main.rs"])
             .arg(format!("--extern=grainbench={}", newest(&built, "libgrainbench-").display()))
             .arg(format!("-Ldependency={}", built.display()))
-            .current_dir(folder.path())
+            .current_dir(&folder)
             .output()
             .unwrap();
         assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -203,7 +204,7 @@ impl ForeignCrate {
 
     fn run(&self, name: &str) -> Output {
         let executable = format!("foreign{}", std::env::consts::EXE_SUFFIX);
-        Command::new(self.folder.path().join(executable)).arg(name).output().unwrap()
+        Command::new(self.folder.join(executable)).arg(name).output().unwrap()
     }
 }
 

@@ -1,6 +1,6 @@
 //! Walls with a prescribed force, compared with exact solutions for a piston.
 
-use crate::common::grainbench;
+use crate::common::{Directory, temporary_with};
 use grainbench::cases::solvers;
 use grainbench::scene::nalgebra::{Matrix2, SymmetricEigen, Vector2};
 use grainbench::scene::source::SceneSource;
@@ -103,12 +103,9 @@ fn a_lid_at_rest_presses_with_its_force() {
 
 #[test]
 fn a_run_with_a_lid_goes_on_to_the_same_bits() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("lid.toml"), scene(0.01, 0.5, 5.0, 1.0, "")).unwrap();
-    let simulate = |further: &[&str]| grainbench(path, &[&["simulate", "lid.toml", "--solver"][..], further].concat());
-    assert_eq!(simulate(&["dem", "--out", "one", "--checkpoint", "half", "--checkpoint-every", "300"]).code, Some(0));
-    assert_eq!(simulate(&["dem", "--out", "two", "--restart", "half"]).code, Some(0));
+    let path = temporary_with("lid.toml", scene(0.01, 0.5, 5.0, 1.0, ""));
+    path.ok("simulate lid.toml --solver dem --out one --checkpoint half --checkpoint-every 300");
+    path.ok("simulate lid.toml --solver dem --out two --restart half");
     let series = |folder: &str| std::fs::read(path.join(folder).join("series.csv")).unwrap();
     assert!(series("one") == series("two"));
 }

@@ -1,15 +1,14 @@
 //! Claims and benchmarks with external programs that are not installed.
 
-use crate::common::grainbench_alone;
+use crate::common::{Answer, Directory, temporary, temporary_with};
 use serde_json::Value;
 
 #[test]
 fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
-    let directory = tempfile::tempdir().unwrap();
-    let run = ["run", "backspin/disc", "--solver", "lammps", "--live", "--json"];
-    let answer = grainbench_alone(directory.path(), &run);
+    let directory = temporary();
+    let answer = directory.run_alone("run backspin/disc --solver lammps --live --json");
     assert_eq!(answer.code, Some(1), "nothing was judged");
-    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let results = answer.json();
     let rows = results["verdicts"].as_array().unwrap();
     assert!(!rows.is_empty() && rows.iter().all(|row| row["verdict"] == "not-available"), "{}", answer.out);
     assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be judged has no control");
@@ -18,22 +17,21 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
 /// The throughput benchmark lists missing programs and too short timings. Without any timing, it is not a success.
 #[test]
 fn a_race_tells_who_took_no_part() {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
-    let race = |arguments: &[&str]| {
-        let answer = grainbench_alone(directory.path(), &[&["race", "s.toml", "--rounds", "1"], arguments].concat());
-        let read = |name: &str| std::fs::read_to_string(directory.path().join("grainbench-race").join(name));
+    let directory = temporary_with("s.toml", SCENE);
+    let race = |arguments: &str| {
+        let answer = directory.run_alone(format!("race s.toml --rounds 1 {arguments}"));
+        let read = |name: &str| std::fs::read_to_string(directory.join("grainbench-race").join(name));
         let race = read("race.json").ok().map(|text| serde_json::from_str::<Value>(&text).unwrap());
         (answer.code, race, answer.out)
     };
-    let (code, left, out) = race(&["--steps", "10,20"]);
+    let (code, left, out) = race("--steps 10,20");
     assert_eq!(code, Some(1), "{out}");
     let results = left.unwrap()["heats"][0]["results"].as_array().unwrap().clone();
     let absent: Vec<&str> = results.iter().map(|raced| raced["absent"].as_str().unwrap()).collect();
     assert!(absent[0].starts_with("too few steps") && absent[1].contains("nowhere/lmp"), "{absent:?}");
-    assert!(out.contains("| `s.toml` |") && out.contains("nowhere/liggghts"), "{out}");
+    assert!(out.contains("\ns.toml  ") && out.contains("nowhere/liggghts"), "{out}");
 
-    let (code, left, out) = race(&["--steps", "10,12000000", "--solver", "dem:lammps"]);
+    let (code, left, out) = race("--steps 10,12000000 --solver dem:lammps");
     assert_eq!(code, Some(0), "{out}");
     let raced = left.unwrap()["heats"][0]["results"][0].clone();
     assert!(raced["rates"][0].as_f64().is_some_and(|rate| rate > 0.0) && raced["absent"].is_null(), "{raced}");
@@ -41,34 +39,25 @@ fn a_race_tells_who_took_no_part() {
 
 #[test]
 fn a_time_limit_that_is_no_time_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    std::fs::write(directory.path().join("s.toml"), SCENE).unwrap();
-    let command = crate::common::program()
-        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
-        .current_dir(directory.path())
-        .env("GRAINBENCH_TIME_LIMIT", "2s")
-        .output()
-        .unwrap();
-    assert_eq!(command.status.code(), Some(2));
-    let message = String::from_utf8(command.stderr).unwrap();
+    let directory = temporary_with("s.toml", SCENE);
+    let mut simulate = directory.program("simulate s.toml --solver lammps --time-step 1e-3");
+    let answer = Answer::of(simulate.env("GRAINBENCH_TIME_LIMIT", "2s"));
     let reason = "GRAINBENCH_TIME_LIMIT: expected a whole number of seconds, found `2s`";
-    assert_eq!(message, format!("error: lammps is not available: {reason}\n"));
+    assert_eq!((answer.code, answer.err), (Some(2), format!("error: lammps is not available: {reason}\n")));
 }
 
 /// If our process is killed, the external program ends, and its working folder is removed.
 #[test]
 #[cfg(target_os = "linux")]
 fn a_program_and_its_folder_go_when_we_are_killed() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let (temporary, program) = (path.join("tmp"), path.join("program"));
     std::fs::create_dir(&temporary).unwrap();
     std::fs::write(&program, "#!/bin/sh\necho $$ > pid\nexec sleep 600\n").unwrap();
     std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
-    std::fs::write(path.join("s.toml"), SCENE).unwrap();
-    let mut child = crate::common::program()
-        .args(["simulate", "s.toml", "--solver", "lammps", "--time-step", "1e-3"])
-        .current_dir(path)
+    path.write("s.toml", SCENE);
+    let mut child = path
+        .program("simulate s.toml --solver lammps --time-step 1e-3")
         .env("GRAINBENCH_LAMMPS", &program)
         .env("TMPDIR", &temporary)
         .stdout(std::process::Stdio::null())

@@ -53,7 +53,7 @@ fn conventions_table() -> String {
 /// Returns the table of the stored throughput benchmark. `grainbench race` on an idle machine makes a new `race.json`.
 fn race_table() -> String {
     let kept = std::fs::read_to_string(root("benches/race/race.json")).unwrap();
-    serde_json::from_str::<ThroughputBenchmark>(&kept).unwrap().table().trim_end().to_owned()
+    serde_json::from_str::<ThroughputBenchmark>(&kept).unwrap().markdown().trim_end().to_owned()
 }
 
 #[test]

@@ -1,6 +1,6 @@
 //! Options of snapshots: columns, digits, and stress averaged between snapshots.
 
-use crate::common::grainbench;
+use crate::common::{Directory, temporary_with};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::reports::each_snapshot;
@@ -135,17 +135,12 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
 /// Files contain only the chosen columns and can be read. Numbers are rounded to the chosen digits.
 #[test]
 fn files_hold_what_was_chosen() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("all.toml"), SCENE).unwrap();
-    std::fs::write(path.join("some.toml"), format!("{SCENE}columns = ['mean-virial']\ndigits = 7\n")).unwrap();
+    let path = temporary_with("all.toml", SCENE);
+    path.write("some.toml", format!("{SCENE}columns = ['mean-virial']\ndigits = 7\n"));
     let mut snapshots: Vec<Vec<Snapshot>> = Vec::new();
     for (name, formats) in [("all", "parquet"), ("some", "parquet"), ("some", "dump,vtk")] {
         let file = format!("{name}.toml");
-        let command =
-            ["simulate", &file, "--solver", "dem", "--time-step-fraction", "0.05", "--write", formats, "--out", "run"];
-        let answer = grainbench(path, &command);
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
+        path.ok(format!("simulate {file} --solver dem --time-step-fraction 0.05 --write {formats} --out run"));
         let mut all = Vec::new();
         each_snapshot(&path.join("run"), |error| error, &mut |snapshot| {
             all.push(snapshot);
@@ -178,32 +173,24 @@ fn files_hold_what_was_chosen() {
 /// `fields` states which stress it uses: the mean stress if present, or the instantaneous stress if requested.
 #[test]
 fn fields_says_which_stress_it_read() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("scene.toml"), format!("{SCENE}columns = ['virial', 'mean-virial']\n")).unwrap();
-    std::fs::write(path.join("bare.toml"), format!("{SCENE}columns = ['spin']\n")).unwrap();
+    let path = temporary_with("scene.toml", format!("{SCENE}columns = ['virial', 'mean-virial']\n"));
+    path.write("bare.toml", format!("{SCENE}columns = ['spin']\n"));
     for (name, out) in [("scene.toml", "run"), ("bare.toml", "bare")] {
-        let command =
-            ["simulate", name, "--solver", "dem", "--time-step-fraction", "0.05", "--write", "parquet", "--out", out];
-        assert_eq!(grainbench(path, &command).code, Some(0));
+        path.ok(format!("simulate {name} --solver dem --time-step-fraction 0.05 --write parquet --out {out}"));
     }
-    let pressure = |more: &[&str], run: &str| -> (String, Option<f64>) {
-        let answer = grainbench(
-            path,
-            &[&["fields", run, "--cell", "5,2.5,3.5", "--fewest", "1", "--surface", "0.01", "--json"], more].concat(),
-        );
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
-        let summary: serde_json::Value = serde_json::from_str(&answer.out).unwrap();
+    let pressure = |more: &str, run: &str| -> (String, Option<f64>) {
+        let answer = path.ok(format!("fields {run} --cell 5,2.5,3.5 --fewest 1 --surface 0.01 --json {more}"));
+        let summary = answer.json();
         let is_pressure = |mean: &&serde_json::Value| mean["quantity"] == "pressure";
         let found =
             summary["means"].as_array().unwrap().iter().find(is_pressure).and_then(|mean| mean["value"].as_f64());
         (summary["which_stress"].as_str().unwrap().to_owned(), found)
     };
-    let (mean, of_mean) = pressure(&["--from", "0.0001"], "run");
-    let (instant, of_instant) = pressure(&["--from", "0.0001", "--stress", "instant"], "run");
+    let (mean, of_mean) = pressure("--from 0.0001", "run");
+    let (instant, of_instant) = pressure("--from 0.0001 --stress instant", "run");
     assert!(mean.contains("averaged over the time") && instant.contains("instant"), "{mean}, {instant}");
     let (of_mean, of_instant) = (of_mean.unwrap(), of_instant.unwrap());
     assert!((of_mean / of_instant - 1.0).abs() > 0.02, "{of_mean} {of_instant}");
-    assert_eq!(pressure(&[], "run").1, Some(of_mean), "the first frame has no mean, and takes no other stress for it");
-    assert_eq!(pressure(&[], "bare").1, None);
+    assert_eq!(pressure("", "run").1, Some(of_mean), "the first frame has no mean, and takes no other stress for it");
+    assert_eq!(pressure("", "bare").1, None);
 }

@@ -1,6 +1,6 @@
 //! Claims use all stored runs, which are complete and belong to the present scenes. Missing runs and programs are reported.
 
-use crate::common::grainbench_alone;
+use crate::common::{Directory, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored;
 use grainbench::cases::uncertainty::{self, StoredEstimates};
@@ -10,7 +10,6 @@ use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::deck::Program;
 use grainbench::reference::stored::{StoredRun, folder};
 use grainbench::solver::failure::RunError;
-use serde_json::Value;
 use std::collections::BTreeSet;
 
 #[test]
@@ -91,18 +90,17 @@ fn the_time_step_is_worth_little_where_it_is_small() {
 
 #[test]
 fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_missing() {
-    let directory = tempfile::tempdir().unwrap();
-    let without = |arguments: &[&str]| {
-        let answer = grainbench_alone(directory.path(), arguments);
-        let results: Value = serde_json::from_str(&answer.out).unwrap();
-        (answer.code, results["verdicts"].as_array().unwrap().clone())
+    let directory = temporary();
+    let without = |arguments: &str| {
+        let answer = directory.run_alone(arguments);
+        (answer.code, answer.rows())
     };
-    let (code, rows) = without(&["run", "collision", "--solver", "lammps", "--solver", "liggghts", "--json"]);
+    let (code, rows) = without("run collision --solver lammps --solver liggghts --json");
     assert_eq!(code, Some(0));
     assert!(rows.len() == 10 && rows.iter().all(|row| row["verdict"] == "pass"), "{rows:?}");
     assert!(rows.iter().all(|row| row["source"].as_str().unwrap().contains("stored run of 20")), "{rows:?}");
 
-    let (code, rows) = without(&["reference", "verify", "collision-gamma-zeta.1", "--json"]);
+    let (code, rows) = without("reference verify collision-gamma-zeta.1 --json");
     assert_eq!(code, Some(1), "nothing was judged");
     assert!(rows.len() == 2 && rows.iter().all(|row| row["verdict"] == "not-available"), "{rows:?}");
 }

@@ -5,7 +5,7 @@
 //! `[DIR]` is the directory, `[ROOT]` the repository, `[cases]` and `[solvers]` are the names of the registries, and
 //! `[..]` is any text. `UPDATE_REFUSALS=1` writes the messages of the program to the tables.
 
-use crate::common::{files, grainbench, grainbench_alone, root};
+use crate::common::{Directory, files, root, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use rayon::prelude::*;
@@ -139,24 +139,6 @@ fn unpacked(bytes: Vec<u8>) -> Vec<u8> {
     }
 }
 
-/// Splits a command line into words, with quotes as in a shell.
-fn words(line: &str) -> Vec<String> {
-    let (mut words, mut word, mut quote) = (Vec::new(), None::<String>, None);
-    for letter in line.replace("[ROOT]", env!("CARGO_MANIFEST_DIR")).chars() {
-        match (letter, quote) {
-            ('\'' | '"', None) => {
-                quote = Some(letter);
-                word.get_or_insert_default();
-            }
-            (letter, Some(open)) if letter == open => quote = None,
-            (' ' | '\n', None) => words.extend(word.take()),
-            _ => word.get_or_insert_default().push(letter),
-        }
-    }
-    words.extend(word);
-    words
-}
-
 /// Returns a message with placeholders for paths and for the names of the registries, and without spaces at the ends of lines.
 fn settled(message: &str, directory: &Path) -> String {
     let lines = |names: Vec<String>| names.iter().map(|name| format!("  {name}\n")).collect::<String>();
@@ -196,34 +178,29 @@ fn write(directory: &Path, name: &str, bytes: &[u8]) {
 
 /// Runs all entries of a table. Returns the number, the failure and the actual message of each failed entry.
 fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let prepare = |files: &BTreeMap<String, Entry>| {
-        files
-            .iter()
-            .for_each(|(name, file)| write(path, name, &file.contents(path).unwrap_or_else(|error| panic!("{error}"))));
+        files.iter().for_each(|(name, file)| {
+            write(&path, name, &file.contents(&path).unwrap_or_else(|error| panic!("{error}")))
+        });
     };
     prepare(&table.files);
     for line in &table.prepare {
-        let words = words(line);
-        let answer = grainbench(path, &words.iter().map(String::as_str).collect::<Vec<_>>());
-        assert_eq!(answer.code, Some(0), "{line}: {}", answer.err);
+        path.ok(line);
     }
     prepare(&table.prepared);
     let check = |entry: &Entry| -> Result<(), (String, Option<String>)> {
         let entry = entry.or(&table.common);
-        let bytes = entry.contents(path).map_err(|error| (error, None))?;
+        let bytes = entry.contents(&path).map_err(|error| (error, None))?;
         let file = entry.file.filter(|_| entry.base.is_some() || entry.text.is_some());
         let earlier = file.as_ref().and_then(|file| fs::read(path.join(file)).ok());
-        file.iter().for_each(|file| write(path, file, &bytes));
-        let before = contents(path);
+        file.iter().for_each(|file| write(&path, file, &bytes));
+        let before = contents(&path);
         let line = [entry.command.unwrap_or_default(), entry.with.unwrap_or_default()].join(" ");
-        let words = words(&line);
-        let words: Vec<&str> = words.iter().map(String::as_str).collect();
-        let answer = if entry.alone == Some(true) { grainbench_alone(path, &words) } else { grainbench(path, &words) };
-        let after = contents(path);
+        let answer = if entry.alone == Some(true) { path.run_alone(line) } else { path.run(line) };
+        let after = contents(&path);
         match (file, earlier) {
-            (Some(file), Some(bytes)) => write(path, &file, &bytes),
+            (Some(file), Some(bytes)) => write(&path, &file, &bytes),
             (Some(file), None) => fs::remove_file(path.join(file)).unwrap(),
             _ => {}
         }
@@ -238,7 +215,7 @@ fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
             let left: Vec<&String> = after.keys().filter(|name| before.get(*name) != after.get(*name)).collect();
             return Err((format!("files were left, changed or removed: {left:?}"), None));
         }
-        let (found, expected) = (settled(&answer.err, path), entry.message.trim_end());
+        let (found, expected) = (settled(&answer.err, &path), entry.message.trim_end());
         if is_as(&found, expected) {
             Ok(())
         } else {

@@ -1,6 +1,6 @@
 //! A run continued from a checkpoint equals an uninterrupted run to the bit, for all cases and for a killed process.
 
-use crate::common::{bits, files, grainbench};
+use crate::common::{Directory, Folder, bits, files, temporary, temporary_with};
 use crate::observer::RunObserver;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::registry::CASES;
@@ -86,8 +86,8 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
     };
     let straight = files(solver.run(&scene, &run.resolution, &mut ()).unwrap());
 
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path().join("run.checkpoint");
+    let directory = temporary();
+    let path = directory.join("run.checkpoint");
     let place = Place { path: &path, every: 300 };
     let go = |from: Option<&Checkpoint>, until: u64| {
         let mut watch = RunObserver {
@@ -153,7 +153,7 @@ all = { system = true }
 /// Returns the names and texts of the output files of a run, without run times.
 fn left(directory: &Path) -> Vec<(String, String)> {
     let text = |name: &String| {
-        let text = std::fs::read_to_string(directory.join(name)).unwrap();
+        let text = directory.read(name);
         let mut parts = text.split("\"wall_seconds\":");
         let first = parts.next().unwrap_or_default().to_owned();
         let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
@@ -165,11 +165,11 @@ fn left(directory: &Path) -> Vec<(String, String)> {
 /// Grains with contact springs, and deformable grains.
 #[test]
 fn a_killed_run_continues_to_the_same_files() {
-    killed_and_continued(LONG, &["--solver", "dem"], "20000");
+    killed_and_continued(LONG, "--solver dem", "20000");
     // The duration of a grid run cannot be given in cycles.
     let timed =
         LONG.replace("duration_cycles = 1_000_000", "duration = 1.0").replace("every_cycles = 100_000", "every = 0.05");
-    killed_and_continued(&timed, &["--solver", "mpm", "--cells", "2", "--points", "2"], "200");
+    killed_and_continued(&timed, "--solver mpm --cells 2 --points 2", "200");
 }
 
 /// If there are many snapshots, they are on disk, and the checkpoint contains only the names of their parts.
@@ -181,8 +181,8 @@ fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
         .replace("[0.0, 1.0], normal = [0.0, -1.0]", "[0.0, 8.0], normal = [0.0, -1.0]")
         .replace("duration_cycles = 1_000_000", "duration_cycles = 10_000")
         .replace("every_cycles = 100_000\nsnapshots = 2", "every_cycles = 1_000\nsnapshots = 100");
-    let directory = killed_and_continued(&many, &["--solver", "dem", "--write", "dump,vtk"], "5000");
-    let (checkpoint, parts) = (directory.path().join("run.checkpoint"), directory.path().join("run.checkpoint.parts"));
+    let directory = killed_and_continued(&many, "--solver dem --write dump,vtk", "5000");
+    let (checkpoint, parts) = (directory.join("run.checkpoint"), directory.join("run.checkpoint.parts"));
     let parts: Vec<_> = std::fs::read_dir(parts).unwrap().flatten().collect();
     assert!(!parts.is_empty());
     // Fifty snapshots of 900 discs would be about 15 MB.
@@ -190,47 +190,34 @@ fn a_killed_run_with_snapshots_on_disk_continues_to_the_same_files() {
     assert!(bytes < 9 << 20, "{bytes}");
 }
 
-fn killed_and_continued(scene: &str, options: &[&str], every: &str) -> tempfile::TempDir {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("scene.toml"), scene).unwrap();
-    let simulate = [&["simulate", "scene.toml"], options].concat();
-    let straight = grainbench(path, &[&simulate[..], &["--out", "straight"]].concat());
-    assert_eq!(straight.code, Some(0), "{}", straight.err);
+fn killed_and_continued(scene: &str, options: &str, every: &str) -> Folder {
+    let path = temporary_with("scene.toml", scene);
+    let simulate = format!("simulate scene.toml {options}");
+    path.ok(format!("{simulate} --out straight"));
 
-    let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", every];
-    let mut victim = crate::common::program()
-        .current_dir(path)
-        .args(simulate.iter().chain(&checkpoints).chain(&["--out", "killed"]))
-        .stdout(Stdio::null())
-        .stderr(Stdio::null())
-        .spawn()
-        .unwrap();
+    let watched = format!("{simulate} --checkpoint run.checkpoint --checkpoint-every {every}");
+    let mut victim = path.program(format!("{watched} --out killed"));
+    let mut victim = victim.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
     while !path.join("run.checkpoint").exists() {
-        assert!(victim.try_wait().unwrap().is_none(), "{options:?}: it ended before its first checkpoint");
+        assert!(victim.try_wait().unwrap().is_none(), "{options}: it ended before its first checkpoint");
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
     victim.kill().unwrap();
     victim.wait().unwrap();
-    assert!(!path.join("killed").exists(), "{options:?}: nothing half-written");
+    assert!(!path.join("killed").exists(), "{options}: nothing half-written");
 
-    let restart = ["--restart", "run.checkpoint", "--out", "continued"];
-    let continued = grainbench(path, &[&simulate[..], &checkpoints, &restart].concat());
-    assert_eq!(continued.code, Some(0), "{}", continued.err);
-    assert_eq!(left(&path.join("straight")), left(&path.join("continued")), "{options:?}");
-    directory
+    path.ok(format!("{watched} --restart run.checkpoint --out continued"));
+    assert_eq!(left(&path.join("straight")), left(&path.join("continued")), "{options}");
+    path
 }
 
 /// A checkpoint with a correct hash but wrong numbers is rejected before the run continues.
 #[test]
 fn a_checkpoint_with_wrong_numbers_is_refused() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
+    let path = temporary();
     let scene = LONG.replace("1_000_000", "200").replace("100_000", "50");
-    std::fs::write(path.join("scene.toml"), scene).unwrap();
-    let simulate = ["simulate", "scene.toml", "--solver", "dem"];
-    let keep = ["--checkpoint", "kept", "--checkpoint-every", "100", "--out", "a"];
-    assert_eq!(grainbench(path, &[&simulate[..], &keep].concat()).code, Some(0));
+    path.write("scene.toml", scene);
+    path.ok("simulate scene.toml --solver dem --checkpoint kept --checkpoint-every 100 --out a");
     let whole = std::fs::read(path.join("kept")).unwrap();
     let head = whole.iter().position(|&byte| byte == b'\n').unwrap() + 1;
     let body = &whole[head + 40..];
@@ -240,8 +227,8 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
         [&whole[..head], &(body.len() as u64).to_le_bytes(), hash.as_bytes(), body].concat()
     };
     let restarted = |body: &[u8]| {
-        std::fs::write(path.join("other"), resealed(body)).unwrap();
-        grainbench(path, &[&simulate[..], &["--restart", "other", "--out", "b"]].concat())
+        path.write("other", resealed(body));
+        path.run("simulate scene.toml --solver dem --restart other --out b")
     };
     assert_eq!(restarted(body).code, Some(0));
     let places = |number: f64| -> Vec<usize> {
@@ -265,27 +252,24 @@ fn a_checkpoint_with_wrong_numbers_is_refused() {
 fn a_run_that_breaks_leaves_what_there_is() {
     let timed =
         LONG.replace("duration_cycles = 1_000_000", "duration = 3.0").replace("every_cycles = 100_000", "every = 0.01");
-    let breaking: [&[&str]; 3] = [
-        &["--solver", "dem", "--time-step-fraction", "3", "--allow-unstable"],
-        &["--solver", "mpm", "--cells", "2", "--points", "2", "--courant", "2.5", "--allow-unstable"],
-        &["--solver", "rigid", "--substeps", "1", "--set", "grains.all.velocity=[100.0, 50.0]"],
+    let breaking = [
+        "--solver dem --time-step-fraction 3 --allow-unstable",
+        "--solver mpm --cells 2 --points 2 --courant 2.5 --allow-unstable",
+        "--solver rigid --substeps 1 --set 'grains.all.velocity=[100.0, 50.0]'",
     ];
     for options in breaking {
-        let directory = tempfile::tempdir().unwrap();
-        let path = directory.path();
-        std::fs::write(path.join("scene.toml"), &timed).unwrap();
-        let run = grainbench(path, &[&["simulate", "scene.toml", "--out", "out"], options].concat());
-        assert_eq!(run.code, Some(1), "{options:?}: {}", run.err);
+        let path = temporary_with("scene.toml", &timed);
+        let run = path.run(format!("simulate scene.toml --out out {options}"));
+        assert_eq!(run.code, Some(1), "{options}: {}", run.err);
         assert!(run.err.contains("the incomplete output"), "{}", run.err);
-        let broken = std::fs::read_to_string(path.join("out/broken.json")).unwrap();
+        let broken = path.read("out/broken.json");
         let broken: serde_json::Value = serde_json::from_str(&broken).unwrap();
         assert!(run.err.contains(broken["error"].as_str().unwrap()), "{broken}");
-        let dump = std::fs::read_to_string(path.join("out/snapshots.dump")).unwrap();
+        let dump = path.read("out/snapshots.dump");
         let last = dump.rsplit("ITEM: TIMESTEP\n").next().unwrap().lines().next().unwrap();
         assert_eq!(last, broken["step"].to_string(), "the state that broke is the last");
         assert!(!path.join("out/record.json").exists(), "it is no record of a run");
-        let report = grainbench(path, &["report", "out"]);
-        assert!(report.code == Some(2) && report.err.contains("the run did not finish"), "{}", report.err);
+        path.run("report out").refused("the run did not finish");
     }
 }
 
@@ -303,14 +287,11 @@ fn snapshots_and_checkpoints_take_no_memory() {
             .replace("duration_cycles = 1_000_000", "duration_cycles = 1_000")
             .replace("snapshots = 2", &format!("snapshots = {snapshots}"))
     };
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("none.toml"), scene("0")).unwrap();
-    std::fs::write(path.join("many.toml"), scene(snapshots)).unwrap();
-    let none = crate::common::peak_memory(path, &["simulate", "none.toml", "--solver", "dem", "--out", "none"]);
-    let checkpoints = ["--checkpoint", "run.checkpoint", "--checkpoint-every", "50"];
-    let many = [&["simulate", "many.toml", "--solver", "dem", "--out", "many"], &checkpoints[..]].concat();
-    let many = crate::common::peak_memory(path, &many);
+    let path = temporary_with("none.toml", scene("0"));
+    path.write("many.toml", scene(snapshots));
+    let none = crate::common::peak_memory(&path, "simulate none.toml --solver dem --out none");
+    let checkpoints = "--checkpoint run.checkpoint --checkpoint-every 50";
+    let many = crate::common::peak_memory(&path, &format!("simulate many.toml --solver dem --out many {checkpoints}"));
     let most = none + 100_000;
     assert!(many < most, "{many} kB with {snapshots} snapshots, {none} kB without, at most {most} kB expected");
 }
@@ -319,14 +300,8 @@ fn snapshots_and_checkpoints_take_no_memory() {
 #[test]
 #[cfg(target_os = "linux")]
 fn an_interrupted_run_leaves_what_is_finished() {
-    let directory = tempfile::tempdir().unwrap();
-    let child = crate::common::program()
-        .args(["run", "--out", "out"])
-        .current_dir(directory.path())
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let directory = temporary();
+    let child = directory.program("run --out out").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     // The test waits until the process catches the signal. A run of the whole registry takes much longer than that.
     let catches = || {
         let status = std::fs::read_to_string(format!("/proc/{}/status", child.id())).unwrap();
@@ -345,8 +320,7 @@ fn an_interrupted_run_leaves_what_is_finished() {
         message.contains("interrupted: ") && message.contains("the report contains the finished checks"),
         "{message}"
     );
-    let results = std::fs::read_to_string(directory.path().join("out/results.json")).unwrap();
-    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let results = directory.json("out/results.json");
     let options = results["provenance"]["options"].to_string();
     assert!(options.contains("interrupted: "), "{options}");
 }

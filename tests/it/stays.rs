@@ -1,6 +1,6 @@
 //! Insertion and removal of grains, and removal of walls.
 
-use crate::common::grainbench;
+use crate::common::{Directory, temporary_with};
 use grainbench::cases::solvers;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::source::SceneSource;
@@ -135,17 +135,12 @@ fn what_stood_on_a_wall_falls_when_it_is_taken_away() {
 /// Neither the number of threads nor checkpoints change any bit.
 #[test]
 fn threads_and_checkpoints_leave_no_trace() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("silo.toml"), SILO).unwrap();
-    let with = |further: &[&str]| {
-        let all = ["simulate", "silo.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
-        let answer = grainbench(path, &[&all[..], further].concat());
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
-    };
-    with(&["--out", "one", "--threads", "1"]);
-    with(&["--out", "two", "--threads", "2", "--checkpoint", "half", "--checkpoint-every", "2400"]);
-    with(&["--out", "three", "--threads", "1", "--restart", "half"]);
+    let path = temporary_with("silo.toml", SILO);
+    let with =
+        |further: &str| path.ok(format!("simulate silo.toml --solver dem --time-step 1e-3 --write dump {further}"));
+    with("--out one --threads 1");
+    with("--out two --threads 2 --checkpoint half --checkpoint-every 2400");
+    with("--out three --threads 1 --restart half");
     let same = |file: &str| {
         let file_bytes = |folder: &str| std::fs::read(path.join(folder).join(file)).unwrap();
         assert!(file_bytes("one") == file_bytes("two"), "{file}, threads");
@@ -161,20 +156,15 @@ fn threads_and_checkpoints_leave_no_trace() {
 /// supports prescribed motion for a limited time.
 #[test]
 fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
-    let directory = tempfile::tempdir().unwrap();
-    let path = directory.path();
-    std::fs::write(path.join("scene.toml"), LIFTED).unwrap();
-    let with = |further: &[&str]| {
-        let all = ["simulate", "scene.toml", "--solver", "dem", "--time-step", "1e-3", "--write", "dump"];
-        let answer = grainbench(path, &[&all[..], further].concat());
-        assert_eq!(answer.code, Some(0), "{}", answer.err);
-    };
-    let file_text = |folder: &str, file: &str| std::fs::read_to_string(path.join(folder).join(file)).unwrap();
-    with(&["--out", "whole", "--threads", "2"]);
+    let path = temporary_with("scene.toml", LIFTED);
+    let with =
+        |further: &str| path.ok(format!("simulate scene.toml --solver dem --time-step 1e-3 --write dump {further}"));
+    let file_text = |folder: &str, file: &str| path.join(folder).read(file);
+    with("--out whole --threads 2");
     // Checkpoints before, at the start of, during, at the end of, and after the prescribed motion.
     for every in ["200", "300", "400", "600", "700", "900"] {
-        with(&["--out", "one", "--checkpoint", "half", "--checkpoint-every", every]);
-        with(&["--out", "two", "--restart", "half"]);
+        with(&format!("--out one --checkpoint half --checkpoint-every {every}"));
+        with("--out two --restart half");
         for file in ["series.csv", "snapshots.dump"] {
             assert!(
                 file_text("whole", file) == file_text("one", file) && file_text("one", file) == file_text("two", file),
@@ -182,7 +172,7 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
             );
         }
     }
-    with(&["--out", "always", "--set", "driven.lifted.start=0.0", "--set", "driven.lifted.stop=1.0"]);
+    with("--out always --set driven.lifted.start=0.0 --set driven.lifted.stop=1.0");
     assert!(file_text("whole", "series.csv") != file_text("always", "series.csv"));
 }
 

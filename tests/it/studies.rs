@@ -1,6 +1,6 @@
 //! The three studies on the command line. Their results hold, also after an interruption at any time.
 
-use crate::common::grainbench;
+use crate::common::{Directory, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
@@ -98,7 +98,7 @@ fn an_effect_that_is_needed_is_caught_when_it_is_off() {
 
 /// Returns the `results.json` of a directory without the values that vary from run to run.
 fn results(out: &Path) -> Value {
-    let mut results: Value = serde_json::from_str(&fs::read_to_string(out.join("results.json")).unwrap()).unwrap();
+    let mut results = out.json("results.json");
     results["provenance"] = Value::Null;
     for point in results["points"].as_array_mut().unwrap() {
         for key in ["wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds", "repetitions"] {
@@ -108,49 +108,39 @@ fn results(out: &Path) -> Value {
     results
 }
 
-const COST: [&str; 5] = ["cost", "squash", "collision", "--solver", "dem"];
+const COST: &str = "cost squash collision --solver dem";
 
 #[test]
 fn ended_at_any_moment_it_goes_on_to_the_same_result() {
-    let folder = tempfile::tempdir().unwrap();
-    let whole = grainbench(folder.path(), &[&COST[..], &["--out", "whole"]].concat());
-    assert_eq!(whole.code, Some(0), "{}", whole.err);
-    let out = folder.path().join("out");
+    let folder = temporary();
+    folder.ok(format!("{COST} --out whole"));
+    let out = folder.join("out");
     let mut state = 12345_u64;
     for _ in 0..10 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let mut child = crate::common::program()
-            .args(COST)
-            .args(["--out", "out"])
-            .current_dir(folder.path())
-            .stdin(Stdio::null())
-            .stdout(Stdio::null())
-            .stderr(Stdio::null())
-            .spawn()
-            .unwrap();
+        let mut child = folder.program(format!("{COST} --out out"));
+        let mut child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(5 + (state >> 33) % 400));
         let _ = child.kill();
         child.wait().unwrap();
         // Each JSON file is complete.
-        for name in crate::common::files(folder.path())
-            .iter()
-            .filter(|name| name.starts_with("out/") && name.ends_with(".json"))
+        for name in
+            crate::common::files(&folder).iter().filter(|name| name.starts_with("out/") && name.ends_with(".json"))
         {
             if !name.contains(".grainbench-") {
-                let text = fs::read_to_string(folder.path().join(name)).unwrap();
+                let text = folder.read(name);
                 serde_json::from_str::<Value>(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
             }
         }
     }
-    let last = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
-    assert_eq!(last.code, Some(0), "{}", last.err);
-    assert_eq!(results(&out), results(&folder.path().join("whole")));
+    folder.ok(format!("{COST} --out out"));
+    assert_eq!(results(&out), results(&folder.join("whole")));
     assert!(
         !crate::common::files(&out).iter().any(|name| name.contains(".grainbench-")),
         "{:?}",
         crate::common::files(&out)
     );
-    let again = grainbench(folder.path(), &[&COST[..], &["--out", "out"]].concat());
+    let again = folder.run(format!("{COST} --out out"));
     assert!(again.out.contains("24 of 24 tasks were finished before"), "{}", again.out);
 }
 
@@ -178,34 +168,31 @@ fn retime(out: &Path, factor: f64) {
 /// Finished points of an earlier version are only a cache. They are not read, and a note names their folder.
 #[test]
 fn points_of_an_earlier_version_are_measured_again() {
-    let folder = tempfile::tempdir().unwrap();
-    fs::create_dir_all(folder.path().join("out/points")).unwrap();
-    fs::write(folder.path().join("out/points/0.json"), "{}").unwrap();
-    let cost = |more: &[&str]| grainbench(folder.path(), &[&COST[..], &["--out", "out"], more].concat());
-    let answer = cost(&[]);
+    let folder = temporary_with("out/points/0.json", "{}");
+    let cost = |more: &str| folder.run(format!("{COST} --out out {more}"));
+    let answer = cost("");
     assert!(answer.code == Some(0) && answer.err.contains("note: out/points: finished parts"), "{}", answer.err);
     assert!(answer.out.contains("0 of 24 tasks were finished before"), "{}", answer.out);
     // With `--no-cache`, finished points are measured again.
-    assert!(cost(&["--no-cache"]).out.contains("0 of 24 tasks were finished before"));
-    assert!(cost(&[]).out.contains("24 of 24 tasks were finished before"));
-    assert!(folder.path().join("out/points/0.json").is_file());
+    assert!(cost("--no-cache").out.contains("0 of 24 tasks were finished before"));
+    assert!(cost("").out.contains("24 of 24 tasks were finished before"));
+    assert!(folder.join("out/points/0.json").is_file());
     // The directory of a plan keeps the results of the plan.
-    assert_eq!(grainbench(folder.path(), &[&COST[..], &["--plan", "plan"]].concat()).code, Some(0));
-    let refused = grainbench(folder.path(), &[&COST[..], &["--out", "plan"]].concat());
-    assert!(refused.code == Some(2) && refused.err.contains("expected a directory without a plan"), "{}", refused.err);
+    folder.ok(format!("{COST} --plan plan"));
+    folder.run(format!("{COST} --out plan")).refused("expected a directory without a plan");
 }
 
 #[test]
 fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
-    let folder = tempfile::tempdir().unwrap();
-    let out = folder.path().join("out");
-    let cost = |more: &[&str]| grainbench(folder.path(), &[&COST[..], &["--out", "out"], more].concat());
-    assert_eq!(cost(&[]).code, Some(0));
+    let folder = temporary();
+    let out = folder.join("out");
+    let cost = |more: &str| folder.run(format!("{COST} --out out {more}"));
+    assert_eq!(cost("").code, Some(0));
     retime(&out, 1.0);
-    assert_eq!(cost(&[]).code, Some(0));
-    let old = fs::read_to_string(out.join("results.json")).unwrap();
-    fs::write(folder.path().join("old.json"), &old).unwrap();
-    let against = || cost(&["--against", "old.json"]);
+    assert_eq!(cost("").code, Some(0));
+    let old = out.read("results.json");
+    folder.write("old.json", &old);
+    let against = || cost("--against old.json");
     let answer = against();
     assert!(answer.code == Some(0) && answer.out.contains("all counts are equal"), "{}", answer.out);
     // A machine that is 5 % slower is not reported; a kernel that is 25 % slower is reported.
@@ -215,36 +202,31 @@ fn sessions_are_told_apart_by_counts_exactly_and_by_times_with_their_spread() {
     let answer = against();
     assert!(answer.code == Some(1) && answer.out.contains("slower by a factor 1.25"), "{}", answer.out);
     retime(&out, 1.0);
-    fs::write(folder.path().join("old.json"), old.replacen("\"steps\": ", "\"steps\": 1", 1)).unwrap();
+    folder.write("old.json", old.replacen("\"steps\": ", "\"steps\": 1", 1));
     let answer = against();
     assert!(answer.code == Some(1) && answer.out.contains("steps 1"), "{}", answer.out);
 }
 
 #[test]
 fn a_study_is_drawn_again_from_its_directory() {
-    let folder = tempfile::tempdir().unwrap();
-    let answer = grainbench(
-        folder.path(),
-        &["stability", "free-pair", "mass-ratio", "--solver", "dem", "--out", "out", "--json"],
-    );
-    assert_eq!(answer.code, Some(0), "{}", answer.err);
-    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let folder = temporary();
+    let answer = folder.ok("stability free-pair mass-ratio --solver dem --out out --json");
+    let results = answer.json();
     assert_eq!(results["stability"]["limits"].as_array().unwrap().len(), 1);
     assert_eq!(results["stability"]["hard"][0]["standing"], "holds");
-    let page = fs::read_to_string(folder.path().join("out/index.html")).unwrap();
-    assert_eq!(grainbench(folder.path(), &["report", "out"]).code, Some(0));
-    assert_eq!(fs::read_to_string(folder.path().join("out/index.html")).unwrap(), page);
+    let page = folder.read("out/index.html");
+    folder.ok("report out");
+    assert_eq!(folder.read("out/index.html"), page);
 }
 
 /// An effect that is off has no influence when it is compiled in with a neutral value.
 #[test]
 fn an_absent_effect_is_inert() {
-    let folder = tempfile::tempdir().unwrap();
+    let folder = temporary();
     // The chain has Hertz contacts without friction, and the segments are joined walls.
-    let scenes = ["collision/gamma-zeta.1", "backspin/disc", "hertz-chain/plain", "wall-ends/segments"];
-    let answer = grainbench(folder.path(), &[&["effects"], &scenes[..], &["--out", "out", "--json"]].concat());
-    assert_eq!(answer.code, Some(0), "{}", answer.out);
-    let results: Value = serde_json::from_str(&answer.out).unwrap();
+    let scenes = "collision/gamma-zeta.1 backspin/disc hertz-chain/plain wall-ends/segments";
+    let answer = folder.ok(format!("effects {scenes} --out out --json"));
+    let results = answer.json();
     let worth =
         |name: &str| results["effects"].as_array().unwrap().iter().filter(|entry| entry["worth"] == name).count();
     assert!(worth("inert") >= 18 && worth("not-inert") == 0 && worth("needed") >= 3, "{}", answer.out);

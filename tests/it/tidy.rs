@@ -1,5 +1,6 @@
 //! Rules for the whole repository.
 
+use crate::common::temporary;
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::harness::case::{PLAIN, Physics};
@@ -287,8 +288,8 @@ fn every_rust_file_of_the_tree_is_formatted() {
 
 #[test]
 fn a_badly_formatted_file_is_seen() {
-    let folder = tempfile::tempdir().unwrap();
-    let file = folder.path().join("case.rs");
+    let folder = temporary();
+    let file = folder.join("case.rs");
     fs::write(&file, "fn  claims( )  { }\n").unwrap();
     if let Some(found) = badly_formatted(&[file]) {
         assert!(found.contains("fn claims() {}"), "{found}");

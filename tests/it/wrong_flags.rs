@@ -1,41 +1,42 @@
 //! Wrong values for each option of each command. Each gives an error before any run, and a snapshot contains the whole
 //! message. The options are read from the help of the command, so that none is missing.
 
-use crate::common::{files, grainbench_alone};
+use crate::common::{Directory, files, temporary};
 use grainbench::cases::registry::CASES;
 use std::fmt::Write as _;
 use std::path::Path;
 
 /// Commands with their required arguments.
-const COMMANDS: [&[&str]; 23] = [
-    &["list"],
-    &["run", "squash"],
-    &["judge", "rigid", "squash"],
-    &["init", "solver", "new"],
-    &["simulate", "scene.toml", "--solver", "dem"],
-    &["deck", "nine-discs/kappa-0", "--for", "lammps"],
-    &["check", "nine-discs/kappa-0", "--dump", "table.csv"],
-    &["fields", "table.csv", "--cell", "1"],
-    &["compare", "table.csv", "table.csv"],
-    &["cost", "collision"],
-    &["stability", "two-discs"],
-    &["effects", "collision"],
-    &["race", "nine-discs/kappa-1"],
-    &["reference", "build"],
-    &["reference", "verify"],
-    &["reference", "keep", "squash"],
-    &["reference", "uncertainty", "squash"],
-    &["reference", "fetch", "no-such.zip"],
-    &["conform", "dem"],
-    &["scene", "collision"],
-    &["report", "a-directory"],
-    &["completions", "bash"],
-    &["man"],
+const COMMANDS: [&str; 23] = [
+    "list",
+    "run squash",
+    "judge rigid squash",
+    "init solver new",
+    "simulate scene.toml --solver dem",
+    "deck nine-discs/kappa-0 --for lammps",
+    "check nine-discs/kappa-0 --dump table.csv",
+    "fields table.csv --cell 1",
+    "compare table.csv table.csv",
+    "cost collision",
+    "stability two-discs",
+    "effects collision",
+    "race nine-discs/kappa-1",
+    "reference build",
+    "reference verify",
+    "reference keep squash",
+    "reference uncertainty squash",
+    "reference fetch no-such.zip",
+    "conform dem",
+    "scene collision",
+    "report a-directory",
+    "completions bash",
+    "man",
 ];
 
-/// Returns the number of words that name a command.
-fn depth(command: &[&str]) -> usize {
-    if ["reference", "init"].contains(&command[0]) { 2 } else { 1 }
+/// Returns the name of a command without its arguments.
+fn name(command: &str) -> String {
+    let depth = if command.starts_with("reference") || command.starts_with("init") { 2 } else { 1 };
+    command.split(' ').take(depth).collect::<Vec<_>>().join(" ")
 }
 
 /// An option as shown in the help: its long name and the name of its value.
@@ -91,7 +92,7 @@ radius = 1.0
 position = [0.0, 0.0]
 ";
     for (name, text) in [("scene.toml", scene), ("table.csv", "step,id,x\n0,1,0\n"), ("empty", "")] {
-        std::fs::write(directory.join(name), text).unwrap();
+        directory.write(name, text);
     }
     std::fs::create_dir(directory.join("a-directory")).unwrap();
 }
@@ -103,60 +104,60 @@ fn without_cases(message: &str) -> String {
 }
 
 /// Returns a command without one of its options and the value of this option.
-fn without<'a>(command: &[&'a str], option: &str) -> Vec<&'a str> {
-    let place = command.iter().position(|word| *word == option).unwrap_or(command.len());
-    command.iter().enumerate().filter(|(at, _)| *at != place && *at != place + 1).map(|(_, word)| *word).collect()
+fn without(command: &str, option: &str) -> String {
+    let mut words: Vec<&str> = command.split(' ').collect();
+    if let Some(place) = words.iter().position(|word| *word == option) {
+        words.drain(place..place + 2);
+    }
+    words.join(" ")
 }
 
 /// Returns the messages of a command for wrong values of each of its options.
-fn answers(command: &[&str]) -> String {
-    let directory = tempfile::tempdir().unwrap();
-    let directory = directory.path();
-    prepare(directory);
-    let before = files(directory);
-    let help = grainbench_alone(directory, &[&command[..depth(command)], &["--help"]].concat());
+fn answers(command: &str) -> String {
+    let directory = temporary();
+    prepare(&directory);
+    let before = files(&directory);
+    let help = directory.run_alone(name(command) + " --help");
     let mut messages = String::new();
-    let mut ask = |words: &[&str]| {
-        let option = words[0].split('=').next().unwrap_or_default();
-        let given = [without(command, option), words.to_vec()].concat();
-        let answer = grainbench_alone(directory, &given);
-        writeln!(messages, "$ grainbench {}\n{}", given.join(" "), without_cases(answer.err.trim_end())).unwrap();
+    let mut ask = |word: &str| {
+        let option = word.split('=').next().unwrap_or_default();
+        let given = without(command, option) + " " + word;
+        let answer = directory.run_alone(&given);
+        writeln!(messages, "$ grainbench {}\n{}", given, without_cases(answer.err.trim_end())).unwrap();
         assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{messages}");
-        assert_eq!(files(directory), before, "{messages}");
+        assert_eq!(files(&directory), before, "{messages}");
     };
     for option in options(&help.out) {
         for value in wrong(&option) {
-            ask(&[&format!("{}={value}", option.name)]);
+            ask(&format!("{}={value}", option.name));
         }
         if option.value.is_some() {
-            ask(&[&option.name]);
+            ask(&option.name);
         }
     }
-    ask(&["--no-such-option"]);
+    ask("--no-such-option");
     messages
 }
 
 #[test]
 fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
     for command in COMMANDS {
-        let name = command.iter().take(depth(command)).copied().collect::<Vec<_>>().join("_");
-        insta::assert_snapshot!(name, answers(command));
+        insta::assert_snapshot!(name(command).replace(' ', "_"), answers(command));
     }
 }
 
 /// The list of commands in this test is the list of commands that the program shows.
 #[test]
 fn no_command_is_left_out() {
-    let directory = tempfile::tempdir().unwrap();
-    for (words, skip) in [(&["--help"][..], "help"), (&["reference", "--help"], "help")] {
-        let help = grainbench_alone(directory.path(), words).out;
+    let directory = temporary();
+    for (place, line) in ["--help", "reference --help"].into_iter().enumerate() {
+        let help = directory.run_alone(line).out;
         let listed = help.lines().skip_while(|line| !line.ends_with(':')).take_while(|line| *line != "Options:");
         let listed = listed.filter(|line| line.starts_with("  "));
         let names: Vec<&str> = listed.filter_map(|line| line.split_whitespace().next()).collect();
         assert!(names.len() > 4, "{help}");
-        for name in names.into_iter().filter(|name| *name != skip) {
-            let place = words.len() - 1;
-            assert!(COMMANDS.iter().any(|command| command.get(place) == Some(&name)), "{name}");
+        for name in names.into_iter().filter(|name| *name != "help") {
+            assert!(COMMANDS.iter().any(|command| command.split(' ').nth(place) == Some(name)), "{name}");
         }
     }
 }

@@ -193,7 +193,7 @@ pub(crate) fn most_bytes(scene: &Scene, stepping: Stepping) -> u64 {
 }
 
 /// Checks that a series has all samples of its run and only finite values.
-pub(crate) fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
+fn complete(series: &Series, stepping: Stepping) -> Result<(), String> {
     let mut found = series.step.iter().copied();
     for step in stepping.samples() {
         match found.next() {

@@ -79,24 +79,6 @@ impl ReadError {
     pub fn line(&self) -> Option<u64> {
         self.line
     }
-
-    /// Returns the column in characters, counted from 1, or `None` if the error refers to a whole line.
-    #[must_use]
-    pub fn column(&self) -> Option<usize> {
-        self.column
-    }
-
-    /// Returns the expected content.
-    #[must_use]
-    pub fn expected(&self) -> &str {
-        &self.expected
-    }
-
-    /// Returns the actual content.
-    #[must_use]
-    pub fn found(&self) -> &str {
-        &self.found
-    }
 }
 
 impl From<ReadError> for SceneError {

@@ -134,7 +134,7 @@ impl DumpSnapshot {
     /// Returns the row of this number, and the expected and the actual value as text.
     ///
     /// Rows are matched by id. Columns that only one of the snapshots has are skipped.
-    pub(crate) fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
+    fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
         if self.rows() != other.rows() {
             return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
         }

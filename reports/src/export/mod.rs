@@ -20,7 +20,7 @@ use grainbench_store::WriteError;
 
 /// Format of snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
-pub enum Format {
+pub enum SnapshotFormat {
     /// One LAMMPS text dump of all grains: `snapshots.dump`.
     Dump,
     /// In `vtk/`, one file per snapshot for grains, contacts and material points, and one collection of files for each.
@@ -30,7 +30,21 @@ pub enum Format {
     Parquet,
 }
 
-impl Format {
+impl SnapshotFormat {
+    /// Names on the command line: those of the formats, and `none`.
+    pub const NAMES: [&str; 4] = ["dump", "vtk", "parquet", "none"];
+
+    /// Returns the format with a name; none for `none`.
+    #[must_use]
+    pub fn by_name(name: &str) -> Option<Self> {
+        match name {
+            "dump" => Some(Self::Dump),
+            "vtk" => Some(Self::Vtk),
+            "parquet" => Some(Self::Parquet),
+            _ => None,
+        }
+    }
+
     /// Returns the default formats: LAMMPS dump and VTK for a run with at most [`READABLE`] rows. For a larger run, it is
     /// Parquet, or no format if snapshots were omitted from the store.
     #[must_use]
@@ -50,7 +64,7 @@ impl Format {
 pub fn write_run(
     record: &Record,
     snapshots: &mut SnapshotStore,
-    formats: &BTreeSet<Format>,
+    formats: &BTreeSet<SnapshotFormat>,
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
@@ -82,7 +96,7 @@ pub fn write_remains(
     error: &str,
     series: &Series,
     snapshots: &mut SnapshotStore,
-    formats: &BTreeSet<Format>,
+    formats: &BTreeSet<SnapshotFormat>,
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
@@ -94,9 +108,9 @@ pub fn write_remains(
     write_snapshots(snapshots, formats, out)
 }
 
-fn write_series(series: &Series, formats: &BTreeSet<Format>, out: &mut StagedDir) -> Result<(), WriteError> {
+fn write_series(series: &Series, formats: &BTreeSet<SnapshotFormat>, out: &mut StagedDir) -> Result<(), WriteError> {
     out.write_with("series.csv", |file| series::table(series).csv(file))?;
-    if formats.contains(&Format::Parquet) {
+    if formats.contains(&SnapshotFormat::Parquet) {
         out.write_with("series.parquet", |file| series::table(series).parquet(file))?;
     }
     Ok(())
@@ -104,19 +118,19 @@ fn write_series(series: &Series, formats: &BTreeSet<Format>, out: &mut StagedDir
 
 fn write_snapshots(
     snapshots: &mut SnapshotStore,
-    formats: &BTreeSet<Format>,
+    formats: &BTreeSet<SnapshotFormat>,
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
-    if formats.contains(&Format::Dump) {
+    if formats.contains(&SnapshotFormat::Dump) {
         out.write_with("snapshots.dump", |file| {
             dump::begin(file)?;
             snapshots.each(std::convert::identity, |snapshot| dump::add(snapshot, file))
         })?;
     }
-    if formats.contains(&Format::Vtk) {
+    if formats.contains(&SnapshotFormat::Vtk) {
         write_vtk(snapshots, out)?;
     }
-    if formats.contains(&Format::Parquet) {
+    if formats.contains(&SnapshotFormat::Parquet) {
         for (path, name) in snapshots.files()? {
             out.link(PathBuf::from("snapshots").join(name), &path)?;
         }
@@ -160,7 +174,7 @@ mod tests {
     use grainbench_solver::record::Snapshot;
     use std::path::Path;
 
-    fn written(snapshots: &[Snapshot], formats: &[Format], target: &Path) {
+    fn written(snapshots: &[Snapshot], formats: &[SnapshotFormat], target: &Path) {
         let mut store = SnapshotStore::for_output(target);
         snapshots.iter().for_each(|snapshot| store.add(snapshot.clone()).unwrap());
         let mut out = StagedDir::new(target).unwrap();
@@ -172,7 +186,7 @@ mod tests {
     fn material_points_have_files_of_their_own() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
-        written(&[sample::snapshot(), sample::deformable()], &[Format::Vtk], &target);
+        written(&[sample::snapshot(), sample::deformable()], &[SnapshotFormat::Vtk], &target);
         assert!(target.join("vtk/points-000001.vtp").is_file() && target.join("vtk/points.pvd").is_file());
         assert!(!target.join("vtk/points-000000.vtp").exists() && !target.join("snapshots.dump").exists());
     }
@@ -182,7 +196,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
         let untold = Snapshot { contacts: None, ..sample::snapshot() };
-        written(&[untold, sample::snapshot()], &[Format::Vtk], &target);
+        written(&[untold, sample::snapshot()], &[SnapshotFormat::Vtk], &target);
         assert!(!target.join("vtk/contacts-000000.vtp").exists() && target.join("vtk/contacts-000001.vtp").is_file());
     }
 
@@ -190,7 +204,7 @@ mod tests {
     fn writes_every_format() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
-        let all = [Format::Dump, Format::Vtk, Format::Parquet];
+        let all = [SnapshotFormat::Dump, SnapshotFormat::Vtk, SnapshotFormat::Parquet];
         written(&sample::record().snapshots, &all, &target);
         assert!(!target.join("vtk/points.pvd").exists(), "rigid grains have no points");
         for name in [

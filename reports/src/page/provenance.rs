@@ -37,7 +37,7 @@ pub const TITLE: &str = "grainbench, a validation harness for granular simulatio
 pub const AUTHOR: &str = "The authors of grainbench";
 
 /// Returns the citation of a result as text and as BibTeX, with the version and the commit that made it.
-pub(crate) fn citation(provenance: &Provenance) -> [String; 2] {
+fn citation(provenance: &Provenance) -> [String; 2] {
     let Provenance { version, commit, date, machine, .. } = provenance;
     let day = date.split(' ').next().unwrap_or_default();
     let year = day.split('-').next().unwrap_or_default();

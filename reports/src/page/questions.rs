@@ -5,12 +5,13 @@ use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 
 use crate::distinct;
-use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp, TARGETS};
+use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp};
 use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
 use crate::plot::scale::Scale;
 use crate::plot::{self, DrawError, FONTS, palette};
 use crate::report::Report;
+use crate::study::cost::TARGETS;
 use crate::study::effects::{EffectResult, Entry, change, median};
 use crate::study::stability::{HardCaseResult, Hardness};
 use crate::study::stability_page::{self, sign};

@@ -4,11 +4,12 @@ use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
 use maud::{Markup, html};
 
 use crate::line;
-use crate::measured::{Costs, Factor, Line, TARGETS};
+use crate::measured::{Costs, Factor, Line};
 use crate::number;
 use crate::plot;
 use crate::plot::graph::{self, Form};
 use crate::report::Report;
+use crate::study::cost::TARGETS;
 use crate::table::{Cell, Column, Row, Table};
 
 /// Largest number of failures on the first screen.

@@ -15,7 +15,7 @@ use grainbench_scene::text::tamed;
 use maud::{Markup, html};
 use thiserror::Error;
 
-use crate::number::THIN;
+use crate::number::{self, THIN};
 
 /// Width of every figure (drawing units). Pages scale the figures.
 pub(crate) const WIDTH: f64 = 860.0;
@@ -139,8 +139,7 @@ pub(crate) fn apart<T>(labels: impl Iterator<Item = (f64, f64, T)>) -> Vec<(f64,
 
 /// Returns the note that states the number of parts of a drawing without finite coordinates.
 pub(crate) fn missing(count: usize, part: &str) -> Option<String> {
-    let plural = if count == 1 { "" } else { "s" };
-    (count > 0).then(|| format!("({count} {part}{plural} without a finite place not shown)"))
+    (count > 0).then(|| format!("({} without a finite place not shown)", number::counted(count, part)))
 }
 
 /// Breaks a text at spaces into lines of at most `width`. A longer word has a line of its own.

@@ -14,7 +14,7 @@ pub(crate) enum Part<'a> {
 
 /// Splits a text into plain parts and subscripts. Names such as `nine_discs` have no subscript, because more than one
 /// letter precedes the underscore.
-pub(crate) fn parts(text: &str) -> Vec<Part<'_>> {
+fn parts(text: &str) -> Vec<Part<'_>> {
     let (mut parts, mut from) = (Vec::new(), 0);
     for (at, _) in text.match_indices('_') {
         let mut before = text[..at].chars().rev();

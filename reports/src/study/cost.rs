@@ -212,7 +212,7 @@ fn best<'a>(diagrams: &'a [Diagram], unit: &'a str, line: &'a str) -> Vec<&'a Po
 /// Returns the bias and the spread of measured/expected. The bias is the geometric mean, and the spread is the standard
 /// deviation of the natural logarithm.
 #[must_use]
-pub fn bias(points: &[&Point]) -> Option<(f64, f64)> {
+fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = points
         .iter()
         .filter_map(|point| Some(point.value? / point.expected?))

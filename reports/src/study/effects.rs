@@ -27,7 +27,7 @@ pub enum EffectResult {
 impl EffectResult {
     /// Returns the name used in tables.
     #[must_use]
-    pub const fn word(self) -> &'static str {
+    const fn word(self) -> &'static str {
         match self {
             Self::Needed => "needed",
             Self::NotWorthSimulating => "does not matter",

@@ -1,20 +1,20 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
+use super::cost::TARGETS;
 use super::stability::Limit;
 use crate::distinct;
 use crate::number;
 use crate::page::{captioned as figure, slug};
 use crate::plot::DrawError;
-use crate::table::scrolling;
+use crate::row;
+use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
 use serde::{Deserialize, Serialize};
 
-/// Errors for which the cost is stated, as fractions of the scale of the quantity.
-pub const TARGETS: [f64; 3] = super::cost::TARGETS;
 /// Error of the sentence that summarises a study.
-pub const TARGET: f64 = 0.01;
+const TARGET: f64 = 0.01;
 /// Uncertainty of a difference, as a fraction of the scale, from which two methods cannot be compared.
 const COMPARABLE: f64 = 0.05;
 /// Time step relative to the largest stable one above which a sentence has a remark.
@@ -51,7 +51,7 @@ impl Reduction {
 
     /// Returns the definition of the scale of a quantity.
     #[must_use]
-    pub const fn scale(self) -> &'static str {
+    const fn scale(self) -> &'static str {
         match self {
             Self::End => "the larger of |reference value| and the largest |value| of this quantity over the run",
             Self::Mean | Self::Window(..) => "the mean over this time of |value| of this quantity",
@@ -171,7 +171,7 @@ pub struct EstimatedPoint {
 impl EstimatedPoint {
     /// Returns the upper end of the interval of the error.
     #[must_use]
-    pub fn at_most(&self) -> f64 {
+    fn at_most(&self) -> f64 {
         self.error + self.uncertainty
     }
 }
@@ -218,7 +218,7 @@ impl Quantity {
     }
 
     /// Returns the points of a solver with the contacts of the scene.
-    pub fn of_solver<'a, 's>(&'a self, solver: &'s str) -> impl Iterator<Item = &'a EstimatedPoint> + use<'a, 's> {
+    fn of_solver<'a, 's>(&'a self, solver: &'s str) -> impl Iterator<Item = &'a EstimatedPoint> + use<'a, 's> {
         self.points.iter().filter(move |point| point.solver == solver && !point.softer)
     }
 
@@ -264,7 +264,7 @@ pub struct SceneCost {
 impl SceneCost {
     /// Returns the solvers of the study.
     #[must_use]
-    pub fn solvers(&self) -> Vec<&str> {
+    fn solvers(&self) -> Vec<&str> {
         let run = self.levels.iter().map(|level| level.solver.as_str());
         distinct(self.names.iter().map(String::as_str).chain(run))
     }
@@ -485,31 +485,25 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawE
 /// Renders the fastest setting of each solver for an error of 1 %, by quantity.
 fn costs(cost: &SceneCost) -> Markup {
     let solvers = cost.solvers();
-    let table = html! {
-        table.cases {
-            thead { tr { th scope="col" { "Quantity" } @for solver in &solvers { th scope="col" { (solver) } } } }
-            tbody {
-                @for quantity in &cost.quantities {
-                    tr {
-                        th.name scope="row" { (breakable(&quantity.name)) }
-                        @for solver in &solvers {
-                            td {
-                                @match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
-                                    (Some(point), _) => {
-                                        (number::seconds(point.wall_seconds))
-                                        span.fine { (point.setting) ", error " (interval(point)) }
-                                    }
-                                    (None, Some(error)) => { "at best " (number::fraction(error)) }
-                                    (None, None) => { "no value: " (cost.reason(solver)) }
-                                }
-                            }
-                        }
-                    }
-                }
-            }
+    let cell = |quantity: &Quantity, solver: &str| match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
+        (Some(point), _) => {
+            let error = html! { span.fine { (point.setting) ", error " (interval(point)) } };
+            Cell::from(html! { (number::seconds(point.wall_seconds)) (error) })
         }
+        (None, Some(error)) => format!("at best {}", number::fraction(error)).into(),
+        (None, None) => format!("no value: {}", cost.reason(solver)).into(),
     };
-    scrolling("Which solver at 1 %", &table)
+    let row = |quantity: &Quantity| {
+        let cells = solvers.iter().map(|solver| cell(quantity, solver));
+        Row::from([breakable(&quantity.name).into()].into_iter().chain(cells).collect::<Vec<_>>())
+    };
+    let columns = [quantity_column()].into_iter().chain(solvers.iter().map(|solver| Column::text(*solver)));
+    Table::new("Which solver at 1 %", columns, cost.quantities.iter().map(row)).page("cases")
+}
+
+/// Returns the column of the names of quantities.
+fn quantity_column() -> Column {
+    Column::heading("Quantity").class("name")
 }
 
 /// Renders a name that breaks only after a dot.
@@ -523,39 +517,31 @@ fn interval(point: &EstimatedPoint) -> String {
 }
 
 fn references(cost: &SceneCost) -> Markup {
-    let table = html! {
-        table.rows {
-            thead {
-                tr {
-                    th.name scope="col" { "Quantity" }
-                    th scope="col" { "Solver" }
-                    th.n scope="col" { "Reference" }
-                    th.n scope="col" { "Uncertainty" }
-                    th.n scope="col" { "of the scale" }
-                    th.n scope="col" { "Order" }
-                    th scope="col" { "Estimate" }
-                    th scope="col" { "Evidence" }
-                }
-            }
-            tbody {
-                @for quantity in &cost.quantities {
-                    @for row in &quantity.estimates {
-                        tr {
-                            th.name scope="row" { (breakable(&quantity.name)) }
-                            td { (row.solver) }
-                            td.n { (number::with_unit(row.value, &quantity.unit)) }
-                            td.n { "± " (number::significant(row.uncertainty, 2)) }
-                            td.n { (number::fraction(row.uncertainty / quantity.scale)) }
-                            td.n { (row.order.map_or("—".to_owned(), |order| number::significant(order, 2))) }
-                            td { (row.basis.word()) }
-                            td { (row.evidence.word()) }
-                        }
-                    }
-                }
-            }
-        }
+    let columns = [
+        quantity_column(),
+        Column::text("Solver"),
+        Column::text("Reference").class("n"),
+        Column::text("Uncertainty").class("n"),
+        Column::new("of the scale", Format::Fraction),
+        Column::new("Order", Format::Digits(2)),
+        Column::text("Estimate"),
+        Column::text("Evidence"),
+    ];
+    let row = |(quantity, estimate): (&Quantity, &Estimate)| {
+        row![
+            breakable(&quantity.name),
+            &estimate.solver,
+            number::with_unit(estimate.value, &quantity.unit),
+            format!("± {}", number::significant(estimate.uncertainty, 2)),
+            estimate.uncertainty / quantity.scale,
+            estimate.order,
+            estimate.basis.word(),
+            estimate.evidence.word(),
+        ]
     };
-    scrolling("Reference values", &table)
+    let estimates =
+        cost.quantities.iter().flat_map(|quantity| quantity.estimates.iter().map(move |row| (quantity, row)));
+    Table::new("Reference values", columns, estimates.map(row)).page("rows")
 }
 
 /// Returns the difference of two solvers in words. Methods agree only if the uncertainty of their difference is small.
@@ -633,35 +619,22 @@ fn softer(cost: &SceneCost) -> Markup {
 }
 
 fn levels(rows: &[Level]) -> Markup {
-    let table = html! {
-        table.rows {
-            thead {
-                tr {
-                    th scope="col" { "Solver" }
-                    th scope="col" { "Setting" }
-                    th scope="col" { "Run" }
-                    th.n scope="col" { "Wall time" }
-                    th.n scope="col" { "Repetitions" }
-                    th.n scope="col" { "Steps" }
-                    th scope="col" { "Message" }
-                }
-            }
-            tbody {
-                @for row in rows {
-                    tr class=(if row.status == LevelStatus::Measured { "" } else { "amber" }) {
-                        th scope="row" { (row.solver) }
-                        td { (row.setting) }
-                        td { (row.status.word()) }
-                        td.n { (row.wall_seconds.map_or("—".to_owned(), number::seconds)) }
-                        td.n { (row.repetitions) }
-                        td.n { (number::count(row.steps)) }
-                        td.wide { (row.detail.as_deref().unwrap_or("")) }
-                    }
-                }
-            }
-        }
+    let columns = [
+        Column::heading("Solver"),
+        Column::text("Setting"),
+        Column::text("Run"),
+        Column::new("Wall time", Format::Seconds),
+        Column::new("Repetitions", Format::Count),
+        Column::new("Steps", Format::Count),
+        Column::text("Message").class("wide"),
+    ];
+    let row = |level: &Level| {
+        let message = level.detail.as_deref().unwrap_or_default();
+        let (status, time) = (level.status.word(), level.wall_seconds);
+        row![&level.solver, &level.setting, status, time, level.repetitions, level.steps, message]
+            .class(if level.status == LevelStatus::Measured { "" } else { "amber" })
     };
-    scrolling("Every run", &table)
+    Table::new("Every run", columns, rows.iter().map(row)).page("rows")
 }
 
 #[cfg(test)]

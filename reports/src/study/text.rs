@@ -1,6 +1,6 @@
 //! Text of a study for the terminal.
 
-use super::estimate::{self, SceneCost, difference_words, softer_words};
+use super::estimate::{SceneCost, difference_words, softer_words};
 use super::point::Diagram;
 use super::{Study, cost, effects, stability_page};
 use crate::number;
@@ -45,7 +45,7 @@ impl Study {
     fn estimates(&self, cost: &SceneCost) -> String {
         let mut text =
             format!("{}, {}; errors are estimates from the levels of each solver\n", cost.scene, cost.reduction.word());
-        text.extend(estimate::TARGETS.map(|target| format!("  {}\n", cost.sentence(target, &self.limits))));
+        text.extend(cost::TARGETS.map(|target| format!("  {}\n", cost.sentence(target, &self.limits))));
         for quantity in &cost.quantities {
             let digits = |name: &str, digits| Column::new(name, Format::Digits(digits)).unit(&quantity.unit);
             let columns = [
@@ -59,7 +59,7 @@ impl Study {
             let rows = rows.map(|row| row![&row.solver, row.value, row.uncertainty, row.order, row.basis.word()]);
             text += &format!("\n{}", Table::new("", columns, rows).text());
             text.extend(quantity.differences().iter().map(|difference| difference_words(difference) + "\n"));
-            text += &format!("{}\n", cost.sentence_of(quantity, estimate::TARGETS[1], &self.limits));
+            text += &format!("{}\n", cost.sentence_of(quantity, cost::TARGETS[1], &self.limits));
         }
         text.extend(softer_words(cost).into_iter().map(|sentence| format!("softer contacts: {sentence}\n")));
         text

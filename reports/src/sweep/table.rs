@@ -50,7 +50,7 @@ pub(super) fn table(sweep: &Sweep) -> Table<'_> {
 }
 
 /// Returns the median wall-clock time of the repetitions (s), or the wall-clock time of the single run.
-pub(super) fn wall(point: &Point) -> Option<f64> {
+fn wall(point: &Point) -> Option<f64> {
     let walls: Vec<f64> = point.left.timings.iter().map(|timing| timing.wall).collect();
     if walls.is_empty() {
         return point.left.ran.map(|ran| ran.wall_seconds);

@@ -96,14 +96,14 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
     Ok(Report { judged, measured, ..Report::new(provenance, sections) })
 }
 
-/// Removes the claims that the filters exclude. With `--retry-failed`, also removes the claims that were not red in the
-/// report in `--out`, unless an interrupted run omitted them.
+/// Removes the claims that the filters exclude. With the earlier report of `--retry-failed`, also removes the claims that were
+/// not red in it, unless an interrupted run omitted them.
 pub(crate) fn narrow(
     selected: &mut Vec<CaseSelection>,
     options: &ClaimOptions,
     filters: &Filters,
+    before: Option<&EarlierReport>,
 ) -> Result<(), Fault> {
-    let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
     for of_case in &mut *selected {
         let case = of_case.case.name;
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
@@ -115,7 +115,7 @@ pub(crate) fn narrow(
                 let solver = solver(claim);
                 before.was_red(case, &solver, claim) || before.was_left_out(case, &solver, claim, controls)
             };
-            before.as_ref().is_none_or(repeats)
+            before.is_none_or(repeats)
         };
         let asked = of_case.claims.len();
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
@@ -123,11 +123,8 @@ pub(crate) fn narrow(
     }
     selected.retain(|of_case| !of_case.claims.is_empty());
     if selected.is_empty() {
-        let what = if options.retry_failed {
-            "that was red or omitted in the earlier report"
-        } else {
-            "that matches the filters"
-        };
+        let what =
+            if before.is_some() { "that was red or omitted in the earlier report" } else { "that matches the filters" };
         return Err(Fault::input(format!("expected at least one claim {what}, found none")));
     }
     Ok(())

@@ -5,7 +5,7 @@ use crate::cli::value::whole;
 use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard;
 use serde::{Deserialize, Serialize};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 
 /// Arguments of `run`, `cost`, `stability` and `effects`, and the file of a sweep, which determine the tasks.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
@@ -58,13 +58,19 @@ impl PlanOptions {
 }
 
 /// Options of `cost`, `stability` and `effects` that do not change the tasks.
-pub(crate) struct StudyOptions<'a> {
-    /// True to repeat finished tasks.
+#[derive(clap::Args)]
+pub(crate) struct StudyOptions {
+    /// Repeat the finished parts of the study.
+    #[arg(long)]
     pub(crate) no_cache: bool,
-    /// `results.json` of an earlier report.
-    pub(crate) against: Option<&'a Path>,
-    /// True to store the results in the source tree.
+    /// Store the results in the source tree, for the first screen of the report. Needs all cases and all built-in solvers.
+    #[arg(long, conflicts_with_all = ["cases", "solver"])]
     pub(crate) update_stored: bool,
+    /// Print the results as JSON instead of text.
+    #[arg(long)]
+    pub(crate) json: bool,
+    #[command(flatten)]
+    pub(crate) plan: PlanOptions,
 }
 
 impl Arguments {

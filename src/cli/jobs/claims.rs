@@ -23,7 +23,7 @@ use grainbench::harness::run::Run;
 use grainbench::harness::runner::Runner;
 use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::{Kind, Plan};
+use grainbench::jobs::plan::Plan;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::Section;
 use grainbench::store::key;
@@ -64,7 +64,7 @@ impl ClaimStudy {
             ));
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
-        claims::narrow(&mut selected, &options, &filters)?;
+        claims::narrow(&mut selected, &options, &filters, None)?;
         let is_whole = cases.is_empty() && options.filter.is_empty();
         let tasks = ClaimTasks::new(selected, &options, is_whole)?.cached(cache::open(false));
         let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
@@ -137,10 +137,6 @@ fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
 }
 
 impl Tasks for ClaimStudy {
-    fn kind(&self) -> Kind {
-        Kind::Run
-    }
-
     fn is_timed(&self) -> bool {
         false
     }

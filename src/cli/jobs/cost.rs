@@ -9,7 +9,6 @@ use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::subject::TargetQuantity;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::load::Load;
 use grainbench::reports::study::point::{Point, PointStatus};
@@ -17,7 +16,6 @@ use grainbench::reports::study::points_of;
 use grainbench::reports::study::step::Model;
 use grainbench::store::key;
 use grainbench::store::log::State;
-use grainbench::studies::ProgressObserver;
 use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
 use serde::{Deserialize, Serialize};
@@ -86,25 +84,12 @@ impl CostStudy {
     }
 }
 
-/// Observer that reports the name of the current run.
-struct Now<'a>(&'a dyn Fn(&str));
-
-impl ProgressObserver for Now<'_> {
-    fn now(&mut self, piece: &str) {
-        (self.0)(piece);
-    }
-}
-
 /// Returns the duration of all repetitions of a point (s).
 fn seconds_of(point: &Point) -> f64 {
     point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
 }
 
 impl Tasks for CostStudy {
-    fn kind(&self) -> Kind {
-        Kind::Cost
-    }
-
     fn is_timed(&self) -> bool {
         !self.wanted.counts
     }
@@ -146,12 +131,12 @@ impl TaskList for CostStudy {
     type Output = Measured;
 
     fn perform(&self, place: usize, sink: &ResultSink<'_, Measured>) -> (State, Measured) {
-        let mut now = Now(&|name| sink.now(name));
+        let now = |name: &str| sink.now(name);
         let measured = match BESIDE.get(place) {
             Some(("prices", _)) => {
-                step::measure(&Registry, ROUNDS, &mut now).map(Measured::Model).map_err(|error| error.to_string())
+                step::measure(&Registry, ROUNDS, &now).map(Measured::Model).map_err(|error| error.to_string())
             }
-            _ => load::measure(&Registry, ROUNDS, &mut now).map(Measured::Loads).map_err(|error| error.to_string()),
+            _ => load::measure(&Registry, ROUNDS, &now).map(Measured::Loads).map_err(|error| error.to_string()),
         };
         measured.map_or_else(|why| (State::Failed, Measured::Nothing(why)), |measured| (State::Done, measured))
     }

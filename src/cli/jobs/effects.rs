@@ -7,7 +7,6 @@ use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
 use crate::cli::own::sources;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::effects::Entry;
 use grainbench::store::log::State;
@@ -38,10 +37,6 @@ impl EffectStudy {
 }
 
 impl Tasks for EffectStudy {
-    fn kind(&self) -> Kind {
-        Kind::Effects
-    }
-
     fn is_timed(&self) -> bool {
         true
     }

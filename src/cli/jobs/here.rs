@@ -1,6 +1,6 @@
 //! Tasks of a command without `--plan`. They run in its output directory, and an interrupted command continues there.
 
-use super::arguments::{Arguments, PlanOptions, StudyOptions};
+use super::arguments::{Arguments, StudyOptions};
 use super::collect::progress;
 use super::kinds::from_arguments;
 use super::study::{ReportOptions, plan_of};
@@ -14,6 +14,7 @@ use grainbench::jobs::work::WorkRequest;
 use grainbench::store::log::State;
 use grainbench::store::results::{self, FinishedTasks};
 use std::fs;
+use std::path::Path;
 use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
@@ -23,20 +24,24 @@ const EVERY: Duration = Duration::from_secs(5);
 /// Directories with finished parts that an earlier version of this program wrote to the output directory.
 const EARLIER: [&str; 2] = ["points", "pieces"];
 
-/// Writes a plan if `--plan` is given. Otherwise performs the tasks.
-pub(crate) fn plan_or_perform(plan: &PlanOptions, arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
-    plan.planned(arguments).map_or_else(|| perform(arguments, options), |planned| super::plan::plan(&planned))
+/// Writes a plan if `--plan` is given. Otherwise performs the tasks. `against` is the `results.json` of an earlier report.
+pub(crate) fn plan_or_perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>) -> Outcome {
+    let arguments = &Arguments { json: options.json, ..arguments.clone() };
+    match options.plan.planned(arguments) {
+        Some(planned) => super::plan::plan(&planned),
+        None => perform(arguments, options, against),
+    }
 }
 
 /// Performs the tasks that are not finished and writes the report. The report is also written while tasks run.
-fn perform(arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
+fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>) -> Outcome {
     let out = &arguments.out;
     let study = from_arguments(arguments, false)?;
     if Plan::is_in(out) {
         let there = out.display();
         return Err(Fault::input(format!("--out: {there}: expected a directory without a plan, found a plan")));
     }
-    if let Some(path) = options.against {
+    if let Some(path) = against {
         grainbench::reports::study::points_of(path).map_err(Fault::input)?;
     }
     check_writable(out)?;
@@ -53,7 +58,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions<'_>) -> Outcome {
         strict: false,
         parquet: false,
         json: arguments.json,
-        against: options.against,
+        against,
         unfinished: None,
         words: Vec::new(),
         seconds: 0.0,

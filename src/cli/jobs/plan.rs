@@ -35,14 +35,12 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
         print_json(&Summary { tasks, shards, seconds, timed, out: &arguments.out })?;
         return Ok(ExitCode::SUCCESS);
     }
-    let plural =
-        |count: u64, what: &str| format!("{} {what}{}", number::count(count), if count == 1 { "" } else { "s" });
     let times = if timed { ", times are measured" } else { "" };
     print(&format!(
         "{}, about {} on one core, in {}{times}\n{}\n",
-        plural(tasks as u64, "task"),
+        number::counted(tasks, "task"),
         number::seconds(seconds),
-        plural(u64::from(shards), "shard"),
+        number::counted(shards as usize, "shard"),
         arguments.out.display()
     ))?;
     Ok(ExitCode::SUCCESS)

@@ -9,7 +9,6 @@ use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::Kind;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::stability::{HardCaseResult, Limit};
 use grainbench::scene::scene::Scene;
@@ -89,10 +88,6 @@ impl StabilityStudy {
 }
 
 impl Tasks for StabilityStudy {
-    fn kind(&self) -> Kind {
-        Kind::Stability
-    }
-
     fn is_timed(&self) -> bool {
         false
     }

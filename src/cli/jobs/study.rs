@@ -7,7 +7,7 @@ use crate::cli::keep::keep_study;
 use crate::cli::provenance::provenance;
 use crate::cli::publish::{Output, publish_study};
 use grainbench::jobs::execute::{TaskList, Watch};
-use grainbench::jobs::plan::{Head, Kind, Plan};
+use grainbench::jobs::plan::{Head, Plan};
 use grainbench::jobs::task::Task;
 use grainbench::jobs::work::{Summary, WorkRequest, work};
 use grainbench::reports::study::{Study as Report, write_study};
@@ -19,8 +19,6 @@ use std::process::ExitCode;
 
 /// Tasks of one kind of work.
 pub(crate) trait Tasks: Sync {
-    /// Returns the kind as stored in the file of the plan.
-    fn kind(&self) -> Kind;
     /// Returns true if the tasks measure times.
     fn is_timed(&self) -> bool;
     /// Returns all tasks. `program` is the hash of this program.
@@ -71,7 +69,7 @@ impl<S: Study> AnyStudy for S {
 /// Returns the plan of a study in a directory, without writing it.
 pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Plan, Fault> {
     let words = toml::Value::try_from(arguments).map_err(Fault::input)?;
-    let mut head = Head::new(study.kind(), words, study.is_timed());
+    let mut head = Head::new(words, study.is_timed());
     head.shards = arguments.shards.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
     head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();

@@ -8,7 +8,7 @@ use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::harness::verdict;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::jobs::plan::{Kind, Plan};
+use grainbench::jobs::plan::Plan;
 use grainbench::jobs::sweep::Sweep;
 use grainbench::jobs::task::Task;
 use grainbench::reports::number;
@@ -64,10 +64,6 @@ impl SweepStudy {
 }
 
 impl Tasks for SweepStudy {
-    fn kind(&self) -> Kind {
-        Kind::Sweep
-    }
-
     fn is_timed(&self) -> bool {
         self.sweep.is_timed()
     }

@@ -23,10 +23,10 @@ use std::time::{SystemTime, UNIX_EPOCH};
 #[derive(Default, clap::Args)]
 pub(crate) struct WorkOptions {
     /// Run only shard K of N. Default: the whole plan.
-    #[arg(long, value_name = "K/N", conflicts_with = "on")]
+    #[arg(long, value_name = "K/N", conflicts_with = "on", requires = "resume")]
     pub(crate) shard: Option<Shard>,
     /// Submit the shards to this batch system instead of running them on this machine.
-    #[arg(long, value_name = "slurm", value_parser = ["slurm"])]
+    #[arg(long, value_name = "slurm", value_parser = ["slurm"], requires = "resume")]
     pub(crate) on: Option<String>,
     /// Submit only the missing shards of a plan that was submitted before.
     #[arg(long, requires = "on")]
@@ -37,17 +37,6 @@ pub(crate) struct WorkOptions {
     /// True to print no counts on the standard output.
     #[arg(skip)]
     pub(crate) quiet: bool,
-}
-
-impl WorkOptions {
-    /// Returns an error if an option is given that needs `--resume`.
-    pub(crate) fn refuse_without_plan(&self) -> Result<(), Fault> {
-        let given = [("--shard", self.shard.is_some()), ("--on", self.on.is_some())];
-        match given.iter().find(|(_, is_given)| *is_given) {
-            Some((name, _)) => Err(Fault::input(format!("{name}: expected `--resume DIR` with it, found none"))),
-            None => Ok(()),
-        }
-    }
 }
 
 /// Runs the tasks of a plan or submits them to a batch system.

@@ -6,7 +6,6 @@
 //! in every scene once.
 
 use super::knobs::nominal_seconds;
-use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::load::{Load, TimingDifference};
@@ -34,12 +33,6 @@ const LONG: f64 = 0.5;
 /// Minimum and maximum number of steps of a long run.
 const STEPS: [f64; 2] = [40.0, 400_000.0];
 
-/// Returns the number of timings that [`measure`] reports to its observer.
-#[must_use]
-pub fn laps(rounds: u32) -> u64 {
-    u64::from(rounds) * (EDGES.len() * SOLVERS.len()) as u64
-}
-
 /// Solver with its scene and the timings so far.
 struct Entrant {
     solver: Option<Arc<dyn Solver>>,
@@ -52,11 +45,7 @@ struct Entrant {
 ///
 /// # Errors
 /// When the scene cannot be read, which does not occur for the scene of this study.
-pub fn measure(
-    solvers: &dyn Solvers,
-    rounds: u32,
-    follow: &mut impl ProgressObserver,
-) -> Result<Vec<Load>, SceneError> {
+pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result<Vec<Load>, SceneError> {
     let mut entrants = Vec::new();
     for edge in EDGES {
         let scene = Arc::new(box_of_discs(edge)?);
@@ -78,14 +67,13 @@ pub fn measure(
     }
     for round in 1..=rounds {
         for Entrant { solver, scene, resolution, load } in &mut entrants {
-            follow.now(&format!("{} discs, {}, lap {round} of {rounds}", load.grains, load.solver));
+            now(&format!("{} discs, {}, lap {round} of {rounds}", load.grains, load.solver));
             if let (Some(solver), None) = (solver, &load.absent) {
                 match lap(&**solver, scene, resolution) {
                     Ok(lap) => load.laps.push(lap),
                     Err(reason) => load.absent = Some(reason.to_string()),
                 }
             }
-            follow.done();
         }
     }
     Ok(entrants.into_iter().map(|entrant| entrant.load).collect())

@@ -7,7 +7,6 @@
 //! cell. In each run, the time of a step is `a·points + b·nodes`, with the costs `a` of a point and `b` of a node. A
 //! timing is the processor time of a long run minus that of a short run.
 
-use crate::ProgressObserver;
 use crate::clock::cpu_seconds;
 use grainbench_harness::solvers::Solvers;
 use grainbench_lanes::{Processor, Quad, probe};
@@ -44,17 +43,11 @@ struct Family {
     counts: fn(&Cost) -> Vec<f64>,
 }
 
-/// Returns the number of items that [`measure`] reports to its observer.
-#[must_use]
-pub fn pieces(rounds: u32) -> u64 {
-    u64::from(rounds) * (2 * SPACINGS.len() as u64 + 2 + 1)
-}
-
 /// Measures unit costs of operations and the speed of the machine in a number of rounds.
 ///
 /// # Errors
 /// When a solver cannot run its scene.
-pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObserver) -> Result<Model, RunError> {
+pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result<Model, RunError> {
     let families =
         families().map_err(|error| RunError::Resolution { solver: "dem".to_owned(), reason: error.to_string() })?;
     let mut probe = Probe { streamed: Vec::new(), computed: Vec::new() };
@@ -75,19 +68,17 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, follow: &mut impl ProgressObs
             let solver = solvers.find(family.solver).ok_or_else(unknown)?;
             let mut rows = Vec::new();
             for (scene, resolution) in &family.scenes {
-                follow.now(&format!("{}, lap {round} of {rounds}", scene.title));
+                now(&format!("{}, lap {round} of {rounds}", scene.title));
                 rows.push(lap(&*solver, scene, resolution, family.counts)?);
-                follow.done();
             }
             for (price, value) in prices[at..].iter_mut().zip(solved(rows)) {
                 price.nanoseconds.push(value);
             }
             at += family.pieces.len();
         }
-        follow.now(&format!("memory and registers, lap {round} of {rounds}"));
+        now(&format!("memory and registers, lap {round} of {rounds}"));
         probe.streamed.push(streamed());
         probe.computed.push(computed());
-        follow.done();
     }
     Ok(Model { prices, probe })
 }

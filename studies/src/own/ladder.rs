@@ -101,7 +101,7 @@ impl Ladder {
 
     /// Returns true if the levels have time steps and the solver has springs.
     #[must_use]
-    pub const fn has_steps(&self) -> bool {
+    const fn has_steps(&self) -> bool {
         matches!(self.refined, Refined::Fraction(_) | Refined::Step(_))
     }
 

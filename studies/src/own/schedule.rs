@@ -3,7 +3,7 @@
 /// Number of levels that each solver gets before any solver gets a further level.
 const FEWEST: usize = 3;
 /// Refinement of a usual level, and of the last level if a usual one would take too long.
-pub const FACTORS: [f64; 2] = [2.0, 1.5];
+const FACTORS: [f64; 2] = [2.0, 1.5];
 /// Shortest run (s) from which the growth of the run time is measured. Start-up dominates shorter runs.
 const MEASURABLE: f64 = 0.02;
 /// Smallest and largest growth exponent that is believed, relative to the nominal exponent.
@@ -25,7 +25,7 @@ pub struct Finished {
 impl Finished {
     /// Returns the time of all levels (s).
     #[must_use]
-    pub fn spent(&self) -> f64 {
+    fn spent(&self) -> f64 {
         self.levels.iter().map(|(_, seconds)| seconds).sum()
     }
 
@@ -40,7 +40,7 @@ impl Finished {
 
     /// Returns the expected time of a level (s); zero if no level is finished.
     #[must_use]
-    pub fn expected(&self, fineness: f64) -> f64 {
+    fn expected(&self, fineness: f64) -> f64 {
         let Some(&(last, seconds)) = self.levels.last() else { return 0.0 };
         let measured = match self.levels[..] {
             [.., (before, short), _] if short >= MEASURABLE => (seconds / short).ln() / (last / before).ln(),

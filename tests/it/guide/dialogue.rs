@@ -1,5 +1,6 @@
 //! `console` blocks of the guide: commands and their output.
 
+use crate::common::{Folder, temporary};
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -95,12 +96,12 @@ pub(crate) fn is_here(program: &str) -> bool {
 
 /// Copy of the files that a reader of the guide has: guide and examples, with the program on the path.
 pub(crate) struct Place {
-    folder: tempfile::TempDir,
+    folder: Folder,
 }
 
 impl Place {
     pub(crate) fn new() -> Self {
-        let folder = tempfile::tempdir().unwrap();
+        let folder = temporary();
         let parts = [
             "guide/scenes",
             "guide/claims",
@@ -111,7 +112,7 @@ impl Place {
             "cases/drum-mixing",
         ];
         for part in parts {
-            let to = folder.path().join(part);
+            let to = folder.join(part);
             fs::create_dir_all(&to).unwrap();
             for entry in fs::read_dir(crate::common::root(part)).unwrap() {
                 let path = entry.unwrap().path();
@@ -120,7 +121,7 @@ impl Place {
                 }
             }
         }
-        let programs = folder.path().join("bin");
+        let programs = folder.join("bin");
         fs::create_dir(&programs).unwrap();
         std::os::unix::fs::symlink(env!("CARGO_BIN_EXE_grainbench"), programs.join("grainbench")).unwrap();
         Self { folder }
@@ -128,7 +129,7 @@ impl Place {
 
     /// Runs a command. Returns an error that shows the difference if the output is not as shown.
     pub(crate) fn run(&self, step: &Step) -> Result<(), String> {
-        let mut path = vec![self.folder.path().join("bin")];
+        let mut path = vec![self.folder.join("bin")];
         path.extend(std::env::split_paths(&std::env::var_os("PATH").unwrap_or_default()).collect::<Vec<PathBuf>>());
         let output = Command::new("sh")
             .args(["-c", &format!("exec 2>&1\n{}", step.command)])
@@ -136,7 +137,7 @@ impl Place {
             .env("GRAINBENCH_CACHE", "off")
             .env_remove("GITHUB_ACTIONS")
             .env_remove("GITHUB_STEP_SUMMARY")
-            .current_dir(self.folder.path().join("guide/scenes"))
+            .current_dir(self.folder.join("guide/scenes"))
             .stdin(Stdio::null())
             .output()
             .map_err(|error| error.to_string())?;

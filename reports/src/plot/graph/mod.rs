@@ -14,6 +14,7 @@ use plotters::coord::cartesian::Cartesian2d;
 use super::palette::{self, Marker};
 use super::scale::{Scale, is_round};
 use super::{WIDTH, document, px, text_width};
+use crate::number;
 
 const HEIGHT: f64 = 520.0;
 /// Additional height for the panel of differences (drawing units).
@@ -307,8 +308,7 @@ fn notes(graph: &Graph) -> Vec<String> {
     let mut notes = Vec::new();
     for (count, what) in [(low, "at or below zero"), (infinite, "without a finite value")] {
         if count > 0 {
-            let plural = if count == 1 { "" } else { "s" };
-            notes.push(format!("({count} point{plural} {what} not shown)"));
+            notes.push(format!("({} {what} not shown)", number::counted(count, "point")));
         }
     }
     notes

@@ -41,7 +41,7 @@ pub struct HardCase {
 }
 
 /// Solvers that are tested by default.
-pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
+const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 /// Fractions of the default time step that are tried after a failure.
 const SMALLER: [f64; 4] = [0.5, 0.25, 0.1, 0.01];
 /// Default time step of solvers with contact springs, as a fraction of the critical time step.
