@@ -83,6 +83,14 @@ impl EarlierReport {
                 other.push(format!("new, is {}: {}", row.outcome.word(), line::verdict(row)));
                 continue;
             };
+            let is_same = |a: f64, b: f64| a == b || a.is_nan() && b.is_nan();
+            if !is_same(was.allowed, row.allowed) {
+                let [was, is] = [was.allowed, row.allowed].map(number::value);
+                other.push(format!("tolerance was {was}, is {is}: {}", line::verdict(row)));
+            }
+            if (was.expected, was.scale) != (row.expected, row.scale) && row.value.is_some() && was.value.is_some() {
+                other.push(format!("another expected value or scale: {}", line::verdict(row)));
+            }
             if was.outcome == row.outcome {
                 moved += usize::from(was.value != row.value);
                 continue;

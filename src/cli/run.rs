@@ -150,7 +150,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     undeclared::tell(&report);
     if let Some(earlier) = &earlier {
         let changes = earlier.changes(&report, is_whole);
-        let none = ["nothing: every result and every control has the same outcome and value".to_owned()];
+        let none = ["nothing: every result and every control has the same outcome, value and tolerance".to_owned()];
         let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
         lines.iter().for_each(|line| exit::say("changed", line));
     }

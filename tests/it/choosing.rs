@@ -66,13 +66,20 @@ fn an_earlier_report_is_compared_with() {
     run(&here, CASE).ok();
     let against = || run(&here, "oblique-impact --against old").ok().err;
     changed(&here, |_| ());
-    assert_eq!(against(), "changed: nothing: every result and every control has the same outcome and value\n");
+    assert_eq!(
+        against(),
+        "changed: nothing: every result and every control has the same outcome, value and tolerance\n"
+    );
     changed(&here, |old| old["verdicts"][0]["verdict"] = "fail".into());
     assert!(against().starts_with("changed: was fail, is pass: oblique-impact"), "{}", against());
     changed(&here, |old| drop(old["verdicts"].as_array_mut().unwrap().remove(0)));
     assert!(against().starts_with("changed: new, is pass: oblique-impact"), "{}", against());
     changed(&here, |old| old["verdicts"][0]["value"] = 7.5.into());
     assert!(against().starts_with("changed: 1 of "), "{}", against());
+    changed(&here, |old| old["verdicts"][0]["allowed"] = 0.5.into());
+    assert!(against().starts_with("changed: tolerance was 0.5, is "), "{}", against());
+    changed(&here, |old| old["verdicts"][0]["scale"] = 7.5.into());
+    assert!(against().starts_with("changed: another expected value or scale: oblique-impact"), "{}", against());
     changed(&here, |old| old["verdicts"][0]["quantity"] = "what nobody asks any more".into());
     let lines = against();
     assert!(lines.contains("changed: new, is pass") && lines.contains("changed: not judged now, was pass"), "{lines}");

@@ -31,7 +31,7 @@ pub(crate) struct ClaimOptions {
     /// With `--resume`, repeat the failed tasks of the plan.
     #[arg(long, conflicts_with_all = ["update_stored", "plan"])]
     pub(crate) retry_failed: bool,
-    /// Print the results and controls whose outcome has changed since this earlier report.
+    /// Print the results and controls whose outcome, expected value or tolerance has changed since this earlier report.
     #[arg(long, value_name = "DIR|results.json", conflicts_with_all = ["plan", "resume"])]
     pub(crate) against: Option<PathBuf>,
     /// Directory of the report.
