@@ -8,6 +8,7 @@ pub mod check;
 pub mod kept;
 pub mod own;
 pub mod peers;
+pub mod publication;
 pub mod resume;
 pub mod verify;
 

@@ -1,8 +1,8 @@
 //! Figures for a publication: drawn again in a style, and converted to PDF or PNG.
 
-use crate::plot::style::FigureStyle;
-use crate::store::SaveError;
 use grainbench_harness::figure::Figure;
+use grainbench_reports::plot::style::FigureStyle;
+use grainbench_reports::store::SaveError;
 use grainbench_store::StagedDir;
 use krilla::geom::Size;
 use krilla::page::PageSettings;

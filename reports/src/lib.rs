@@ -15,7 +15,6 @@ pub mod parts;
 pub mod pictures;
 pub mod plot;
 mod provenance;
-pub mod publication;
 pub mod record_figures;
 pub mod report;
 pub mod results;
