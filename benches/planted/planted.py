@@ -97,12 +97,15 @@ class Planting:
         self.environment = {**os.environ, "CARGO_TARGET_DIR": str(self.target)}
 
     def texts(self):
-        """Returns the texts of the files of each class without defects."""
-        return {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
-                                                                 self.tree, capture_output=True)
-                       for folder in folders for path in sorted((self.tree / folder).rglob("*.rs"))
-                       if path.name not in ("planted.rs", "tests.rs")}
-                for name, folders in CLASSES.items()}
+        """Returns the texts of the files of each class without defects. Files of tests are left out."""
+        texts = {name: {str(path.relative_to(self.tree)): command(["git", "show", f"HEAD:{path.relative_to(self.tree)}"],
+                                                                  self.tree, capture_output=True)
+                        for folder in folders for path in sorted((self.tree / folder).rglob("*.rs"))
+                        if path.name not in ("planted.rs", "tests.rs")}
+                 for name, folders in CLASSES.items()}
+        tests = {str(Path(file).parent / f"{module}.rs") for files in texts.values() for file, text in files.items()
+                 for module in re.findall(r"#\[cfg\(test\)\]\s*mod (\w+);", text)}
+        return {name: {file: text for file, text in files.items() if file not in tests} for name, files in texts.items()}
 
     def draw(self):
         """Selects random defects, removes those that do not compile, and numbers the others."""
