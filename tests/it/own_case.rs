@@ -52,7 +52,7 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
 #[test]
 fn a_list_of_solvers_gives_a_claim_for_each() {
     let folder = case("claims.toml", &[("unit = \"m/s\"", "unit = \"m/s\"\nsolver = [\"dem\", \"dem:lammps\"]")]);
-    let (answer, verdicts, controls) = run(folder.path());
+    let (answer, verdicts, controls) = run(&folder);
     assert_eq!(answer.code, Some(0), "{verdicts:#?}");
     let claims = verdicts.iter().map(|row| (row["quantity"].as_str().unwrap(), row["solver"].as_str().unwrap()));
     let velocity = "velocity, rolling";
