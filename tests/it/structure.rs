@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 16] = [
-    ("solvers/scene", 10_150, 0),
+    ("solvers/scene", 10_195, 0),
     ("solvers/solver", 3_455, 0),
     ("solvers/lanes", 1_495, 0),
-    ("solvers/dem", 9_110, 0),
+    ("solvers/dem", 9_120, 0),
     ("solvers/mpm", 11_665, 0),
     ("solvers/rigid", 1_620, 0),
     ("harness", 8_075, 5),
     ("store", 2_000, 0),
-    ("reference", 15_155, 0),
+    ("reference", 15_170, 0),
     ("cases", 20_440, 0),
     ("fields", 3_225, 0),
     ("reports", 15_665, 0),
     ("studies", 6_380, 0),
     ("jobs", 2_865, 0),
-    ("src", 11_645, 0),
-    ("tests", 11_175, 0),
+    ("src", 11_650, 0),
+    ("tests", 11_185, 0),
 ];
 
 fn root() -> &'static Path {

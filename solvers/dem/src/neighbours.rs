@@ -401,6 +401,14 @@ mod tests {
         assert_eq!(listed, expected);
     }
 
+    /// The domain from 1 to 4 m has the length 3 m.
+    #[test]
+    fn positions_outside_a_periodic_domain_move_by_its_length() {
+        let domain = Domain { low: Vector3::repeat(1.0), high: Vector3::repeat(4.0), periodic: [true, true, false] };
+        let inside = wrapped(Vector3::new(4.5, 0.5, 4.5), &domain, 3);
+        assert_eq!(inside, Vector3::new(1.5, 3.5, 4.5));
+    }
+
     #[test]
     fn lists_every_near_pair_once() {
         for shares in [1, 4] {

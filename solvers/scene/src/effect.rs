@@ -354,6 +354,25 @@ mod tests {
     use crate::source::SceneSource;
     use std::path::Path;
 
+    /// The table of laws gets a row and a column. The laws of the scene stay with their pairs of materials.
+    #[test]
+    fn an_unused_material_keeps_the_laws_of_the_others() {
+        let text = "title = 'two materials'\ndimension = 2\nduration = 1.0\nmaterials.a.density = 1.0\n\
+                    materials.b.density = 1.0\n\
+                    contacts.aa = { between = ['a', 'a'], normal_stiffness = 1.0 }\n\
+                    contacts.ab = { between = ['a', 'b'], normal_stiffness = 2.0 }\n\
+                    contacts.bb = { between = ['b', 'b'], normal_stiffness = 3.0 }\n\
+                    grains.a = { material = 'a', radius = 1.0, position = [0.0, 1.0] }\n\
+                    grains.b = { material = 'b', radius = 1.0, position = [9.0, 1.0] }\n";
+        let source = SceneSource::from_text("two-materials", Path::new(""), text);
+        let mut scene = source.scene(&crate::resolve::no_data_file).unwrap();
+        assert!(Effect::Friction.switch_on_idly(&mut scene));
+        let stiffness = scene.laws.iter().map(|law| law.map(|law| law.normal_stiffness()));
+        let [a, ab, b] = [1.0, 2.0, 3.0].map(Some);
+        // The unused material is in contact only with itself.
+        assert_eq!(stiffness.collect::<Vec<_>>(), [a, ab, None, ab, b, None, None, None, a]);
+    }
+
     /// A neutral value must switch the effect on. Otherwise, tests would run the kernel without the effect.
     #[test]
     fn what_is_switched_on_idly_is_on() {

@@ -140,6 +140,14 @@ mod tests {
 
     const MEDIUM: Medium = Medium { density: 1000.0, lame: 576.923, shear_modulus: 384.615 };
 
+    /// E = G (3λ + 2G)/(λ + G) is 1000 Pa, so the wave speed is 1 m/s and the largest displacement is reached at 0.5 s.
+    #[test]
+    fn the_wave_speed_is_that_of_a_bar() {
+        let motion = Manufactured::AxisAligned { amplitude: 0.05, length: 1.0 };
+        let displacement = motion.displacement(&MEDIUM, Vector3::new(0.25, 0.0, 0.0), 0.5);
+        assert!((displacement.x - 0.05).abs() < 1e-9, "{displacement}");
+    }
+
     fn stress(motion: &Manufactured, at: Vector3<f64>, time: f64) -> nalgebra::Matrix3<f64> {
         let step = 1e-4;
         let mut gradient = nalgebra::Matrix3::identity();
