@@ -1,10 +1,11 @@
 //! Cache of finished runs, outside the source tree and shared by all commands. It stores records of runs, not outcomes of
 //! claims.
 //!
-//! The key of a run is a hash of its scene, solver, planted defect, resolution, run options, SIMD backend, and of the sources,
-//! compiler and options with which the solver was built. A changed case or solver therefore repeats only the affected runs. A
-//! file that is damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, or if the end state or
-//! checkpoints are requested. Runs of external programs are not cached either, because these programs may change unnoticed.
+//! The key of a run is a hash of its scene, solver, the defect of a control, resolution, run options, SIMD backend, and of
+//! the sources, compiler and options with which the solver was built. A changed case or solver therefore repeats only the
+//! affected runs. A file that is damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, or
+//! if the end state or checkpoints are requested. Runs of external programs are not cached either, because these programs
+//! may change unnoticed.
 
 use grainbench_harness::solvers::{ExternalSolver, References, Solvers};
 use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
