@@ -171,7 +171,7 @@ pub fn in_memory<L: TaskList>(
     watch: &dyn Watch,
     observe: &(dyn Fn(&L::Output) + Sync),
 ) -> Vec<Option<Result<L::Output, String>>> {
-    let results: Vec<Mutex<Option<Result<L::Output, String>>>> = order.iter().map(|_| Mutex::default()).collect();
+    let results: Vec<_> = order.iter().map(|_| Mutex::new(None)).collect();
     let store = |place: usize, _: State, _: f64, result: Result<L::Output, String>| {
         result.iter().for_each(observe);
         *locked(&results[place]) = Some(result);

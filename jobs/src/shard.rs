@@ -79,7 +79,7 @@ pub fn task_range(tasks: &[Task], shard: Shard) -> Range<usize> {
     all(tasks, shard.count).swap_remove(shard.index as usize - 1)
 }
 
-/// Returns the recommended number of shards: the largest number whose mean expected duration is at least [`SECONDS`].
+/// Returns the recommended number of shards: the largest number whose mean expected duration is at least a minute.
 /// It is at least 1 and at most the number of groups and ungrouped tasks.
 #[must_use]
 pub fn count(tasks: &[Task]) -> u32 {

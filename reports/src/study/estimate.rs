@@ -194,7 +194,7 @@ pub struct Quantity {
     pub name: String,
     /// Unit.
     pub unit: String,
-    /// Scale of this column, as in [`Reduction::scale`]. Errors are fractions of it.
+    /// Scale of this column. Errors are fractions of it.
     pub scale: f64,
     /// One reference value for each solver with at least two levels.
     pub estimates: Vec<Estimate>,

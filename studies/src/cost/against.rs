@@ -1,7 +1,7 @@
 //! Comparison of two sessions of the cost study. Counts must be equal; times may differ within their uncertainty.
 //!
 //! The time of a point is the median of its repetitions. Each repetition is divided by the reference time measured
-//! before and after it ([`crate::clock::reference_seconds`]), so that the speed of the machine cancels. Let xᵢ =
+//! before and after it ([`crate::clock`]), so that the speed of the machine cancels. Let xᵢ =
 //! ln(tᵢ,new/tᵢ,old) for the n points i of a solver in a case. The standard error of their median m is
 //!
 //! ```text
