@@ -7,7 +7,7 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 16] = [
-    ("solvers/scene", 10_195, 0),
+    ("solvers/scene", 10_190, 0),
     ("solvers/solver", 3_455, 0),
     ("solvers/lanes", 1_495, 0),
     ("solvers/dem", 9_120, 0),

@@ -304,17 +304,3 @@ impl Deformable {
         4.0 * self.shear_modulus * (self.bulk_modulus + self.shear_modulus / 3.0) / self.longitudinal_modulus()
     }
 }
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn one_viscosity_alone_is_a_viscosity() {
-        for numbers in [[1.0, 2.0], [1.0, 0.0], [0.0, 2.0]] {
-            let [viscosity, bulk_viscosity] = numbers;
-            assert_eq!(Constitutive::KelvinVoigt { viscosity, bulk_viscosity }.viscosities(), Some(numbers));
-        }
-        assert_eq!(Constitutive::KelvinVoigt { viscosity: 0.0, bulk_viscosity: 0.0 }.viscosities(), None);
-    }
-}

@@ -4,6 +4,7 @@
 #![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
 use grainbench_scene::contact_law::Springs;
+use grainbench_scene::material::Constitutive;
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
@@ -131,4 +132,13 @@ fn overlaps_with_walls_are_parts_of_the_radius() {
         refusal(&text(0.4))
     );
     close(scene(&text(0.46)).grains[0].position.y, 0.46);
+}
+
+#[test]
+fn one_viscosity_alone_is_a_viscosity() {
+    for numbers in [[1.0, 2.0], [1.0, 0.0], [0.0, 2.0]] {
+        let [viscosity, bulk_viscosity] = numbers;
+        assert_eq!(Constitutive::KelvinVoigt { viscosity, bulk_viscosity }.viscosities(), Some(numbers));
+    }
+    assert_eq!(Constitutive::KelvinVoigt { viscosity: 0.0, bulk_viscosity: 0.0 }.viscosities(), None);
 }
