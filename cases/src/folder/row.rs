@@ -47,7 +47,11 @@ impl Reader<'_> {
         if claimed.solver.list().is_empty() {
             return Err(wrong("solver", "at least one name", "none"));
         }
-        claimed.solver.list().iter().map(|solver| self.claim(claimed, solver)).collect()
+        let names = claimed.solver.list();
+        if let Some(twice) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
+            return Err(wrong("solver", "different names", format!("{} twice", quoted(twice.1))));
+        }
+        names.iter().map(|solver| self.claim(claimed, solver)).collect()
     }
 
     fn claim(&self, claimed: &ClaimEntry, solver: &str) -> Result<Claim, ClaimError> {
