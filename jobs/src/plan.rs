@@ -23,11 +23,15 @@ const FORMAT: u32 = 1;
 /// Default time (s) after which a lease expires if it is not renewed.
 const LEASE: f64 = 60.0;
 
-/// Contents of `plan.toml`. Plans of earlier versions have a key `kind` that repeats the command; it is ignored.
+/// Contents of `plan.toml`.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(deny_unknown_fields)]
 pub struct Head {
     /// Format version of the file.
     pub format: u32,
+    /// Command, in plans of earlier versions only. The arguments repeat it, so it is ignored.
+    #[serde(default, rename = "kind", skip_serializing)]
+    _earlier_kind: Option<String>,
     /// Number of tasks.
     pub tasks: usize,
     /// Hash of the file of tasks.
@@ -68,6 +72,7 @@ impl Head {
     pub fn new(arguments: toml::Value, timed: bool) -> Self {
         Self {
             format: FORMAT,
+            _earlier_kind: None,
             tasks: 0,
             hash: String::new(),
             shards: 1,

@@ -381,9 +381,12 @@ fn what_is_no_plan_is_refused() {
         fs::write(path, bytes).unwrap();
     }
     let head = String::from_utf8(whole[0].1.clone()).unwrap();
-    for (from, to) in
-        [("format = 1", "format = 2"), ("shards = 1", "shards = 0"), ("lease_seconds = 60.0", "lease_seconds = nan")]
-    {
+    for (from, to) in [
+        ("format = 1", "format = 2"),
+        ("format = 1", "format = 1\nnothing = 2"),
+        ("shards = 1", "shards = 0"),
+        ("lease_seconds = 60.0", "lease_seconds = nan"),
+    ] {
         assert!(head.contains(from), "{from}");
         fs::write(&whole[0].0, head.replace(from, to)).unwrap();
         refused(to);
