@@ -93,28 +93,23 @@ fn follow_piece<S: Space>(
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
         let (ground, next) = Ground::and_next(lattice, part, runs, points);
         macro_rules! find_gradients {
-            ($B:ty, $nodes:expr, $velocity:expr, $move:literal) => {{
+            ($B:ty, $nodes:expr, $velocity:expr, $next:expr) => {{
                 let (nodes, velocity) = ($nodes, $velocity);
-                let find = Gradients::<S, $B, _, _, $move>::new(ground, nodes, velocity, gradients, next, time_step);
+                let find = Gradients::<S, $B, _, _>::new(ground, nodes, velocity, gradients, $next, time_step);
                 processor.run_by_four(find);
             }};
         }
         with_basis!(setting.basis, B => match velocities {
-            Velocities::Stepped => find_gradients!(B, nodes, |node: &Node<S>| node.velocity, false),
-            Velocities::Projected if scheme.moves_with_stress() => {
-                find_gradients!(B, projected, |velocity: &S::Vector| *velocity, true);
+            Velocities::Stepped => find_gradients!(B, nodes, |node: &Node<S>| node.velocity, None),
+            Velocities::Projected => {
+                let next = scheme.moves_with_stress().then_some(next);
+                find_gradients!(B, projected, |velocity: &S::Vector| *velocity, next);
             }
-            Velocities::Projected => find_gradients!(B, projected, |velocity: &S::Vector| *velocity, false),
         });
-        macro_rules! update {
-            ($law:ident, $count:literal) => {{
-                let (law, gradients, failure) = ($law, &gradients[..], &mut broken);
-                let update: Update<'_, '_, S, _, $count> =
-                    Update { law, runs, gradients, time_step, spins, points, flows, failure };
-                processor.run_by_four(update);
-            }};
-        }
-        with_law!(*law, law => if counts { update!(law, true) } else { update!(law, false) });
+        let (gradients, failure) = (&gradients[..], &mut broken);
+        with_law!(*law, law => {
+            processor.run_by_four(Update { law, runs, gradients, time_step, spins, counts, points, flows, failure });
+        });
     }
     if let Some(BrokenPoint { point, cause }) = broken
         && failure.is_none()
@@ -127,7 +122,7 @@ fn follow_piece<S: Space>(
 /// Kernel of the update F ← (1 + Δt ∇v) F, of volume and of stress, for every point of some batches. `gradients`
 /// contains the velocity gradients ∇v (1/s).
 ///
-/// With `COUNT` it records three energies of each batch. The first is the work of the stresses after the step on the
+/// With `counts` it records three energies of each batch. The first is the work of the stresses after the step on the
 /// strain of the step. The second is the plastic work: the flow stress after the step times the plastic strain
 /// increment, on the mean volume. The third is the work against viscosity: half of the work of viscous stresses before
 /// and after the step on the strain of the step.
@@ -135,13 +130,14 @@ fn follow_piece<S: Space>(
 /// With `spins`, points have a spin, and a yielding point takes the spin of the velocity field around it, because its
 /// neighbours with the same spin have moved away. Without this rule, unbalanced spins would grow until a grain of a few
 /// cells breaks apart.
-struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
+struct Update<'a, 'b, S: Space, L> {
     law: L,
     /// Consecutive batches with at most [`LONGEST`] points in all.
     runs: &'a [ParticleBatch],
     gradients: &'a [S::Matrix],
     time_step: f64,
     spins: bool,
+    counts: bool,
     points: &'a mut PointsMut<'b, S>,
     /// Energies of each batch. Batches do not depend on the thread partitions.
     flows: &'a mut Vec<Flow>,
@@ -149,10 +145,10 @@ struct Update<'a, 'b, S: Space, L, const COUNT: bool> {
     failure: &'a mut Option<BrokenPoint>,
 }
 
-impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, COUNT> {
+impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
     #[inline(always)]
     fn run<R: FourLanes>(self, _: R) {
-        let Self { law, runs, gradients, time_step, spins, points, flows, failure } = self;
+        let Self { law, runs, gradients, time_step, spins, counts, points, flows, failure } = self;
         let (first, start, end) = (points.first, runs[0].start, runs[runs.len() - 1].end);
         let range = start - first..end - first;
         let affines = &mut points.affine;
@@ -165,7 +161,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
         // viscosity.
         let (mut ratios, mut logarithms) = ([0.0; LONGEST], [0.0; LONGEST]);
         let (mut squares, mut works) = ([0.0; LONGEST], [0.0; LONGEST]);
-        if COUNT && L::VISCOUS {
+        if counts && L::VISCOUS {
             for (at, work) in works.iter_mut().enumerate().take(range.len()) {
                 let strain = S::symmetric_part(S::at_midpoint(gradients[at] * time_step));
                 let ratio = volumes[at] / references[at];
@@ -210,7 +206,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                     affines[range.start + place] =
                         S::restrict_gradient(S::embed_gradient(gradients[place]) - strain_rate);
                 }
-                if COUNT {
+                if counts {
                     flow.taken += *volume * S::double_dot(*stress, S::symmetric_part(increment));
                     if L::VISCOUS {
                         flow.viscous += works[place];
@@ -223,7 +219,7 @@ impl<S: Space, L: Law, const COUNT: bool> FourKernel for Update<'_, '_, S, L, CO
                     }
                 }
             }
-            if COUNT {
+            if counts {
                 flows.push(flow);
             }
         }

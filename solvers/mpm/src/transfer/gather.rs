@@ -43,7 +43,7 @@ pub(crate) fn gather<S: Space>(
 ) {
     let Grid { lattice, nodes, projected, .. } = grid;
     let State { bodies, points, shares, team, .. } = state;
-    let Scheme { setting, time_step, processor } = *scheme;
+    let Scheme { setting, processor, .. } = *scheme;
     let (mut left, mut left_projected) = (points.lent(), &mut projected[..]);
     let parts = shares.iter().map(|share| {
         let projected = take_off(&mut left_projected, share.nodes.len());
@@ -51,28 +51,18 @@ pub(crate) fn gather<S: Space>(
     });
     team.each(parts, |number, (mut points, projected)| {
         macro_rules! gather {
-            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr, $project:literal, $move:literal) => {{
+            ($B:ty, $transfer:expr, $part:expr, $runs:expr) => {{
                 let (transfer, part, runs, basis) = ($transfer, $part, $runs, PhantomData::<$B>);
                 let (points, projected) = (&mut points, NodeRows::new(shares[number].alone_from, projected));
-                let gather: Gather<'_, '_, S, $B, $T, $project, $move> =
-                    Gather { lattice, part, runs, transfer, time_step, keep, points, nodes, projected, basis };
+                let gather = Gather { lattice, part, runs, transfer, scheme, keep, points, nodes, projected, basis };
                 processor.run_by_four(gather);
             }};
-            ($B:ty, $T:ty, $transfer:expr, $part:expr, $runs:expr) => {
-                if scheme.moves_with_stress() {
-                    gather!($B, $T, $transfer, $part, $runs, true, false)
-                } else if scheme.is_projected() {
-                    gather!($B, $T, $transfer, $part, $runs, true, true)
-                } else {
-                    gather!($B, $T, $transfer, $part, $runs, false, true)
-                }
-            };
         }
         for (body, runs) in shares[number].parts(bodies) {
             with_basis!(setting.basis, B => match setting.transfer {
-                options::Transfer::Flip { pic } => gather!(B, Flip, Flip { pic }, &body.part, runs),
-                options::Transfer::Apic => gather!(B, Apic, Apic, &body.part, runs),
-                options::Transfer::Spin => gather!(B, Spin, Spin, &body.part, runs),
+                options::Transfer::Flip { pic } => gather!(B, Flip { pic }, &body.part, runs),
+                options::Transfer::Apic => gather!(B, Apic, &body.part, runs),
+                options::Transfer::Spin => gather!(B, Spin, &body.part, runs),
             });
         }
     });
@@ -109,14 +99,14 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
 
 /// Kernel that gathers the velocities of a body's points from its nodes.
 ///
-/// With `MOVE` it also computes the next positions of the points. With `PROJECT` it scatters momentum with the new
-/// velocities (MUSL).
-struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
+/// It also computes the next positions of the points, unless the stress update does. For MUSL it scatters momentum with
+/// the new velocities.
+struct Gather<'a, 'b, S: Space, B, T> {
     lattice: &'a Lattice,
     part: &'a Part,
     runs: &'a [ParticleBatch],
     transfer: T,
-    time_step: f64,
+    scheme: &'a Scheme,
     /// Damping factor of velocities in a step.
     keep: f64,
     points: &'a mut PointsMut<'b, S>,
@@ -125,19 +115,18 @@ struct Gather<'a, 'b, S: Space, B, T, const PROJECT: bool, const MOVE: bool> {
     basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> FourKernel
-    for Gather<'_, '_, S, B, T, PROJECT, MOVE>
-{
+impl<S: Space, B: Basis, T: Transfer> FourKernel for Gather<'_, '_, S, B, T> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, runs, transfer, time_step, keep, points, nodes, mut projected, .. } = self;
+        let Self { lattice, part, runs, transfer, scheme, keep, points, nodes, mut projected, .. } = self;
+        let (moves, projects, time_step) = (!scheme.moves_with_stress(), scheme.is_projected(), scheme.time_step);
         let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in runs {
             let (seen, patch) = part.window.seen::<S, B, _>(run.base, nodes, &mut copies);
             let mut reached = None;
-            if PROJECT {
+            if projects {
                 reached = projected.reached::<S, B>(&part.window, run.base, &mut projected_copies);
             }
             for batch in run.batches() {
@@ -158,7 +147,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
                         }
                         let velocities = weighted::<B, _>(velocity, values);
                         let changes = weighted::<B, _>(changed, values);
-                        if MOVE || T::AROUND {
+                        if moves || T::AROUND {
                             around[component] = around[component] + velocities * across.value;
                         }
                         change[component] = change[component] + changes * across.value;
@@ -180,7 +169,7 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
                     velocity[axis] = transfer.taken(before[axis] * keep, around[axis], change[axis]);
                 }
                 batch.write_vectors::<S, L>(velocity, points.velocity);
-                if MOVE {
+                if moves {
                     let mut next = batch.vectors::<S, L>(lanes, points.position);
                     for (next, around) in next.iter_mut().zip(around).take(S::DIMENSION) {
                         *next = *next + around * time_step;
@@ -198,13 +187,13 @@ impl<S: Space, B: Basis, T: Transfer, const PROJECT: bool, const MOVE: bool> Fou
                     affine = T::carried::<S, _>(before, made, &stencil);
                     batch.write_matrices::<S, L>(affine, points.affine);
                 }
-                if PROJECT && let Some((reached, patch)) = &mut reached {
+                if let Some((reached, patch)) = &mut reached {
                     let shown = ExtrapolatedVelocity::new::<S, T>(&lattice.cell, &stencil, velocity, affine);
                     let mass = batch.amounts(lanes, points.mass);
                     bring::<S, B, T, L>(&shown, &stencil, mass, reached, *patch);
                 }
             }
-            if PROJECT {
+            if projects {
                 projected.put_back::<S, B>(&part.window, run.base, &projected_copies);
             }
         }

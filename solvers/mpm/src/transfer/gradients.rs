@@ -9,40 +9,37 @@ use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
 /// Kernel that computes velocity gradients (1/s) at the points of some batches of a body.
-///
-/// With `MOVE` it also computes the next positions x_p + Δt Σ N_i(x_p) v_i (m).
-pub(crate) struct Gradients<'a, S: Space, B, N, V, const MOVE: bool> {
+pub(crate) struct Gradients<'a, S: Space, B, N, V> {
     ground: Ground<'a, S>,
     nodes: &'a [N],
     /// Function that returns the velocity of a node (m/s).
     velocity: V,
     gradients: &'a mut [S::Matrix],
-    /// Next positions (m), with the same index offset as the positions of `ground`.
-    next: &'a mut [S::Vector],
+    /// Next positions x_p + Δt Σ N_i(x_p) v_i (m), with the same index offset as the positions of `ground`. If `None`,
+    /// they are not computed.
+    next: Option<&'a mut [S::Vector]>,
     /// Time step Δt (s).
     time_step: f64,
     basis: PhantomData<B>,
 }
 
-impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Gradients<'a, S, B, N, V, MOVE> {
+impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Gradients<'a, S, B, N, V> {
     pub(crate) const fn new(
         ground: Ground<'a, S>,
         nodes: &'a [N],
         velocity: V,
         gradients: &'a mut [S::Matrix],
-        next: &'a mut [S::Vector],
+        next: Option<&'a mut [S::Vector]>,
         time_step: f64,
     ) -> Self {
         Self { ground, nodes, velocity, gradients, next, time_step, basis: PhantomData }
     }
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> FourKernel
-    for Gradients<'_, S, B, N, V, MOVE>
-{
+impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradients<'_, S, B, N, V> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { ground, nodes, velocity, gradients, next, time_step, .. } = self;
+        let Self { ground, nodes, velocity, gradients, mut next, time_step, .. } = self;
         let zero = SimdPack::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
         // Placeholder that is overwritten before it is read.
@@ -68,7 +65,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
                         let velocities = weighted::<B, _>(velocity, values);
                         gradient[0] = gradient[0] + along * across.value;
                         gradient[1] = gradient[1] + velocities * across.slope[0];
-                        if MOVE {
+                        if next.is_some() {
                             *around = *around + velocities * across.value;
                         }
                         if S::DIMENSION == 3 {
@@ -77,7 +74,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector, const MOVE: bool> Four
                     }
                 }
                 batch.counted_from(first).write_matrices::<S, L>(gradient, gradients);
-                if MOVE {
+                if let Some(next) = &mut next {
                     let batch = batch.counted_from(ground.first);
                     let mut position = batch.vectors::<S, L>(lanes, ground.position);
                     for (position, around) in position.iter_mut().zip(around).take(S::DIMENSION) {
