@@ -106,6 +106,10 @@ impl<S, N, T, R> Chain<S, N, T, R> {
 }
 
 impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> {
+    /// True if the spin of a grain has a quad of its own. As a constant without an operation, it keeps the compiler from
+    /// compiling the loop that is not used.
+    const SEPARATE_SPINS: bool = T::ACTIVE && S::DIMENSION == 3;
+
     /// Evaluates the contacts of all grains at a mesh wall. A grain may be in contact with several parts of the mesh.
     fn at_mesh(
         &self,
@@ -136,7 +140,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         touching: &ContactList,
         seen: Option<&mut RecordedContacts>,
     ) {
-        if T::ACTIVE && S::DIMENSION == 3 {
+        if Self::SEPARATE_SPINS {
             PairLoop::<S, N, T, R, 2>::new(terms, grains, pairs, touching, seen).run_on(processor);
         } else {
             PairLoop::<S, N, T, R, 1>::new(terms, grains, pairs, touching, seen).run_on(processor);
