@@ -5,6 +5,7 @@ use super::cores::MOST_THREADS;
 use super::exit::{Fault, Outcome, print, say};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
+use super::provenance;
 use super::value::whole;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::{Case, runner, solvers};
@@ -143,7 +144,7 @@ impl StorageTask<'_> {
                 if wanted.wrong { runner.run_wrong(&wanted.claim, &wanted.run) } else { runner.run(&wanted.run) };
             done.map_err(|error| Fault::Broken(error.to_string()))?
         };
-        let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
+        let date = provenance::today();
         let made = [env!("GRAINBENCH_COMMIT"), &date];
         let files = kept::files(wanted, &done, &self.given, made).map_err(Fault::input)?;
         let mut out = StagedDir::new(wanted.folder()).map_err(Fault::writing)?.without_manifest();

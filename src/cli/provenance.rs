@@ -1,16 +1,27 @@
 //! Provenance of a run: program, date and machine.
 
 use super::cores::cores;
+use chrono::Utc;
 use grainbench::lanes::Processor;
 use grainbench::reports::{Provenance, number};
 use std::fs;
+
+/// Returns the date in UTC, for example 2026-01-31.
+pub(crate) fn today() -> String {
+    Utc::now().format("%Y-%m-%d").to_string()
+}
+
+/// Returns the date and time in UTC, for example 2026-01-31 12:00:00 UTC.
+pub(crate) fn now() -> String {
+    Utc::now().format("%Y-%m-%d %H:%M:%S UTC").to_string()
+}
 
 /// Returns the provenance of a run of `wall_seconds` (s). `options` are the options of the run in words.
 pub(crate) fn provenance(options: Vec<String>, wall_seconds: f64) -> Provenance {
     Provenance {
         version: env!("CARGO_PKG_VERSION").to_owned(),
         commit: env!("GRAINBENCH_COMMIT").to_owned(),
-        date: jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string(),
+        date: now(),
         machine: machine(),
         rustc: env!("GRAINBENCH_RUSTC").to_owned(),
         options,

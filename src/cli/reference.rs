@@ -5,7 +5,7 @@ use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::fetch::{Fetch, fetch};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
-use super::provenance::provenance;
+use super::provenance::{self, provenance};
 use super::publish::{Output, publish};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
@@ -95,7 +95,7 @@ fn named(ids: &[String]) -> Result<Vec<Reference>, Fault> {
 fn build(arguments: &Build) -> Outcome {
     let wanted = named(&arguments.ids)?;
     arguments.out.as_deref().map(check_writable).transpose()?;
-    let date = jiff::Timestamp::now().strftime("%Y-%m-%d").to_string();
+    let date = provenance::today();
     let progress = Progress::new(wanted.len() as u64, "runs");
     let mut lines = String::new();
     let mut failed = false;
@@ -155,7 +155,7 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         let mut stored = StoredEstimates {
             program: format!("grainbench {}", env!("CARGO_PKG_VERSION")),
             commit: env!("GRAINBENCH_COMMIT").to_owned(),
-            date: jiff::Timestamp::now().strftime("%Y-%m-%d").to_string(),
+            date: provenance::today(),
             rule: RULE.to_owned(),
             estimate: Vec::new(),
         };

@@ -4,7 +4,7 @@
 use super::arguments::Arguments;
 use crate::cli::exit::{self, Fault, Outcome, RED};
 use crate::cli::keep::keep_study;
-use crate::cli::provenance::provenance;
+use crate::cli::provenance::{self, provenance};
 use crate::cli::publish::{Output, publish_study};
 use grainbench::jobs::execute::{TaskList, Watch};
 use grainbench::jobs::plan::{Head, Plan};
@@ -72,7 +72,7 @@ pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Pla
     let mut head = Head::new(words, study.is_timed());
     head.shards = arguments.shards.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
-    head.date = jiff::Timestamp::now().strftime("%Y-%m-%d %H:%M:%S UTC").to_string();
+    head.date = provenance::now();
     head.inputs = study.inputs();
     let tasks = study.tasks(&head.program)?;
     if tasks.is_empty() {
