@@ -4,6 +4,9 @@
 //! and message. It must print nothing on the standard output, and must neither create nor change a file. In a message,
 //! `[DIR]` is the directory, `[ROOT]` the repository, `[cases]` and `[solvers]` are the names of the registries, and
 //! `[..]` is any text. `UPDATE_REFUSALS=1` writes the messages of the program to the tables.
+//!
+//! An entry with one edit is a row `[text, message]` in the list of `[rows]` with the name of the edit, for `replace` a
+//! row `[text, replacement, message]`. Any other entry is a `[[refusal]]`.
 
 use crate::common::{Directory, files, root, temporary};
 use grainbench::cases::registry::CASES;
@@ -27,7 +30,31 @@ struct Table {
     prepare: Vec<String>,
     /// Files that are made from the output of these commands, by name.
     prepared: BTreeMap<String, Entry>,
+    /// Entries with one edit, by the name of the edit.
+    rows: BTreeMap<String, Vec<Vec<String>>>,
     refusal: Vec<Entry>,
+}
+
+/// Place of an entry in its file: the name of its list of rows, or none for a `[[refusal]]`, and its index.
+type Place = (Option<String>, usize);
+
+impl Table {
+    /// Returns all entries with their places.
+    fn entries(&self) -> Vec<(Place, Entry)> {
+        let rows = self.rows.iter().flat_map(|(edit, rows)| rows.iter().enumerate().map(move |row| (edit, row)));
+        let read = |(edit, (at, row)): (&String, (usize, &Vec<String>))| {
+            let value: toml::Value = match &row[..] {
+                [text, _] => text.clone().into(),
+                [from, to, _] => vec![vec![from.clone(), to.clone()]].into(),
+                _ => panic!("{edit} {at}: expected two or three texts, found {row:?}"),
+            };
+            let message = row[row.len() - 1].clone().into();
+            let entry = toml::Table::from_iter([(edit.clone(), value), ("message".to_owned(), message)]).try_into();
+            ((Some(edit.clone()), at), entry.unwrap_or_else(|error| panic!("{edit} {at}: {error}")))
+        };
+        let whole = self.refusal.iter().enumerate().map(|(at, entry)| ((None, at), entry.clone()));
+        rows.map(read).chain(whole).collect()
+    }
 }
 
 /// A file, given by a base and edits, and a command that must reject it. The edits are applied in the order of these fields.
@@ -68,15 +95,14 @@ struct Entry {
 }
 
 impl Entry {
-    fn or(&self, common: &Self) -> Self {
-        let mut entry = self.clone();
-        if entry.text.is_none() {
-            entry.base = entry.base.or_else(|| common.base.clone());
+    fn or(mut self, common: &Self) -> Self {
+        if self.text.is_none() {
+            self.base = self.base.or_else(|| common.base.clone());
         }
-        entry.file = entry.file.or_else(|| common.file.clone());
-        entry.command = entry.command.or_else(|| common.command.clone());
-        entry.alone = entry.alone.or(common.alone);
-        entry
+        self.file = self.file.or_else(|| common.file.clone());
+        self.command = self.command.or_else(|| common.command.clone());
+        self.alone = self.alone.or(common.alone);
+        self
     }
 
     /// Returns the name of the entry, or the first line of the text that distinguishes it.
@@ -176,8 +202,8 @@ fn write(directory: &Path, name: &str, bytes: &[u8]) {
     }
 }
 
-/// Runs all entries of a table. Returns the number, the failure and the actual message of each failed entry.
-fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
+/// Runs all entries of a table. Returns the place, the failure and the actual message of each failed entry.
+fn failures(table: &Table) -> Vec<(Place, String, Option<String>)> {
     let path = temporary();
     let prepare = |files: &BTreeMap<String, Entry>| {
         files.iter().for_each(|(name, file)| {
@@ -189,7 +215,7 @@ fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
         path.ok(line);
     }
     prepare(&table.prepared);
-    let check = |entry: &Entry| -> Result<(), (String, Option<String>)> {
+    let check = |entry: Entry| -> Result<(), (String, Option<String>)> {
         let entry = entry.or(&table.common);
         let bytes = entry.contents(&path).map_err(|error| (error, None))?;
         let file = entry.file.filter(|_| entry.base.is_some() || entry.text.is_some());
@@ -222,8 +248,11 @@ fn failures(table: &Table) -> Vec<(usize, String, Option<String>)> {
             Err((format!("expected {expected}\n    found {found}"), Some(found)))
         }
     };
-    let entries = table.refusal.iter().enumerate();
-    entries.filter_map(|(at, entry)| check(entry).err().map(|(failure, found)| (at, failure, found))).collect()
+    let failure = |(place, entry): (Place, Entry)| {
+        let name = entry.shown().to_owned();
+        check(entry).err().map(|(failure, found)| (place, format!("{name}: {failure}"), found))
+    };
+    table.entries().into_iter().filter_map(failure).collect()
 }
 
 #[test]
@@ -236,16 +265,26 @@ fn every_refusal_is_as_in_its_table() {
         let failed = failures(&table);
         if std::env::var_os("UPDATE_REFUSALS").is_some() {
             let mut table: toml_edit::DocumentMut = text.parse().unwrap();
-            for (at, found) in failed.iter().filter_map(|(at, _, found)| Some((at, found.as_ref()?))) {
-                table["refusal"][*at]["message"] = toml_edit::value(found);
+            for ((list, at), found) in failed.iter().filter_map(|(place, _, found)| Some((place, found.as_ref()?))) {
+                let message = match list {
+                    Some(list) => {
+                        let row = &mut table["rows"][list][*at];
+                        let last = row.as_array().unwrap().len() - 1;
+                        &mut row[last]
+                    }
+                    None => &mut table["refusal"][*at]["message"],
+                };
+                let layout = message.as_value().unwrap().decor().clone();
+                *message = toml_edit::value(found);
+                *message.as_value_mut().unwrap().decor_mut() = layout;
             }
             fs::write(file, table.to_string()).unwrap();
         }
         let name = file.file_name().unwrap().to_string_lossy();
-        let shown = failed
-            .into_iter()
-            .map(|(at, failure, _)| format!("{name}, entry {} ({}): {failure}", at + 1, table.refusal[at].shown()));
-        (table.refusal.len(), shown.collect())
+        let shown = failed.into_iter().map(|((list, at), failure, _)| {
+            format!("{name}, {} {}, {failure}", list.as_deref().unwrap_or("refusal"), at + 1)
+        });
+        (table.entries().len(), shown.collect())
     };
     let results: Vec<_> = tables.par_iter().map(run).collect();
     let count: usize = results.iter().map(|(count, _)| count).sum();
@@ -262,15 +301,12 @@ fn a_wrong_entry_of_a_table_is_found() {
 common = { base = "two-discs.toml", file = "scene.toml", command = "simulate scene.toml --solver dem --out out" }
 [files]
 "kept.toml" = { base = "two-discs.toml", replace = [["Two", "2"]] }
-[[refusal]]
-replace = [["dimension = 2", "dimension = 4"]]
-message = "error: scene.toml:2: dimension: [..]found 4[..]"
-[[refusal]]
-replace = [["dimension = 2", "dimension = 4"]]
-message = "error: scene.toml: dimension: expected 2 or 3, found 5"
-[[refusal]]
-replace = [["dimension = 7", "dimension = 4"]]
-message = "error: scene.toml:2: dimension: [..]found 4[..]"
+[rows]
+replace = [
+    ["dimension = 2", "dimension = 4", "error: scene.toml:2: dimension: [..]found 4[..]"],
+    ["dimension = 2", "dimension = 4", "error: scene.toml: dimension: expected 2 or 3, found 5"],
+    ["dimension = 7", "dimension = 4", "error: scene.toml:2: dimension: [..]found 4[..]"],
+]
 [[refusal]]
 replace = [["dimension = 2", "dimension = 4"]]
 code = 1
@@ -283,14 +319,14 @@ message = ""
     .unwrap();
     let found = failures(&table);
     let said = [
-        (1, "found error: scene.toml"),
-        (2, "the edit does not apply"),
-        (3, "expected (Some(1)"),
-        (4, "expected (Some(2)"),
+        (Some("replace"), 1, "found error: scene.toml"),
+        (Some("replace"), 2, "the edit does not apply"),
+        (None, 0, "expected (Some(1)"),
+        (None, 1, "expected (Some(2)"),
     ];
     assert_eq!(found.len(), said.len(), "{found:?}");
-    for ((at, failure, _), (entry, words)) in found.iter().zip(said) {
-        assert!(*at == entry && failure.contains(words), "{at}: {failure}");
+    for (((list, at), failure, _), (in_list, entry, words)) in found.iter().zip(said) {
+        assert!(list.as_deref() == in_list && *at == entry && failure.contains(words), "{list:?} {at}: {failure}");
     }
 }
 
