@@ -166,7 +166,7 @@ fn unpacked(bytes: Vec<u8>) -> Vec<u8> {
 }
 
 /// Returns a message with placeholders for paths and for the names of the registries, and without spaces at the ends of lines.
-fn settled(message: &str, directory: &Path) -> String {
+pub(crate) fn settled(message: &str, directory: &Path) -> String {
     let lines = |names: Vec<String>| names.iter().map(|name| format!("  {name}\n")).collect::<String>();
     let cases = lines(CASES.iter().map(|case| case.name.to_owned()).collect());
     let message = message.replace(&cases, "  [cases]\n").replace(&lines(solvers::names()), "  [solvers]\n");

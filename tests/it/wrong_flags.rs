@@ -2,8 +2,7 @@
 //! message. The options are read from the help of the command, so that none is missing.
 
 use crate::common::{Directory, files, temporary};
-use grainbench::cases::registry::CASES;
-use std::fmt::Write as _;
+use crate::refusals::settled;
 use std::path::Path;
 
 /// Commands with their required arguments.
@@ -97,11 +96,8 @@ position = [0.0, 0.0]
     std::fs::create_dir(directory.join("a-directory")).unwrap();
 }
 
-/// Replaces the names of all cases by a placeholder, so that a new case does not change the snapshots.
-fn without_cases(message: &str) -> String {
-    let cases: String = CASES.iter().map(|case| format!("  {}\n", case.name)).collect();
-    message.replace(&cases, "  [cases]\n")
-}
+/// Last lines of each error of the parser of options. The snapshot has `[help]` instead of them.
+const HELP: &str = "\n\nFor more information, try '--help'.";
 
 /// Returns a command without one of its options and the value of this option.
 fn without(command: &str, option: &str) -> String {
@@ -112,20 +108,20 @@ fn without(command: &str, option: &str) -> String {
     words.join(" ")
 }
 
-/// Returns the messages of a command for wrong values of each of its options.
-fn answers(command: &str) -> String {
+/// Returns the messages of a command for wrong values of each of its options, with the line of the command.
+fn answers(command: &str) -> Vec<(String, String)> {
     let directory = temporary();
     prepare(&directory);
     let before = files(&directory);
     let help = directory.run_alone(name(command) + " --help");
-    let mut messages = String::new();
+    let mut messages = Vec::new();
     let mut ask = |word: &str| {
         let option = word.split('=').next().unwrap_or_default();
         let given = without(command, option) + " " + word;
         let answer = directory.run_alone(&given);
-        writeln!(messages, "$ grainbench {}\n{}", given, without_cases(answer.err.trim_end())).unwrap();
-        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{messages}");
-        assert_eq!(files(&directory), before, "{messages}");
+        assert_eq!((answer.code, answer.out.as_str()), (Some(2), ""), "{given}: {}", answer.err);
+        assert_eq!(files(&directory), before, "{given}");
+        messages.push((settled(&answer.err, &directory).trim_end().replace(HELP, " [help]"), given));
     };
     for option in options(&help.out) {
         for value in wrong(&option) {
@@ -139,11 +135,19 @@ fn answers(command: &str) -> String {
     messages
 }
 
+/// The snapshot contains each message once, below the lines of all commands that print it.
 #[test]
 fn each_option_given_wrongly_is_refused_by_a_message_that_helps() {
-    for command in COMMANDS {
-        insta::assert_snapshot!(name(command).replace(' ', "_"), answers(command));
+    let mut messages: Vec<(String, String)> = Vec::new();
+    for (message, given) in COMMANDS.into_iter().flat_map(answers) {
+        let line = format!("$ grainbench {given}\n");
+        match messages.iter_mut().find(|(known, _)| *known == message) {
+            Some((_, lines)) => lines.push_str(&line),
+            None => messages.push((message, line)),
+        }
     }
+    let shown = messages.into_iter().map(|(message, lines)| lines + &message);
+    insta::assert_snapshot!(shown.collect::<Vec<_>>().join("\n"));
 }
 
 /// The list of commands in this test is the list of commands that the program shows.
