@@ -59,13 +59,14 @@ fn each_key_given_another_kind_of_value_is_refused_by_a_message_that_helps() {
     assert!(keys.len() > 150, "{}", keys.len());
     let mut messages = String::new();
     for key in &keys {
+        writeln!(messages, "{key}").unwrap();
         for value in WRONG {
             let line = format!("{key} = {value}");
             match answer(&line) {
                 Some(message) => {
                     assert!(message.contains("scene.toml"), "{line}: {message}");
                     assert!(message.contains("expected"), "{line}: {message}");
-                    writeln!(messages, "{line}\n  {}", message.replace('\n', "\n  ")).unwrap();
+                    writeln!(messages, "  {value}: {}", message.replace('\n', "\n  ")).unwrap();
                 }
                 None => assert_eq!(value, "true", "{line} is taken"),
             }
