@@ -1,6 +1,8 @@
 //! Damaged files and their readers. A reader must return the contents, or an error that names the position.
 
-use crate::damage::{self, DATA, DUMPS, LOGS, TABLE, apply, damages, read_dump};
+use crate::damage::{
+    DATA, DUMPS, LOGS, TABLE, apply, damages, expect, of_data, of_dump, of_log, of_table, strange_bytes, well_said,
+};
 use crate::driver::RandomSource;
 use crate::observer::RunObserver;
 use flate2::Compression;
@@ -12,7 +14,6 @@ use grainbench::harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench::reference::comparison::{Options, compare};
 use grainbench::reference::outputs::{OutputError, Outputs, Sources};
 use grainbench::reference::stored::StoredRun;
-use grainbench::reference::{ReadError, parse_data, parse_log, parse_table};
 use grainbench::reports::export::record_json;
 use grainbench::reports::junit::junit_xml;
 use grainbench::reports::measured::Measurements;
@@ -47,10 +48,10 @@ type Files = Vec<(String, Vec<u8>)>;
 
 /// Readers with their weights. Slow readers, which draw, simulate or read many files, have smaller weights.
 const READERS: [Reader; 12] = [
-    ("dump", 4, of_dump),
-    ("log", 4, of_log),
-    ("table", 4, of_table),
-    ("data file", 4, of_data),
+    ("dump", 4, |lot| of_dump(&damaged_text(lot, &DUMPS))),
+    ("log", 4, |lot| of_log(&damaged_text(lot, &LOGS))),
+    ("table", 4, |lot| of_table(&damaged(lot, TABLE.as_bytes()))),
+    ("data file", 4, |lot| of_data(&damaged(lot, DATA.as_bytes()))),
     ("packed dump", 4, of_packed_dump),
     ("bytes", 4, of_bytes),
     ("checkpoint", 2, of_checkpoint),
@@ -95,8 +96,10 @@ fn damaged(lot: &mut RandomSource, bytes: &[u8]) -> Vec<u8> {
     bytes
 }
 
-fn refused(error: &ReadError) -> Answer {
-    damage::well_said(error).map_err(|error| error.to_string())
+/// Damages one of several texts.
+fn damaged_text(lot: &mut RandomSource, texts: &[&str]) -> Vec<u8> {
+    let text = lot.one(texts).as_bytes();
+    damaged(lot, text)
 }
 
 /// Checks an error message: it must be one line and name the file.
@@ -104,43 +107,6 @@ fn one_line_of(path: &Path, error: &dyn ToString) -> Answer {
     let message = error.to_string();
     let names = message.contains(&*path.to_string_lossy());
     if names && !message.chars().any(char::is_control) { Ok(()) } else { Err(format!("badly said: {message:?}")) }
-}
-
-fn expect(holds: bool, what: &str) -> Answer {
-    if holds { Ok(()) } else { Err(what.to_owned()) }
-}
-
-fn of_dump(lot: &mut RandomSource) -> Answer {
-    let text = lot.one(&DUMPS).as_bytes();
-    match read_dump(&damaged(lot, text)) {
-        Ok(sound) => expect(sound, "a number of a dump is none"),
-        Err(error) => refused(&error),
-    }
-}
-
-fn of_log(lot: &mut RandomSource) -> Answer {
-    let text = lot.one(&LOGS).as_bytes();
-    parse_log(&damaged(lot, text)[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))
-}
-
-fn of_table(lot: &mut RandomSource) -> Answer {
-    match parse_table(&damaged(lot, TABLE.as_bytes())[..], "f") {
-        Ok(table) => expect(table.rows() > 0, "a table without rows"),
-        Err(error) => refused(&error),
-    }
-}
-
-fn of_data(lot: &mut RandomSource) -> Answer {
-    match parse_data(&damaged(lot, DATA.as_bytes())[..], "f") {
-        Ok(data) => expect(
-            data.atoms.iter().all(|grain| {
-                let numbers = grain.position.iter().chain(&grain.velocity).all(|value| value.is_finite());
-                numbers && grain.mass() > 0.0 && grain.mass().is_finite()
-            }),
-            "a number of a grain is none",
-        ),
-        Err(error) => refused(&error),
-    }
 }
 
 fn packed(bytes: &[u8], zstd: bool) -> Vec<u8> {
@@ -157,19 +123,15 @@ fn of_packed_dump(lot: &mut RandomSource) -> Answer {
     let text = lot.one(&DUMPS).as_bytes();
     let (zstd, before) = lot.draw(any::<(bool, bool)>());
     let bytes = if before { packed(&damaged(lot, text), zstd) } else { damaged(lot, &packed(text, zstd)) };
-    match read_dump(&bytes) {
-        Ok(sound) => expect(sound, "a number of a dump is none"),
-        Err(error) => refused(&error),
-    }
+    of_dump(&bytes)
 }
 
 fn of_bytes(lot: &mut RandomSource) -> Answer {
-    let head = *lot.one(&[&b""[..], &[0x1f, 0x8b, 8, 0], &[0x28, 0xb5, 0x2f, 0xfd]]);
-    let bytes = [head, &lot.draw(prop::collection::vec(any::<u8>(), 0..200))].concat();
+    let bytes = lot.draw(strange_bytes());
     lot.show(&format!("{bytes:?}"));
-    parse_data(&bytes[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))?;
-    parse_log(&bytes[..], "f").map_or_else(|error| refused(&error), |_| Ok(()))?;
-    read_dump(&bytes).map_or_else(|error| refused(&error), |_| Ok(()))
+    of_data(&bytes)?;
+    of_log(&bytes)?;
+    of_dump(&bytes)
 }
 
 /// Returns the scene of a case with a short duration.
@@ -337,7 +299,7 @@ fn of_two(lot: &mut RandomSource) -> Answer {
     let first = left("first", &damaged(lot, text.as_bytes()));
     if lot.draw(any::<bool>()) {
         let second = left("second", text.as_bytes());
-        return compare(&first, &second, &Options::default()).map_or_else(|error| refused(&error), |_| Ok(()));
+        return compare(&first, &second, &Options::default()).map_or_else(|error| well_said(&error), |_| Ok(()));
     }
     let sources = Sources {
         files: vec![first.clone()],
@@ -354,7 +316,7 @@ fn of_two(lot: &mut RandomSource) -> Answer {
             let numbers = observed.series.time.iter().chain(observed.series.values.iter().flatten());
             expect(numbers.into_iter().all(|value| value.is_finite()), "a number of what was observed is none")
         }
-        Err(OutputError::Read(error)) => refused(&error),
+        Err(OutputError::Read(error)) => well_said(&error),
         Err(error) => one_line_of(&first, &error),
     }
 }

@@ -1,9 +1,9 @@
-//! Random damage to files, and checks of the behaviour of readers.
+//! Random damage to files, and the demands on the readers of the damaged files.
 
 // Each test file uses only a part of this module.
 #![allow(dead_code, unreachable_pub)]
 
-use grainbench_reference::{DumpReader, DumpSnapshot, ReadError};
+use grainbench_reference::{DumpReader, DumpSnapshot, ReadError, parse_data, parse_log, parse_table};
 use proptest::prelude::*;
 
 /// Data file in the format that LAMMPS writes.
@@ -88,6 +88,12 @@ pub(crate) fn damages() -> impl Strategy<Value = Vec<(f64, Damage)>> {
     prop::collection::vec((0.0..1.0, one), 1..5)
 }
 
+/// Returns a strategy for random bytes, some with the beginning of a compressed file.
+pub(crate) fn strange_bytes() -> impl Strategy<Value = Vec<u8>> {
+    let head = prop::sample::select(vec![&b""[..], &[0x1f, 0x8b, 8, 0], &[0x28, 0xb5, 0x2f, 0xfd]]);
+    (head, prop::collection::vec(any::<u8>(), 0..200)).prop_map(|(head, bytes)| [head, &bytes].concat())
+}
+
 /// Applies damages to a text, one after the other.
 pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     let mut bytes = text.to_vec();
@@ -117,15 +123,6 @@ pub(crate) fn apply(text: &[u8], damages: &[(f64, Damage)]) -> Vec<u8> {
     bytes
 }
 
-/// Checks that the text of an error is one line with the position, the expected and the actual content.
-pub(crate) fn well_said(error: &ReadError) -> Result<(), TestCaseError> {
-    let shown = error.to_string();
-    prop_assert!(!shown.contains(|character: char| character.is_control()), "{shown:?}");
-    prop_assert!(error.line().is_some_and(|line| shown.starts_with(&format!("{}:{line}:", error.file()))), "{shown}");
-    prop_assert!(shown.contains(": expected ") && shown.contains(", found "), "{shown}");
-    Ok(())
-}
-
 /// Dumps written by LAMMPS and LIGGGHTS.
 pub(crate) const DUMPS: [&str; 5] = [
     include_str!("../data/lammps-nine.dump"),
@@ -139,8 +136,20 @@ pub(crate) const LOGS: [&str; 2] = [include_str!("../data/lammps-two-runs.log"),
 /// Table of a stored run.
 pub(crate) const TABLE: &str = include_str!("../data/series.csv");
 
+/// Describes an error message that is not one line with the position, the expected and the actual content.
+pub(crate) fn well_said(error: &ReadError) -> Result<(), String> {
+    let shown = error.to_string();
+    let placed = error.line().is_some_and(|line| shown.starts_with(&format!("{}:{line}:", error.file())));
+    let complete = placed && shown.contains(": expected ") && shown.contains(", found ");
+    expect(complete && !shown.chars().any(char::is_control), &format!("badly said: {shown:?}"))
+}
+
+pub(crate) fn expect(holds: bool, what: &str) -> Result<(), String> {
+    if holds { Ok(()) } else { Err(what.to_owned()) }
+}
+
 /// Reads a dump to the end. Returns true if all numbers are finite and all rows are complete.
-pub(crate) fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
+fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
     let mut reader = DumpReader::new(bytes, "f")?;
     let mut snapshot = DumpSnapshot::default();
     let mut sound = true;
@@ -152,4 +161,32 @@ pub(crate) fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
         }
     }
     Ok(sound)
+}
+
+pub(crate) fn of_dump(bytes: &[u8]) -> Result<(), String> {
+    read_dump(bytes).map_or_else(|error| well_said(&error), |sound| expect(sound, "a number of a dump is none"))
+}
+
+pub(crate) fn of_log(bytes: &[u8]) -> Result<(), String> {
+    parse_log(bytes, "f").map_or_else(|error| well_said(&error), |_| Ok(()))
+}
+
+/// Reads a table, which must have rows.
+pub(crate) fn of_table(bytes: &[u8]) -> Result<(), String> {
+    let read = parse_table(bytes, "f");
+    read.map_or_else(|error| well_said(&error), |table| expect(table.rows() > 0, "a table without rows"))
+}
+
+/// Reads a data file. Its masses must be positive and all its numbers finite.
+pub(crate) fn of_data(bytes: &[u8]) -> Result<(), String> {
+    match parse_data(bytes, "f") {
+        Ok(data) => expect(
+            data.atoms.iter().all(|grain| {
+                let numbers = grain.position.iter().chain(&grain.velocity).all(|value| value.is_finite());
+                numbers && grain.mass() > 0.0 && grain.mass().is_finite()
+            }),
+            "a number of a grain is none",
+        ),
+        Err(error) => well_said(&error),
+    }
 }
