@@ -5,14 +5,13 @@
 #[path = "../../benches/minimal/mod.rs"]
 mod minimal;
 
+use crate::common::scene;
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::effect::Effect;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use minimal::Minimal;
-use std::path::Path;
 use std::process::Command;
 
 /// Environment variable that tells the process under valgrind which loop to run and for how many steps.
@@ -26,14 +25,12 @@ const FRICTION: f64 = 1.3;
 
 /// Returns a square lattice of overlapping discs. It expands at its rim without rebuilding the neighbour list.
 fn lattice() -> Scene {
-    let text = format!(
+    scene(&format!(
         "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\
          contacts.all = {{ between = ['disc', 'disc'], normal_stiffness = 1.0 }}\n\
          grains.disc = {{ material = 'disc', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], \
          count = [{SIDE}, {SIDE}] }} }}\n"
-    );
-    let source = SceneSource::from_text("lattice", Path::new(""), &text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    ))
 }
 
 /// Returns dense shear of 10,000 discs without friction.

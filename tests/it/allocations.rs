@@ -1,13 +1,12 @@
 //! Loops over grains, contacts, points and nodes allocate no memory. Allocations are counted for each kernel of our solvers.
 
-use crate::common::temporary_with;
+use crate::common::{scene_in, temporary_with};
 use allocation_counter::measure;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::mpm::solver::Mpm;
 use grainbench::scene::scene::{Duration, Sampling, Scene};
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::resolution::Resolution;
 use rayon::prelude::*;
 use std::path::Path;
@@ -28,9 +27,7 @@ fn counted(run: impl Fn(u64)) -> i64 {
 
 /// Reads a scene, and removes all output between its start and its end.
 fn scene(directory: &Path, text: &str) -> Scene {
-    let source = SceneSource::from_text("scene", directory, text);
-    let mut scene =
-        source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}\n{text}"));
+    let mut scene = scene_in(directory, text).unwrap_or_else(|error| panic!("{error}\n{text}"));
     (scene.sampling, scene.snapshots) = (Sampling::Cycles(u64::MAX), 0);
     scene
 }

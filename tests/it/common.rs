@@ -3,8 +3,13 @@
 // Each test program uses only some of these helpers.
 #![allow(dead_code)]
 
+use grainbench::cases::solvers;
+use grainbench::scene::resolve::no_data_file;
+use grainbench::scene::scene::Scene;
+use grainbench::scene::source::SceneSource;
 use grainbench::solver::kept_record;
 use grainbench::solver::record::{Cost, Record};
+use grainbench::solver::resolution::Resolution;
 use serde_json::Value;
 use std::io::Read;
 use std::path::{Path, PathBuf};
@@ -150,6 +155,23 @@ pub(crate) fn words(line: &str) -> Vec<String> {
     }
     words.extend(word);
     words
+}
+
+/// Returns the scene of a text. Its meshes are in a directory.
+pub(crate) fn scene_in(directory: &Path, text: &str) -> Result<Scene, String> {
+    let source = SceneSource::from_text("scene", directory, text);
+    source.scene(&no_data_file).map_err(|error| error.to_string())
+}
+
+/// Returns the scene of a text that names no other file.
+pub(crate) fn scene(text: &str) -> Scene {
+    scene_in(Path::new(""), text).unwrap_or_else(|error| panic!("{error}\n{text}"))
+}
+
+/// Returns the record of a run that must succeed.
+pub(crate) fn simulated(solver: &str, scene: &Scene, resolution: &Resolution) -> Record {
+    let solver = solvers::by_name(solver).unwrap();
+    solver.run(scene, resolution, &mut ()).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns a record as bytes, without its run time. Comparing printed numbers would take longer than most runs.

@@ -1,12 +1,10 @@
 //! Continuum fields on the command line, from our runs, from dumps of external programs, and from invalid files.
 
-use crate::common::{Directory, temporary, temporary_with};
-use grainbench::cases::solvers;
+use crate::common::{Directory, scene, simulated, temporary, temporary_with};
 use grainbench::fields::element::{elements, whole_stress};
 use grainbench::fields::grid::Grid;
 use grainbench::scene::dimension::Dimension;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::record::{Partner, Snapshot};
 use grainbench::solver::resolution::Resolution;
 use std::fmt::Write;
@@ -58,10 +56,7 @@ snapshots = 3
 
 /// Returns the snapshot of the packing at rest.
 fn packing() -> Snapshot {
-    let source = SceneSource::from_text("packing", Path::new(""), SCENE);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
-    let solver = solvers::by_name("dem").unwrap();
-    let record = solver.run(&scene, &Resolution::CriticalFraction(0.1), &mut ()).unwrap();
+    let record = simulated("dem", &scene(SCENE), &Resolution::CriticalFraction(0.1));
     record.snapshots.into_iter().next_back().unwrap()
 }
 

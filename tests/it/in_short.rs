@@ -1,10 +1,8 @@
 //! Snapshots that need not be stored are reduced to a summary and use no memory.
 
-use crate::common::{Directory, temporary};
+use crate::common::{Directory, scene, temporary};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
-use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::brief::Brief;
 use grainbench::solver::observer::RunOptions;
 use grainbench::solver::record::Series;
@@ -35,15 +33,13 @@ const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_init
     [output]\nevery = 0.004\nsnapshots = 2\n";
 
 fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, RunObserver) {
-    let scene: Scene =
-        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
     let mut observer =
         RunObserver::new(RunOptions { threads, most_rows, keep_snapshots: false, ..RunOptions::DEFAULT });
     let resolution = match solver {
         "mpm" => Resolution::Grid { cells: 6.0, points: 2, courant: 0.4 },
         _ => Resolution::CriticalFraction(0.1),
     };
-    let record = solvers::by_name(solver).unwrap().run(&scene, &resolution, &mut observer).unwrap();
+    let record = solvers::by_name(solver).unwrap().run(&scene(text), &resolution, &mut observer).unwrap();
     (record.series, observer)
 }
 

@@ -1,16 +1,14 @@
 //! Walls of triangles. They give the same results as other walls with the same surface, also with motion and with
 //! inserted and removed grains. Invalid files are rejected.
 
-use crate::common::{Directory, bits, temporary, temporary_with};
+use crate::common::{Directory, bits, scene_in, temporary, temporary_with};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::observer::{Observer, RunOptions};
 use grainbench::solver::record::Record;
 use grainbench::solver::resolution::Resolution;
 use std::fmt::Write as _;
-use std::path::Path;
 
 type Triangle = [[f64; 3]; 3];
 
@@ -61,12 +59,6 @@ material = "m"
 radius = 0.2
 lattice = { origin = [-0.79, -0.8, -0.79], spacing = [0.5, 0.51, 0.52], count = [4, 4, 3] }
 "#;
-
-fn scene_in(directory: &Path, text: &str) -> Result<Scene, String> {
-    SceneSource::from_text("mesh", directory, text)
-        .scene(&grainbench_scene::resolve::no_data_file)
-        .map_err(|error| error.to_string())
-}
 
 fn scene(triangles: &[Triangle], text: &str) -> Scene {
     let directory = temporary_with("wall.stl", stl(triangles));

@@ -4,10 +4,8 @@
 //! moves with the belt. Velocity and displacement of the disc are therefore a third of those of the belt, as long as F
 //! = m A/3 is below μ m g. A is the acceleration of the belt.
 
-use grainbench::cases::solvers;
-use grainbench::scene::source::SceneSource;
+use crate::common::{scene, simulated};
 use grainbench::solver::resolution::Resolution;
-use std::path::Path;
 
 /// Final velocity of the belt (m/s).
 const SPEED: f64 = 1.0;
@@ -25,9 +23,7 @@ fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
          [walls.belt]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\nmotion = [{motion}]\n\
          [output]\nsnapshots = 0\n[probes]\ndisc.grain = 'disc'\n"
     );
-    let source = SceneSource::from_text("belt", Path::new(""), &text);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
-    let record = solvers::by_name(solver).unwrap().run(&scene, resolution, &mut ()).unwrap();
+    let record = simulated(solver, &scene(&text), resolution);
     *record.series.column("disc.x").unwrap().last().unwrap()
 }
 

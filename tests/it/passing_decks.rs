@@ -1,13 +1,11 @@
 //! Decks of scenes with temporary grains, temporary walls and pistons. Each deck gives the same result as our solver,
 //! or an error names the feature that the external program lacks.
 
+use crate::common::{scene, simulated};
 use grainbench::cases::solvers;
-use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::failure::RunError;
 use grainbench::solver::record::Record;
 use grainbench::solver::resolution::Resolution;
-use std::path::Path;
 
 const STEP: Resolution = Resolution::TimeStep(1e-3);
 
@@ -20,16 +18,10 @@ const FLOOR: &str = "[walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0,
 const LID: &str = "[walls.lid]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 2.1], normal = [0.0, 0.0, -1.0] }\n\
     motion = [{ velocity = [0.2, 0.0, 0.0] }]\n[probes]\nlid = { piston = 'lid' }\non-lid = { wall = 'lid' }\n";
 
-fn scene(text: &str) -> Scene {
-    let source = SceneSource::from_text("passing", Path::new(""), text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}\n{text}"))
-}
-
 /// Returns our run and the run of an external program, in its convention. `None` if it is not installed, an error in CI.
 fn both(text: &str, program: &str) -> Option<[Record; 2]> {
-    let run = |solver: &str| solvers::by_name(solver).unwrap().run(&scene(text), &STEP, &mut ());
-    let ours = run(&format!("dem:{program}")).unwrap_or_else(|error| panic!("{error}"));
-    match run(program) {
+    let ours = simulated(&format!("dem:{program}"), &scene(text), &STEP);
+    match solvers::by_name(program).unwrap().run(&scene(text), &STEP, &mut ()) {
         Ok(theirs) => Some([ours, theirs]),
         Err(RunError::NotAvailable { .. }) if std::env::var_os("CI").is_none() => None,
         Err(error) => panic!("{error}"),

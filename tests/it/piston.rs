@@ -1,12 +1,9 @@
 //! Walls with a prescribed force, compared with exact solutions for a piston.
 
-use crate::common::{Directory, temporary_with};
-use grainbench::cases::solvers;
+use crate::common::{self, Directory, simulated, temporary_with};
 use grainbench::scene::nalgebra::{Matrix2, SymmetricEigen, Vector2};
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::record::Record;
 use grainbench::solver::resolution::Resolution;
-use std::path::Path;
 
 /// Force on the lid (N).
 const FORCE: f64 = 30.0;
@@ -42,10 +39,7 @@ piston = {{ force = {FORCE:?}, mass = {MASS:?}, damping = {damping:?} }}
 }
 
 fn run(text: &str) -> Record {
-    let source = SceneSource::from_text("lid", Path::new(""), text);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"));
-    let solver = solvers::by_name("dem").unwrap();
-    solver.run(&scene, &Resolution::CriticalFraction(0.01), &mut ()).unwrap_or_else(|error| panic!("{error}"))
+    simulated("dem", &common::scene(text), &Resolution::CriticalFraction(0.01))
 }
 
 /// Returns the largest difference between a column and its exact values.

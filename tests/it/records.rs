@@ -1,23 +1,20 @@
 //! Options of snapshots: columns, digits, and stress averaged between snapshots.
 
-use crate::common::{Directory, temporary_with};
+use crate::common::{self, Directory, temporary_with};
 use crate::observer::RunObserver;
 use grainbench::cases::solvers;
 use grainbench::reports::each_snapshot;
 use grainbench::scene::nalgebra::{Matrix3, Vector3};
 use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::checkpoint::Checkpoint;
 use grainbench::solver::record::{GrainState, Partner, Record, Snapshot};
 use grainbench::solver::resolution::Resolution;
-use std::path::Path;
 
 /// 1200 colliding spheres of two sizes between two walls and a periodic boundary.
 const SCENE: &str = include_str!("../scenes/falling.toml");
 
 fn scene(output: &str) -> Scene {
-    let source = SceneSource::from_text("falling", Path::new(""), &format!("{SCENE}{output}\n"));
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
+    common::scene(&format!("{SCENE}{output}\n"))
 }
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
@@ -62,7 +59,7 @@ fn apart(found: &[GrainState], stress: impl Fn(&GrainState) -> Option<[f64; 6]>,
 /// The mean over an interval equals the mean over all its steps. Another run stores the contacts of all steps for it.
 #[test]
 fn the_mean_over_an_interval_is_that_of_its_steps() {
-    let each = run(&scene("").each_step(), 1).0;
+    let each = run(&Scene { snapshots: 59, ..scene("") }, 1).0;
     for every in [1, 4] {
         let chosen = format!("columns = ['virial', 'mean-virial']\nmean_every_cycles = {every}");
         let (found, _) = run(&scene(&chosen), 1);
@@ -96,17 +93,6 @@ fn the_mean_over_an_interval_is_that_of_its_steps() {
                 now.contacts.is_none() && now.grains.iter().all(|grain| grain.force.is_none() && grain.spin.x.is_nan())
             );
         }
-    }
-}
-
-trait EachStep {
-    fn each_step(self) -> Self;
-}
-
-impl EachStep for Scene {
-    fn each_step(mut self) -> Self {
-        self.snapshots = 59;
-        self
     }
 }
 

@@ -1,12 +1,11 @@
 //! Walls that are cylinders and cones, compared with exact motions of grains in them.
 
+use crate::common::{self, simulated};
 use grainbench::cases::solvers;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::record::Record;
 use grainbench::solver::resolution::Resolution;
 use std::f64::consts::TAU;
-use std::path::Path;
 
 /// Contact stiffness (N/m).
 const STIFFNESS: f64 = 1e6;
@@ -24,13 +23,11 @@ fn scene(duration: f64, friction: f64, grain: &str, wall: &str) -> Scene {
          [grains.ball]\nmaterial = 'm'\nradius = {RADIUS:?}\n{grain}\n[walls.round]\nmaterial = 'm'\n{wall}\n",
         if friction > 0.0 { 2.0 / 7.0 * STIFFNESS } else { 0.0 },
     );
-    let source = SceneSource::from_text("round", Path::new(""), &text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
+    common::scene(&text)
 }
 
 fn run(scene: &Scene) -> Record {
-    let solver = solvers::by_name("dem").unwrap();
-    solver.run(scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap_or_else(|error| panic!("{error}"))
+    simulated("dem", scene, &Resolution::CriticalFraction(0.02))
 }
 
 /// Returns the times at which a column changes its sign (s).
@@ -150,12 +147,8 @@ fn lammps_has_the_same_round_walls() {
         assert!(std::env::var_os("CI").is_none(), "{reason}");
         return;
     }
-    let source = SceneSource::from_text("round", Path::new(""), DRUM_AND_FUNNEL);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
-    let [ours, theirs] = ["dem:lammps", "lammps"].map(|name| {
-        let solver = solvers::by_name(name).unwrap();
-        solver.run(&scene, &Resolution::TimeStep(2e-4), &mut ()).unwrap_or_else(|error| panic!("{error}"))
-    });
+    let scene = common::scene(DRUM_AND_FUNNEL);
+    let [ours, theirs] = ["dem:lammps", "lammps"].map(|name| simulated(name, &scene, &Resolution::TimeStep(2e-4)));
     for name in ["all.kinetic_energy", "all.rotational_energy", "drum.force_z", "funnel.force_z"] {
         let [ours, theirs] = [&ours, &theirs].map(|record| record.series.column(name).unwrap());
         let largest = ours.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));

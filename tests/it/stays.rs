@@ -1,13 +1,10 @@
 //! Insertion and removal of grains, and removal of walls.
 
-use crate::common::{Directory, temporary_with};
+use crate::common::{Directory, scene, scene_in, temporary_with};
 use grainbench::cases::solvers;
-use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::observer::RunOptions;
 use grainbench::solver::record::{Record, Snapshot};
 use grainbench::solver::resolution::Resolution;
-use std::path::Path;
 
 /// Common part of the scenes: spheres of mass 1 kg.
 const HEAD: &str = r#"title = "Passing"
@@ -27,11 +24,6 @@ const SILO: &str = include_str!("../scenes/silo.toml");
 const LIFTED: &str = include_str!("../scenes/lifted.toml");
 
 const FLOOR: &str = "walls.floor = { material = 'm', plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] } }\n";
-
-fn scene(text: &str) -> Scene {
-    let source = SceneSource::from_text("passing", Path::new(""), text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
-}
 
 fn run(text: &str, threads: usize) -> Record {
     let solver = solvers::by_name("dem").unwrap();
@@ -199,7 +191,6 @@ fn nothing_is_poured_into_what_stands_there() {
     assert!(wall.contains("it was poured into wall 1 of the scene, which it overlaps by 0.400"), "{wall}");
     // A grain that is inserted at time zero exists from the start and is checked at the start.
     let text = format!("{HEAD}{FLOOR}{}", feed("a", 1, 1, 0.3).replace("start = 0.1\n", ""));
-    let source = SceneSource::from_text("passing", Path::new(""), &text);
-    let first = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string();
+    let first = scene_in("".as_ref(), &text).unwrap_err();
     assert!(first.contains("grain 1 and wall floor overlapping by 0.4000 of the radius"), "{first}");
 }
