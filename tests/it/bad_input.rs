@@ -8,8 +8,7 @@ const SCENE: &str = include_str!("../scenes/two-discs.toml");
 #[test]
 fn the_scene_itself_is_fine() {
     let directory = temporary_with("scene.toml", SCENE);
-    let answer = directory.run("simulate scene.toml --solver dem --variant slippery");
-    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""));
+    directory.run("simulate scene.toml --solver dem --variant slippery").quiet();
 }
 
 #[test]

@@ -1,5 +1,5 @@
 //! The cache of finished runs: a result from the cache equals the result of a run, and other results are never used.
-use crate::common::{ABSENT, Directory, temporary};
+use crate::common::{ABSENT, Directory, interrupted, temporary};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -19,8 +19,7 @@ fn program(directory: &Path, out: &str) -> Command {
 /// Returns the exit code and the number of runs taken from the cache, as stated in the report and on its page.
 fn taken(command: &mut Command, directory: &Path, out: &str) -> (Option<i32>, u64) {
     let code = command.stdout(Stdio::null()).stderr(Stdio::null()).status().unwrap().code();
-    let results = directory.join(out).read("results.json");
-    let results: serde_json::Value = serde_json::from_str(&results).unwrap();
+    let results = directory.join(out).json("results.json");
     let options = results["provenance"]["options"].as_array().unwrap();
     let count_text = options.iter().find_map(|option| option.as_str()?.split_once(" runs taken from the cache"));
     let page = directory.join(out).read("index.html");
@@ -143,13 +142,10 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
     for moment in 0..10 {
         let child = program(&here, "cut").stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
         std::thread::sleep(Duration::from_millis(20).max(long.mul_f64(f64::from(moment) / 10.0)));
-        // The process may already have ended.
-        Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
-        let ended = child.wait_with_output().unwrap();
-        let message = String::from_utf8(ended.stderr).unwrap();
+        let (code, message) = interrupted(child);
         // Before the handler is installed, a signal ends the process without a message.
         let is_announced = message.contains("the next run continues with the finished runs");
-        assert!(ended.status.code() != Some(1) || is_announced, "{message}");
+        assert!(code != Some(1) || is_announced, "{message}");
         let now = if here.join("cache").exists() { entries(&here).len() } else { 0 };
         assert!(now >= last, "finished runs are lost: {now} after {last}");
         last = now;

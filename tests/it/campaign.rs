@@ -3,12 +3,12 @@
 
 mod edits;
 
-use crate::common::{Answer, Directory, Folder, files, temporary, temporary_with};
+use crate::common::{Answer, Directory, Folder, count, files, root, temporary, temporary_with};
 use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::Stdio;
+use std::process::{Command, Stdio};
 use std::time::Duration;
 
 /// Sweep of two factors with two solvers, a claim of the case, and a further quantity.
@@ -160,13 +160,8 @@ fn a_sweep_is_the_same_in_one_piece_and_in_shards() {
     // The disc rolls or slips with both methods as expected, because the springs of the case are stiff enough.
     let results = report.json("results.json");
     let verdicts = results["verdicts"].as_array().unwrap();
-    let count_of = |word: &str| verdicts.iter().filter(|row| row["verdict"] == word).count();
-    assert!(
-        count_of("pass") > 35 && count_of("pass") + count_of("fail") == POINTS,
-        "{} {}",
-        count_of("pass"),
-        count_of("fail")
-    );
+    let [passed, failed] = ["pass", "fail"].map(|word| count(verdicts, word));
+    assert!(passed > 35 && passed + failed == POINTS, "{passed} {failed}");
     // A quantity without an expectation is reported without an outcome. Without friction it is sin θ, at most 0.87.
     let unjudged: Vec<&Value> = verdicts.iter().filter(|row| row["verdict"].is_null()).collect();
     assert!(unjudged.len() == POINTS && unjudged.iter().all(|row| row["value"].as_f64() < Some(0.87)));
@@ -253,10 +248,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
     let results = || if here.join("p/results").is_dir() { done(&here.join("p")).len() } else { 0 };
     for round in 0..40 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let start = |shard: &str| {
-            let mut command = here.program(format!("run --resume p --shard {shard}"));
-            command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
-        };
+        let start = |shard: &str| here.start(format!("run --resume p --shard {shard}"));
         let before = results();
         let mut workers = [start("1/2"), start("2/2")];
         let enough = before + (state >> 40) as usize % 5;
@@ -279,18 +271,12 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
             }
         }
     }
-    assert!(
-        killed > 10 && at_work > 10,
-        "{killed} and {at_work}: too many end before they are killed, or begin nothing"
-    );
+    assert!(killed > 10 && at_work > 10, "{killed} were killed, {at_work} rounds had results");
     here.ok("run --resume p");
     let ids = done(&here.join("p"));
     assert_eq!(ids.len(), ids.iter().collect::<BTreeSet<_>>().len(), "a task was done twice");
     let progress = status(&here, "p");
-    assert_eq!(
-        (progress["twice"].as_u64(), progress["waiting"].as_u64(), progress["running"].as_u64()),
-        (Some(0), Some(0), Some(0))
-    );
+    assert_eq!(["twice", "waiting", "running"].map(|key| progress[key].as_u64()), [Some(0); 3]);
     here.ok("report p");
     assert_eq!(rows(&here.join("p/report/rows.csv")), rows(&here.join("whole/report/rows.csv")));
     assert!(!files(&here.join("p/running")).iter().any(|name| name.ends_with(".json")), "leases stay of nobody");
@@ -301,7 +287,7 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
 fn a_full_disk_loses_nothing() {
     let here = planned();
     // The files of this process are limited to 4 kB, which is about ten results.
-    let full = std::process::Command::new("sh")
+    let full = Command::new("sh")
         .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
         .env("GRAINBENCH_CACHE", "off")
         .current_dir(&here)
@@ -324,7 +310,7 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     let plan = |out: &str, limit: &str| {
         let script = format!("trap '' XFSZ; {limit} exec \"$0\" run belt --plan {out}");
         let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
-        let ended = std::process::Command::new("sh").args(command).current_dir(&here).output().unwrap();
+        let ended = Command::new("sh").args(command).current_dir(&here).output().unwrap();
         (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
     };
     let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
@@ -429,7 +415,7 @@ fn what_is_no_plan_is_refused() {
 #[test]
 fn a_program_by_its_manifest_takes_part() {
     let here = temporary();
-    let manifest = crate::common::root("examples/python/SOLVER.toml");
+    let manifest = root("examples/python/SOLVER.toml");
     let sweep = SWEEP
         .replace(
             "solver = 'rigid'\nlevels = ['substeps=8']",
@@ -481,7 +467,7 @@ fn fake_slurm(directory: &Path) -> String {
     ] {
         let file = bin.join(name);
         fs::write(&file, format!("#!/bin/sh\n{text}\n")).unwrap();
-        std::process::Command::new("chmod").arg("+x").arg(&file).status().unwrap();
+        Command::new("chmod").arg("+x").arg(&file).status().unwrap();
     }
     format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
 }
@@ -507,10 +493,8 @@ fn slurm_is_asked_for_what_is_missing() {
     // Array indices must be below MaxArraySize.
     assert_eq!((answer.code, answer.out.as_str()), (Some(0), "job 7: shards 1-3 of 3\n"), "{}", answer.err);
     let submitted = here.read("sbatch.txt");
-    assert!(
-        submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh"),
-        "{submitted}"
-    );
+    let both = submitted.contains("--partition=short --time=5") && submitted.contains("p/slurm/submit-1.sh");
+    assert!(both, "{submitted}");
     let script = here.read("p/slurm/submit-1.sh");
     assert!(script.contains("#SBATCH --array=1-3\n") && !script.contains("--exclusive"), "{script}");
     // Submitting a plan a second time needs `--resubmit`.

@@ -100,16 +100,15 @@ fn a_table_is_judged_too() {
         text.push_str(&format!("{t};{:e};{:e}\n", 0.5 * a * t * t, a * t));
     }
     directory.write("mine.csv", text);
-    let answer =
-        directory.run("check incline-disc/60deg-mu.9 --dump mine.csv --map x=way,vx=speed --time-step 1e-4 --json");
-    let rows = answer.rows();
+    let how = "--map x=way,vx=speed --time-step 1e-4 --json";
+    let (code, rows) = directory.run(format!("check incline-disc/60deg-mu.9 --dump mine.csv {how}")).judged();
     let row_of =
         |quantity: &str| rows.iter().find(|row| row["quantity"].as_str().unwrap().starts_with(quantity)).unwrap();
     // The rigid solution lacks the oscillation of the soft contacts of the scene. Its displacement differs by less than our
     // conventions differ.
     let verdicts = (&row_of("grain.x")["verdict"], &row_of("grain.vx")["verdict"]);
     assert_eq!(verdicts, (&"no-reference".into(), &"fail".into()));
-    assert_eq!((rows.len(), answer.code), (5, Some(1)));
+    assert_eq!((rows.len(), code), (5, Some(1)));
 }
 
 /// Names of columns for contact forces, from a contact dump and from wall columns with other names.
@@ -161,10 +160,8 @@ fn half_a_run_is_not_judged_as_the_whole() {
     assert!(snapshots.len() > 90, "{}", snapshots.len());
     let half = snapshots[..50].concat();
     directory.write("half", half.trim_end_matches("ITEM: TIME\n"));
-    let checked = |more: &str| {
-        let answer = directory.run(format!("check incline-disc/60deg-mu.9 --dump half --json {more}"));
-        (answer.code, answer.rows())
-    };
+    let checked =
+        |more: &str| directory.run(format!("check incline-disc/60deg-mu.9 --dump half --json {more}")).judged();
     let (code, rows) = checked("");
     assert_eq!((code, &rows[0]["verdict"], count(&rows, "fail")), (Some(1), &"fail".into(), 1), "{rows:#?}");
     assert_eq!(rows[0]["expected"]["at_least"], 1.0);
@@ -192,8 +189,7 @@ fn samples_far_apart_judge_no_course() {
         let kept: String = (1..snapshots.len()).filter(|at| kept(at - 1)).map(|at| snapshots[at]).collect();
         let text = format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n"));
         directory.write("thinned", text);
-        let answer = directory.run(format!("check incline-disc/60deg-mu.9 --dump thinned --json {more}"));
-        (answer.code, answer.rows())
+        directory.run(format!("check incline-disc/60deg-mu.9 --dump thinned --json {more}")).judged()
     };
     let last = snapshots.len() - 2;
     let is_end = move |at: usize| at == 0 || at == last;
@@ -283,8 +279,7 @@ fn few_digits_take_no_other_start() {
         let line = |line: &str| if line.starts_with("1 1 ") { row(line) } else { line.to_owned() };
         let text: String = whole.lines().map(|text| line(text) + "\n").collect();
         directory.write("rounded", text);
-        let answer = directory.run("check incline-disc/60deg-mu.9 --dump rounded --json");
-        let rows = answer.rows();
+        let rows = directory.run("check incline-disc/60deg-mu.9 --dump rounded --json").rows();
         let exact = rows.iter().filter(|row| row["evidence"] == "analytic").count();
         assert_eq!((exact, count(&rows, "fail")), (3, 0), "{digits}: {rows:#?}");
     }
@@ -296,8 +291,7 @@ fn what_cannot_be_told_is_amber() {
     let directory = temporary();
     let checked = |text: &str| {
         directory.write("mine.csv", text);
-        let answer = directory.run("check collision/gamma-zeta.1 --dump mine.csv --time-step 1e-5 --json");
-        (answer.code, answer.rows())
+        directory.run("check collision/gamma-zeta.1 --dump mine.csv --time-step 1e-5 --json").judged()
     };
     let (code, rows) = checked("time,a.x\n0,-1\n0.03,-1\n0.06,-1\n");
     assert_eq!((code, count(&rows[1..], "no-reference"), rows.len()), (Some(1), 2, 3), "{rows:#?}");

@@ -25,23 +25,17 @@ fn keys_follow_other_keys() {
         rows.iter().filter(|row| row["evidence"] == "analytic" && row["verdict"] == verdict).count()
     };
     for start in ["--set grains.sphere.radius=.005", &format!("--like {dump}")] {
-        let answer = checked(start);
-        let rows = answer.rows();
-        assert_eq!((answer.code, exact(&rows, "pass")), (Some(0), 3), "{start}: {rows:#?}");
+        let (code, rows) = checked(start).judged();
+        assert_eq!((code, exact(&rows, "pass")), (Some(0), 3), "{start}: {rows:#?}");
     }
     // Another radius does not fit the file, and the start of a file does not excuse wrong physics.
-    let answer = checked("--set grains.sphere.radius=.0052");
-    answer.refused("radius");
+    checked("--set grains.sphere.radius=.0052").refused("radius");
     let answer = checked(&format!("--like {dump} --set gravity.slope_deg=31"));
     assert!(answer.code == Some(1) && exact(&answer.rows(), "fail") > 0, "{}", answer.out);
     // A file without grains, and one with another number of grains.
     directory.write("empty.dump", "");
-    for (file, message) in
-        [("empty.dump", "empty.dump"), (data("lammps-nine-static.dump.gz").as_str(), "expected 1 grains")]
-    {
-        let answer = checked(&format!("--like {file}"));
-        answer.refused(message);
-    }
+    checked("--like empty.dump").refused("empty.dump");
+    checked(&format!("--like {}", data("lammps-nine-static.dump.gz"))).refused("expected 1 grains");
 }
 
 /// A grain on a floor keeps its static overlap, and grains on it move with it.
@@ -104,16 +98,9 @@ fn the_nearest_convention_is_judged_by_its_own_tolerance() {
     // convention that we do not have.
     simulate(&directory, "s.toml", "dem:liggghts", "1e-5", "--set contacts.g.friction=.48");
     let answer = checked("");
-    assert!(
-        answer.out.contains("The output differs from ") && answer.out.contains("first outside at t = "),
-        "{}",
-        answer.out
-    );
-    assert!(
-        !answer.out.contains(" 0 amber") && answer.out.contains("; our conventions differ by more"),
-        "{}",
-        answer.out
-    );
+    for part in ["The output differs from ", "first outside at t = ", "; our conventions differ by more"] {
+        assert!(answer.out.contains(part) && !answer.out.contains(" 0 amber"), "{}", answer.out);
+    }
     assert_eq!(checked("--strict").code, Some(1));
     assert_eq!(checked("--convention dem:liggghts").code, Some(1));
     // A larger mistake is red.
@@ -135,12 +122,10 @@ const THIRTY: &str = "title = 'Thirty discs'\ndimension = 2\nduration = 0.3\ngra
 #[test]
 fn a_wrong_friction_of_many_grains_is_red() {
     let directory = temporary_with("s.toml", THIRTY);
-    for (set, code) in [("", 0), ("--set contacts.g.friction=.1", 1)] {
+    for (set, wrong) in [("", false), ("--set contacts.g.friction=.1", true)] {
         simulate(&directory, "s.toml", "dem:lammps", "2e-5", set);
-        let answer = directory.run("check s.toml --dump run/series.csv --power off --json");
-        let rows = answer.rows();
-        assert_eq!(answer.code, Some(code), "{set}: {rows:#?}");
-        assert_eq!(count(&rows, "fail") > 0, code == 1, "{set}: {rows:#?}");
+        let (code, rows) = directory.run("check s.toml --dump run/series.csv --power off --json").judged();
+        assert_eq!((code, count(&rows, "fail") > 0), (Some(wrong.into()), wrong), "{set}: {rows:#?}");
     }
 }
 
@@ -162,11 +147,10 @@ fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
     let directory = temporary_with("s.toml", HOPPER);
     let flow = |solver: &str, set: &str| {
         simulate(&directory, "s.toml", solver, "2.5e-4", set);
-        let answer = directory.run("check s.toml --dump run/series.csv --power off --json");
-        let rows = answer.rows();
+        let (code, rows) = directory.run("check s.toml --dump run/series.csv --power off --json").judged();
         let is_flow = |row: &&Value| row["quantity"].as_str().unwrap().starts_with("discs.left, mean rate from t = ");
         let row = rows.iter().find(is_flow).unwrap_or_else(|| panic!("{rows:#?}")).clone();
-        (answer.code, count(&rows, "fail"), row)
+        (code, count(&rows, "fail"), row)
     };
     for solver in ["dem:lammps", "dem:1979"] {
         let (code, failed, row) = flow(solver, "--set grains.a.lattice.perturbation=1.00000001e-4");
@@ -228,14 +212,12 @@ fn contacts_of_a_deck_need_no_names() {
         let dump = data("lammps-nine-static.dump.gz");
         directory.run(format!("check nine-discs/static-0 --dump {dump} dump.contacts --partial --json"))
     };
-    let answer = checked("c_pairs[1] c_pairs[2] c_pairs[4] c_pairs[5] c_pairs[6]");
-    let rows = answer.rows();
-    let forces =
-        rows.iter().filter(|row| row["evidence"] == "analytic" && row["unit"] == "N" && row["verdict"] == "pass");
-    assert!(answer.code == Some(0) && forces.count() > 0, "{rows:#?}");
+    let (code, mut rows) = checked("c_pairs[1] c_pairs[2] c_pairs[4] c_pairs[5] c_pairs[6]").judged();
+    rows.retain(|row| row["evidence"] == "analytic" && row["unit"] == "N");
+    assert!(code == Some(0) && count(&rows, "pass") > 0, "{rows:#?}");
     // Columns in another order are not those of a deck.
-    let answer = checked("c_pairs[2] c_pairs[1] c_pairs[4] c_pairs[5] c_pairs[6]");
-    answer.refused("expected columns `id1` and `id2`");
+    let swapped = "c_pairs[2] c_pairs[1] c_pairs[4] c_pairs[5] c_pairs[6]";
+    checked(swapped).refused("expected columns `id1` and `id2`");
 }
 
 /// The stored runs of this case have a time step three times as short as a run of its solver-independent claim.
@@ -246,11 +228,10 @@ fn a_longer_step_than_that_of_the_stored_run_passes() {
     for (set, code) in [("", 0), ("--set materials.sphere.young_modulus=48.5e9", 1)] {
         let solver = "--solver dem:lammps --time-step-fraction 0.003";
         directory.ok(format!("simulate {scene} --variant 1-glass {solver} --out run {set}"));
-        let answer = directory.run("check chung-ooi/1-glass --dump run/series.csv --json");
-        let rows = answer.rows();
-        let stored = rows.iter().filter(|row| row["source"].as_str().unwrap().contains("stored run"));
-        let red = stored.clone().filter(|row| row["verdict"] == "fail").count();
-        assert!(stored.count() > 0 && answer.code == Some(code) && (red > 0) == (code == 1), "{rows:#?}");
+        let (found, mut rows) = directory.run("check chung-ooi/1-glass --dump run/series.csv --json").judged();
+        rows.retain(|row| row["source"].as_str().unwrap().contains("stored run"));
+        let red = count(&rows, "fail") > 0;
+        assert!(!rows.is_empty() && found == Some(code) && red == (code == 1), "{rows:#?}");
     }
 }
 
@@ -261,10 +242,9 @@ fn the_folder_of_a_case_is_accepted() {
     let folder = root("examples/case").display().to_string();
     let scene = root("examples/case/scene.toml").display().to_string();
     simulate(&directory, &scene, "dem", "1e-5", "");
-    let answer = directory.run(format!("check {folder}/plain --dump run/series.csv --json"));
-    let rows = answer.rows();
-    assert_eq!(answer.code, Some(0), "{rows:#?}");
-    assert_eq!(rows.iter().filter(|row| row["evidence"] == "analytic").count(), 2, "{rows:#?}");
+    let (code, rows) = directory.run(format!("check {folder}/plain --dump run/series.csv --json")).judged();
+    let analytic = rows.iter().filter(|row| row["evidence"] == "analytic").count();
+    assert_eq!((code, analytic), (Some(0), 2), "{rows:#?}");
     // Both variants have this start.
     directory.run(format!("check {folder} --dump run/series.csv")).refused("expected the name of a variant");
     directory.ok(format!("deck {folder} --for lammps --out deck"));

@@ -1,24 +1,20 @@
 //! `check` with a scene file, with a case with other parameters, with VTK files, and with a folder of many outputs.
 
-use crate::common::{Answer, Directory, root, temporary, temporary_with};
+use crate::common::{Answer, Directory, data, temporary, temporary_with};
 use grainbench::cases::registry::read_grains;
 use grainbench::scene::source::SceneSource;
 use serde_json::Value;
 use std::fs;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// Returns the folder of a LIGGGHTS run whose input was written by hand.
-fn slope() -> PathBuf {
-    root("tests/data/check/liggghts-slope")
-}
-
+/// Returns the path of a file of a LIGGGHTS run whose input was written by hand.
 fn file(name: &str) -> String {
-    slope().join(name).display().to_string()
+    data(&format!("liggghts-slope/{name}"))
 }
 
 /// Returns all VTK files of the run, including those of its box, in the order of a shell pattern.
 fn vtk() -> String {
-    let mut files: Vec<String> = fs::read_dir(slope())
+    let mut files: Vec<String> = fs::read_dir(data("liggghts-slope"))
         .unwrap()
         .map(|entry| entry.unwrap().path().display().to_string())
         .filter(|path| path.ends_with(".vtk"))
@@ -38,8 +34,7 @@ const NUMBERS: &str = "--set gravity={magnitude=9.81,slope_deg=30} --set duratio
 
 fn judged(words: &str) -> (Option<i32>, Vec<Value>) {
     let directory = temporary();
-    let answer = directory.run(format!("check {words} --json"));
-    (answer.code, answer.rows())
+    directory.run(format!("check {words} --json")).judged()
 }
 
 /// Returns the exit code and the results at the parameters of the run, with further changes.
@@ -106,12 +101,7 @@ fn exact_answers_follow_other_numbers() {
 #[test]
 fn a_folder_of_outputs_is_judged_together() {
     let directory = temporary();
-    let into = |place: &str, name: &str| {
-        let folder = directory.join("runs").join(place);
-        fs::create_dir_all(&folder).unwrap();
-        let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/check").join(name);
-        fs::copy(from, folder.join(name)).unwrap();
-    };
+    let into = |place: &str, name: &str| directory.write(format!("runs/{place}/{name}"), fs::read(data(name)).unwrap());
     into("incline-disc/60deg-mu.9", "lammps-incline.dump.gz");
     into("backspin/sphere", "liggghts-backspin.dump.gz");
     let log = "liggghts-backspin.log";
@@ -174,7 +164,7 @@ fn a_folder_of_outputs_is_judged_together() {
 
 /// Returns the path of a file about a ball that bounces along a floor.
 fn of_ball(name: &str) -> String {
-    root("tests/data/check/ball").join(name).display().to_string()
+    data(&format!("ball/{name}"))
 }
 
 /// Returns the exit code, the results and the messages of `check` with files of the ball.
@@ -252,8 +242,7 @@ fn tables_of_grains_are_read_as_grains() {
 #[test]
 fn units_are_those_of_the_scene_or_of_the_other_file() {
     let lj = format!("ITEM: UNITS\nlj\n{}", flight(0, &|_, _| {}));
-    let answer = checked_flight(&lj, "");
-    answer.refused("expected the units `si`");
+    checked_flight(&lj, "").refused("expected the units `si`");
     assert_eq!(checked_flight(&lj.replace("\nlj\n", "\nsi\n"), "").code, Some(0));
     let cgs = of_ball("cgs.dump.gz");
     temporary().ok(format!("compare {cgs} {cgs}"));
@@ -278,8 +267,7 @@ fn a_check_says_which_changes_the_output_would_reveal() {
     let directory = temporary();
     let checked = |how: &str| {
         let (scene, dump, log) = (of_ball("ball.toml"), of_ball("twosteps.dump.gz"), of_ball("twosteps.log.gz"));
-        let answer = directory.run(format!("check {scene} --dump {dump} --log {log} --power {how} --json"));
-        (answer.code, answer.rows())
+        directory.run(format!("check {scene} --dump {dump} --log {log} --power {how} --json")).judged()
     };
     for how in ["limited", "full"] {
         let (code, rows) = checked(how);
@@ -367,8 +355,7 @@ fn every_grain_starts_as_in_the_scene() {
     ];
     for (change, message) in wrong {
         for (from, more) in [(0, ""), (0, "--partial"), (700, "")] {
-            let answer = checked_flight(&flight(from, change), more);
-            answer.refused(message);
+            checked_flight(&flight(from, change), more).refused(message);
         }
     }
     // Six digits are enough if the numbers have no more digits.
@@ -390,8 +377,7 @@ fn motion_out_of_the_plane_is_refused() {
         (&|sample, rows| rows[0][7] = f64::from(sample / 5), "`omegay` = 0.0, found 1.0"),
     ];
     for (change, message) in wrong {
-        let answer = checked_flight(&flight(0, change), "");
-        answer.refused(message);
+        checked_flight(&flight(0, change), "").refused(message);
     }
     // The plane may be at any height, and rounding errors do not count as motion out of the plane.
     let right = flight(0, &|sample, rows| (rows[1][2], rows[1][5]) = (0.25 + 1e-17 * f64::from(sample), 1e-15));
@@ -434,8 +420,7 @@ fn a_sample_between_steps_is_missing() {
                 .collect();
         let table = format!("step,time,a.x,a.vx\n{rows}");
         directory.write("t.csv", table);
-        let answer = directory.run("check s.toml --dump t.csv --dt 1e-6 --power off --json");
-        let rows = answer.rows();
+        let rows = directory.run("check s.toml --dump t.csv --dt 1e-6 --power off --json").rows();
         rows.into_iter().find(|row| row["quantity"].as_str().unwrap().starts_with("a.x, worst of")).unwrap()
     };
     assert_eq!(judged("0.020000")["verdict"], "pass");
@@ -447,8 +432,7 @@ fn a_sample_between_steps_is_missing() {
 #[test]
 fn a_file_is_equal_to_itself() {
     let directory = temporary_with("a.csv", "time,x,q\n0.0,0.0,0.0\n1.0,2.0,0.3\n2.0,7.0,0.1\n");
-    let answer = directory.run("compare a.csv a.csv --json");
-    let rows = answer.rows();
+    let rows = directory.run("compare a.csv a.csv --json").rows();
     assert!(rows.iter().all(|row| row["verdict"] == "pass"), "{rows:#?}");
     directory.write("b.csv", "time,x,q\n0.0,0.0,0.00\n1.0,2.0,0.30\n2.0,7.0,0.10\n");
     let answer = directory.run("compare a.csv b.csv --json");

@@ -3,7 +3,6 @@
 use crate::common::{Directory, files, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
 use serde_json::Value;
-use std::path::Path;
 use std::process::Stdio;
 
 /// Scene of two colliding discs, with two snapshots between the first and the last.
@@ -37,21 +36,13 @@ snapshots = 2
 left = { grain = "left" }
 "#;
 
-/// Returns the standard output of a command that must succeed without messages.
-fn printed(directory: &Path, arguments: &str) -> String {
-    let answer = directory.run(arguments);
-    assert_eq!((answer.code, answer.err.as_str()), (Some(0), ""), "{}", answer.out);
-    answer.out
-}
-
 fn json(text: &str) -> Value {
     serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
 }
 
 /// Returns a help text without spaces at the ends of lines. clap prints such spaces, and editors remove them.
 fn help(arguments: &str) -> String {
-    let directory = temporary();
-    printed(&directory, arguments).lines().map(|line| line.trim_end().to_owned() + "\n").collect()
+    temporary().run(arguments).quiet().lines().map(|line| line.trim_end().to_owned() + "\n").collect()
 }
 
 #[test]
@@ -64,16 +55,14 @@ fn help_of_every_command() {
 
 #[test]
 fn version() {
-    assert_eq!(
-        help("--version"),
-        concat!("grainbench ", env!("CARGO_PKG_VERSION"), " (", env!("GRAINBENCH_COMMIT"), ")\n")
-    );
+    let (version, commit) = (env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
+    assert_eq!(help("--version"), format!("grainbench {version} ({commit})\n"));
 }
 
 #[test]
 fn list_tells_of_every_case() {
     let directory = temporary();
-    let text = printed(&directory, "list");
+    let text = directory.run("list").quiet();
     for case in CASES {
         assert!(text.contains(case.name) && text.contains(case.title), "{}", case.name);
     }
@@ -85,7 +74,7 @@ fn list_tells_of_every_case() {
         .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
         .collect();
     insta::assert_snapshot!(squash.join("\n"));
-    let entries = json(&printed(&directory, "list --json"));
+    let entries = json(&directory.run("list --json").quiet());
     assert_eq!(entries.as_array().unwrap().len(), CASES.len());
     for entry in entries.as_array().unwrap() {
         for key in ["name", "title", "claim", "variants", "gates", "default_level", "levels", "solvers"] {
@@ -126,7 +115,7 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
 #[test]
 fn schema_documents_every_key() {
     let directory = temporary();
-    let schema = json(&printed(&directory, "scene --schema"));
+    let schema = json(&directory.run("scene --schema").quiet());
     assert!(schema["properties"]["grains"].is_object());
     assert!(schema["$defs"].as_object().unwrap().len() > 5);
     let mut found = Vec::new();
@@ -138,33 +127,21 @@ fn schema_documents_every_key() {
 #[test]
 fn the_schema_in_the_tree_is_that_of_the_program() {
     let directory = temporary();
-    crate::common::expect_file("scene.schema.json", &printed(&directory, "scene --schema"));
+    crate::common::expect_file("scene.schema.json", &directory.run("scene --schema").quiet());
 }
 
 #[test]
 fn run_leaves_its_files_and_a_summary() {
     let directory = temporary();
-    let text = printed(&directory, "run squash --out deep/out");
+    let text = directory.run("run squash --out deep/out").quiet();
     // The worst claim depends on rounding, which differs between mathematical libraries. Column widths depend on it too.
     let settled: Vec<String> = text.lines().map(without_worst).collect();
     insta::assert_snapshot!(settled.join("\n"));
     let out = directory.join("deep/out");
-    let expected = [
-        "badge.svg",
-        "figures/squash-elastic.csv",
-        "figures/squash-elastic.svg",
-        "figures/squash-forces.csv",
-        "figures/squash-forces.svg",
-        "index.html",
-        "junit.xml",
-        "manifest.json",
-        "points.csv",
-        "report.json",
-        "results.json",
-        "rows.csv",
-    ];
-    assert_eq!(files(&out), expected);
-    assert_eq!(files(&directory).len(), expected.len());
+    let expected = "badge.svg figures/squash-elastic.csv figures/squash-elastic.svg figures/squash-forces.csv \
+        figures/squash-forces.svg index.html junit.xml manifest.json points.csv report.json results.json rows.csv";
+    assert_eq!(files(&out).join(" "), expected);
+    assert_eq!(files(&directory).len(), files(&out).len());
 
     let results = out.json("results.json");
     assert_eq!(results["verdicts"].as_array().unwrap().len(), results["controls"].as_array().unwrap().len());
@@ -175,10 +152,10 @@ fn run_leaves_its_files_and_a_summary() {
     assert!(date.ends_with(" UTC") && date.len() == "2000-01-01 00:00:00 UTC".len(), "{date}");
 
     let page = std::fs::read(out.join("index.html")).unwrap();
-    let again = printed(&directory, "report deep/out");
+    let again = directory.run("report deep/out").quiet();
     assert_eq!(again, text);
     assert_eq!(std::fs::read(out.join("index.html")).unwrap(), page);
-    assert_eq!(files(&out), expected);
+    assert_eq!(files(&out).join(" "), expected);
 }
 
 /// Returns a line of the summary without the worst claim and without column widths.
@@ -195,7 +172,7 @@ fn without_worst(line: &str) -> String {
 #[test]
 fn run_prints_what_it_writes_as_json() {
     let directory = temporary();
-    let text = printed(&directory, "run squash/plain --levels dt=0.05 --no-controls --json");
+    let text = directory.run("run squash/plain --levels dt=0.05 --no-controls --json").quiet();
     assert_eq!(text, directory.read("grainbench-out/results.json"));
     let results = json(&text);
     assert!(results["verdicts"].as_array().unwrap().iter().all(|row| row["verdict"] == "pass"));
@@ -215,50 +192,34 @@ fn an_old_spelling_is_reported() {
 #[test]
 fn a_red_report_ends_with_one() {
     let directory = temporary();
-    printed(&directory, "run squash --out out");
-    let path = directory.join("out/report.json");
-    let text = std::fs::read_to_string(&path).unwrap();
+    directory.run("run squash --out out").quiet();
+    let text = directory.read("out/report.json");
     for (green, red) in [
         (r#""verdict":"pass""#, r#""verdict":"fail""#),
         (r#""verdict":"pass""#, r#""verdict":"broken""#),
         (r#""turned_red":true"#, r#""turned_red":false"#),
     ] {
-        std::fs::write(&path, text.replacen(green, red, 1)).unwrap();
+        directory.write("out/report.json", text.replacen(green, red, 1));
         let answer = directory.run("report out");
         assert_eq!(answer.code, Some(1), "{red}");
         assert!(answer.out.contains('✗'), "{}", answer.out);
     }
     // An amber result counts neither as passed nor as failed.
-    std::fs::write(&path, text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1)).unwrap();
+    directory.write("out/report.json", text.replacen(r#""verdict":"pass""#, r#""verdict":"no-reference""#, 1));
     directory.ok("report out");
 }
 
 #[test]
 fn simulate_leaves_its_record() {
     let directory = temporary_with("scene.toml", SCENE);
-    let text = printed(&directory, "simulate scene.toml --solver dem --out out");
+    let text = directory.run("simulate scene.toml --solver dem --out out").quiet();
     let settled: Vec<&str> =
         text.lines().map(|line| if line.starts_with("took ") { "took       [time]" } else { line }).collect();
     insta::assert_snapshot!(settled.join("\n"));
-    assert_eq!(
-        files(&directory.join("out")),
-        [
-            "manifest.json",
-            "record.json",
-            "series.csv",
-            "snapshots.dump",
-            "vtk/contacts-000000.vtp",
-            "vtk/contacts-000001.vtp",
-            "vtk/contacts-000002.vtp",
-            "vtk/contacts-000003.vtp",
-            "vtk/contacts.pvd",
-            "vtk/grains-000000.vtp",
-            "vtk/grains-000001.vtp",
-            "vtk/grains-000002.vtp",
-            "vtk/grains-000003.vtp",
-            "vtk/grains.pvd",
-        ]
-    );
+    let parts = |of: &str| format!("vtk/{of}-000000.vtp vtk/{of}-000001.vtp vtk/{of}-000002.vtp vtk/{of}-000003.vtp");
+    let [contacts, grains] = ["contacts", "grains"].map(|of| format!("{} vtk/{of}.pvd", parts(of)));
+    let expected = format!("manifest.json record.json series.csv snapshots.dump {contacts} {grains}");
+    assert_eq!(files(&directory.join("out")).join(" "), expected);
     let series = directory.read("out/series.csv");
     assert_eq!(series.lines().count(), 1 + 11, "{series}");
 }
@@ -273,9 +234,8 @@ fn simulate_warns_above_the_stable_fraction() {
     let directory = temporary_with("four.toml", scene);
     directory.write("two.toml", scene.replace("[2, 2]", "[2, 1]"));
     // Two grains have only one contact, whose critical step is exact.
-    for (file, fraction, warns) in [("four.toml", "0.9", true), ("four.toml", "0.1", false), ("two.toml", "0.9", false)]
-    {
-        let answer = directory.ok(format!("simulate {file} --solver dem --time-step-fraction {fraction}"));
+    for (file, fraction, warns) in [("four", "0.9", true), ("four", "0.1", false), ("two", "0.9", false)] {
+        let answer = directory.ok(format!("simulate {file}.toml --solver dem --time-step-fraction {fraction}"));
         assert_eq!(answer.err.contains("a packing can be unstable"), warns, "{file} {fraction}: {}", answer.err);
     }
 }
@@ -300,9 +260,9 @@ fn simulate_prints_the_run_as_json() {
 fn report_makes_pictures_of_simulations() {
     let path = temporary_with("scene.toml", SCENE);
     for (solver, out) in [("dem", "one"), ("dem:lammps", "two")] {
-        printed(&path, &format!("simulate scene.toml --solver {solver} --out {out}"));
+        path.run(format!("simulate scene.toml --solver {solver} --out {out}")).quiet();
     }
-    printed(&path, "report one --beside two --fringe-stress 1e3");
+    path.run("report one --beside two --fringe-stress 1e3").quiet();
     let page = path.read("one/index.html");
     // The page has one picture of the speed, with both solvers side by side.
     let svg = path.read("one/figures/speed.svg");
@@ -312,11 +272,8 @@ fn report_makes_pictures_of_simulations() {
     // A contact with a missing grain is not drawn. An invalid record is an error that names file and position.
     let record = path.read("one/record.json");
     path.write("one/record.json", record.replace("\"grain\":1,", "\"grain\":900,"));
-    printed(&path, "report one");
-    let refused = |arguments: &str, what: &str| {
-        path.run(arguments).refused(what);
-    };
-    refused("report one --beside nowhere", "record.json");
+    path.run("report one").quiet();
+    path.run("report one --beside nowhere").refused("record.json");
     path.write("two/record.json", record.replacen("\"step\":[", "\"step\":[true,", 1));
-    refused("report two", "at `series.step[0]`: invalid type: boolean `true`");
+    path.run("report two").refused("at `series.step[0]`: invalid type: boolean `true`");
 }

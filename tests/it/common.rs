@@ -13,7 +13,7 @@ use grainbench::solver::resolution::Resolution;
 use serde_json::Value;
 use std::io::Read;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::{Child, Command, Stdio};
 use tempfile::TempDir;
 
 /// Environment that hides LAMMPS and LIGGGHTS from the program.
@@ -41,6 +41,17 @@ impl Answer {
     pub(crate) fn ok(self) -> Self {
         assert_eq!(self.code, Some(0), "{}{}", self.out, self.err);
         self
+    }
+
+    /// Returns the standard output of a command that must have succeeded without a message.
+    pub(crate) fn quiet(self) -> String {
+        assert_eq!((self.code, self.err.as_str()), (Some(0), ""), "{}", self.out);
+        self.out
+    }
+
+    /// Returns the exit code and the results of a report that was printed as JSON.
+    pub(crate) fn judged(&self) -> (Option<i32>, Vec<Value>) {
+        (self.code, self.rows())
     }
 
     /// Checks that the program rejected its input with a message.
@@ -106,7 +117,7 @@ pub(crate) trait Directory: AsRef<Path> {
 
     /// Returns the content of a JSON file.
     fn json(&self, name: impl AsRef<Path>) -> Value {
-        serde_json::from_str(&self.read(name)).unwrap()
+        serde_json::from_str(&self.read(&name)).unwrap_or_else(|error| panic!("{}: {error}", name.as_ref().display()))
     }
 
     /// Returns the program with a command line, with quotes as in a shell. Messages contain paths relative to this directory. The
@@ -119,6 +130,11 @@ pub(crate) trait Directory: AsRef<Path> {
             .current_dir(self.as_ref())
             .stdin(Stdio::null());
         command
+    }
+
+    /// Starts the program with a command line and without output.
+    fn start(&self, line: impl AsRef<str>) -> Child {
+        self.program(line).stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap()
     }
 
     /// Runs the program with a command line.
@@ -155,6 +171,30 @@ pub(crate) fn words(line: &str) -> Vec<String> {
     }
     words.extend(word);
     words
+}
+
+/// Returns true if a program is installed. In CI, a missing program is an error.
+pub(crate) fn is_here(program: &str) -> bool {
+    let found = Command::new("sh").args(["-c", "command -v \"$0\"", program]).stdout(Stdio::null()).status();
+    let is_here = found.is_ok_and(|status| status.success());
+    assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
+    is_here
+}
+
+/// Interrupts a process, as Ctrl-C does. Returns its exit code and its messages.
+pub(crate) fn interrupted(child: Child) -> (Option<i32>, String) {
+    // The process may already have ended.
+    Command::new("kill").args(["-INT", &child.id().to_string()]).stderr(Stdio::null()).status().unwrap();
+    let ended = child.wait_with_output().unwrap();
+    (ended.status.code(), String::from_utf8(ended.stderr).unwrap())
+}
+
+/// Returns a text without its run times.
+pub(crate) fn untimed(text: &str) -> String {
+    let mut parts = text.split("\"wall_seconds\":");
+    let first = parts.next().unwrap_or_default().to_owned();
+    let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
+    parts.fold(first, |all, part| all + part.trim_start_matches(is_number))
 }
 
 /// Returns the scene of a text. Its meshes are in a directory.

@@ -1,5 +1,6 @@
 //! Claims about friction, rotating springs and rolling moments fail by value for a small solver with planted mistakes.
 
+use crate::own_solver::Changed;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::harness::control::FailureMode;
@@ -7,11 +8,6 @@ use grainbench::harness::mistake::small_dem::{MethodMistake, SmallDem};
 use grainbench::harness::verdict::{Outcome, Verdict};
 use grainbench::scene::dimension::GrainShape;
 use grainbench::scene::scene::Scene;
-use grainbench::solver::Solver;
-use grainbench::solver::failure::RunError;
-use grainbench::solver::observer::Observer;
-use grainbench::solver::record::Record;
-use grainbench::solver::resolution::Resolution;
 use nalgebra::Vector3;
 
 const CASES: [&str; 5] = ["unequal-impact", "rolling-off", "carried-grain", "turning-walls", "rocking"];
@@ -53,21 +49,6 @@ fn planted_defects_fail_claims_by_value() {
     }
 }
 
-/// Solver that runs our solver with a changed scene.
-struct MisledSolver(fn(&mut Scene));
-
-impl Solver for MisledSolver {
-    fn name(&self) -> String {
-        "misled".to_owned()
-    }
-
-    fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let mut wrong = scene.clone();
-        (self.0)(&mut wrong);
-        Dem::new(Convention::DEFAULT).run(&wrong, resolution, observer)
-    }
-}
-
 /// A failed result of a solver with a mistake names this mistake and no other.
 #[test]
 fn a_failed_result_names_the_mistake() {
@@ -96,7 +77,8 @@ fn a_failed_result_names_the_mistake() {
         }),
     ];
     for (case, words, wrong) in expected {
-        let rows = grainbench::judge(MisledSolver(wrong), &[case]).unwrap().verdicts;
+        let rows =
+            grainbench::judge(Changed(Box::new(Dem::new(Convention::DEFAULT)), wrong), &[case]).unwrap().verdicts;
         let red: Vec<&Verdict> = rows.iter().filter(|row| row.red() == Some(FailureMode::Value)).collect();
         let hint = |row: &Verdict| {
             row.detail.as_deref().unwrap_or_default().split_once("as if: ").map(|hint| hint.1.to_owned())

@@ -8,7 +8,7 @@
 mod dialogue;
 mod pages;
 
-use crate::common::{expect_file, root, with_generated};
+use crate::common::{expect_file, is_here, root, with_generated};
 use dialogue::{Place, blocks, hold};
 use grainbench::cases::registry::CASES;
 use grainbench::harness::evidence::Evidence;
@@ -24,7 +24,7 @@ fn lost_dialogues(chapter: &Chapter) -> Vec<String> {
     let place = Place::new();
     let mut lost = Vec::new();
     for block in blocks(&chapter.text).unwrap_or_else(|error| panic!("{}: {error}", chapter.name)) {
-        if !block.needs.iter().all(|program| dialogue::is_here(program)) {
+        if !block.needs.iter().all(|program| is_here(program)) {
             continue;
         }
         for step in &block.steps {

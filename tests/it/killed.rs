@@ -2,14 +2,13 @@
 //! marked as mixed. The next run removes temporary files beside it. The default is ten kills, and `GRAINBENCH_LONG`
 //! gives 120 kills. The unit tests of `store/src/staged.rs` interrupt each disk operation of a commit in turn.
 
-use crate::common::{Directory, files, temporary};
+use crate::common::{Directory, files, temporary, untimed};
 use grainbench::store::refuse_mixed;
 use proptest::strategy::{Strategy, ValueTree};
 use proptest::test_runner::{Config, RngAlgorithm, TestRng, TestRunner};
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
 use std::time::{Duration, Instant};
 
 /// Scene of discs in a row with many snapshots, so that a run writes many files.
@@ -28,20 +27,16 @@ struct Pair {
 
 /// Returns the length and a hash of a file of a simulation, without its run time.
 fn simulated(directory: &Path, name: &str) -> String {
-    let text = directory.read(name);
-    let mut parts = text.split("\"wall_seconds\":");
-    let first = parts.next().unwrap_or_default().to_owned();
-    let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
-    let text = parts.fold(first, |all, part| all + part.trim_start_matches(is_number));
+    let text = untimed(&directory.read(name));
     format!("{} bytes, {:?}", text.len(), text.bytes().fold(0_u64, |sum, byte| sum.wrapping_mul(31) + u64::from(byte)))
 }
 
 /// Returns the names of the cases that a file of a report contains.
 fn reported(directory: &Path, name: &str) -> String {
     let text = directory.read(name);
-    let case_name = |case: &str| text.contains(case).then(|| case.to_owned());
-    let named =
-        ["rolling-resistance", "oblique-impact"].into_iter().filter_map(case_name).collect::<Vec<_>>().join(" ");
+    let mut cases = vec!["rolling-resistance", "oblique-impact"];
+    cases.retain(|case| text.contains(case));
+    let named = cases.join(" ");
     // Figures contain the name of their case only in their file name.
     if name.starts_with("figures") || named.is_empty() { name.to_owned() } else { named }
 }
@@ -88,8 +83,7 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
         }
         let before = standing(&out, pair.kind);
         let was_mixed = refuse_mixed(&out).is_err();
-        let mut command = path.program(pair.runs[number % 2]);
-        let mut child = command.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = path.start(pair.runs[number % 2]);
         // In every second run, the time is near the end, when files are moved to the directory.
         let part = (0.0..1.0_f64).new_tree(&mut lot).unwrap().current();
         let part = if number % 2 == 0 { part } else { 1.0 - 0.3 * part };
@@ -119,10 +113,8 @@ fn kill(pair: &Pair, times: usize, seed: u64) {
     path.ok(pair.runs[0]);
     assert_eq!(standing(&out, pair.kind), whole[0]);
     assert!(refuse_mixed(&out).is_ok());
-    let hidden = |path: &Path| -> Vec<String> {
-        files(path).into_iter().filter(|name| name.contains("/.") || name.starts_with('.')).collect()
-    };
-    assert_eq!(hidden(path), [""; 0], "what killed runs left beside the directory goes with the next");
+    let is_hidden = |name: &String| name.contains("/.") || name.starts_with('.');
+    assert!(!files(path).iter().any(is_hidden), "what killed runs left goes with the next: {:?}", files(path));
 }
 
 fn times(few: usize, many: usize) -> usize {

@@ -1,8 +1,8 @@
 //! Warning before the first step of a run that takes hours.
 
-use crate::common::temporary_with;
+use crate::common::{Directory, temporary_with};
 use std::io::{BufRead, BufReader};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 
 /// Returns a scene of a falling disc. In steel, a wave crosses a cell of 1.25 mm in 0.2 µs.
 fn scene(young_modulus: f64, duration: f64) -> String {
@@ -18,13 +18,8 @@ fn scene(young_modulus: f64, duration: f64) -> String {
 /// Starts a run, ends it after its first line on the standard error, and returns this line.
 fn first_line(young_modulus: f64, duration: f64, cells: &str) -> String {
     let directory = temporary_with("disc.toml", scene(young_modulus, duration));
-    let mut run = Command::new(env!("CARGO_BIN_EXE_grainbench"))
-        .args(["simulate", "disc.toml", "--solver", "mpm", "--cells", cells, "--out", "out"])
-        .current_dir(&directory)
-        .stdout(Stdio::null())
-        .stderr(Stdio::piped())
-        .spawn()
-        .unwrap();
+    let mut run = directory.program(format!("simulate disc.toml --solver mpm --cells {cells} --out out"));
+    let mut run = run.stdout(Stdio::null()).stderr(Stdio::piped()).spawn().unwrap();
     let mut line = String::new();
     BufReader::new(run.stderr.take().unwrap()).read_line(&mut line).unwrap();
     run.kill().unwrap();

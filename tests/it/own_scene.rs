@@ -1,11 +1,11 @@
 //! Cost and stability of a scene of the user's on the command line.
 
-use crate::common::{Directory, root, temporary};
+use crate::common::{Directory, interrupted, root, temporary};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::time::{Duration, SystemTime};
 
 /// Runs `cost` of a scene of the guide, and returns `results.json` and the stored runs with the times at which they were
@@ -81,11 +81,8 @@ fn a_stopped_study_continues() {
         while runs() < 2 && child.try_wait().unwrap().is_none() {
             std::thread::sleep(Duration::from_millis(20));
         }
-        Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-        let stopped = child.wait_with_output().unwrap();
-        let message = String::from_utf8(stopped.stderr).unwrap();
-        assert_eq!(stopped.status.code(), Some(1), "{message}");
-        assert!(message.contains("stopped; the same command continues"), "{message}");
+        let (code, message) = interrupted(child);
+        assert!(code == Some(1) && message.contains("stopped; the same command continues"), "{message}");
         let finished = runs();
         assert!(finished >= 2, "{finished}");
         let answer = folder.run(format!("{study} --budget 4s"));

@@ -94,7 +94,7 @@ fn a_case_that_is_not_there_or_not_fair_says_so() {
 }
 
 /// Solver that changes every scene before it runs it.
-struct Changed(Box<dyn Solver>, fn(&mut Scene));
+pub(crate) struct Changed(pub(crate) Box<dyn Solver>, pub(crate) fn(&mut Scene));
 
 impl Solver for Changed {
     fn name(&self) -> String {
@@ -118,10 +118,8 @@ fn a_solver_that_ignores_the_scene_is_found_out() {
     let judgement = grainbench::judge(ignoring, &["incline-disc"]).unwrap();
     assert!(judgement.verdicts.iter().all(|row| row.outcome.word() == "pass"));
     let failures = judgement.failures();
-    assert!(
-        !failures.is_empty() && failures.iter().all(|line| line.contains("passed, but must fail by value")),
-        "{failures:#?}"
-    );
+    let by_value = failures.iter().all(|line| line.contains("passed, but must fail by value"));
+    assert!(!failures.is_empty() && by_value, "{failures:#?}");
 }
 
 /// With a defect, our own solver gives the same error with and without a control. The control then explains nothing.

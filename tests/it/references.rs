@@ -91,10 +91,7 @@ fn the_time_step_is_worth_little_where_it_is_small() {
 #[test]
 fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_missing() {
     let directory = temporary();
-    let without = |arguments: &str| {
-        let answer = directory.run_alone(arguments);
-        (answer.code, answer.rows())
-    };
+    let without = |arguments: &str| directory.run_alone(arguments).judged();
     let (code, rows) = without("run collision --solver lammps --solver liggghts --json");
     assert_eq!(code, Some(0));
     assert!(rows.len() == 10 && rows.iter().all(|row| row["verdict"] == "pass"), "{rows:?}");

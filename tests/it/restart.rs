@@ -1,6 +1,6 @@
 //! A run continued from a checkpoint equals an uninterrupted run to the bit, for all cases and for a killed process.
 
-use crate::common::{Directory, Folder, bits, files, temporary, temporary_with};
+use crate::common::{Directory, Folder, bits, files, interrupted, temporary, temporary_with, untimed};
 use crate::observer::RunObserver;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::registry::CASES;
@@ -16,7 +16,7 @@ use grainbench::solver::record::{Cost, Record};
 use grainbench::solver::resolution::Resolution;
 use rayon::prelude::*;
 use std::path::Path;
-use std::process::{Command, Stdio};
+use std::process::Stdio;
 use std::sync::Arc;
 
 /// Returns the first part of a scene. Samples are seven steps apart.
@@ -152,14 +152,7 @@ all = { system = true }
 
 /// Returns the names and texts of the output files of a run, without run times.
 fn left(directory: &Path) -> Vec<(String, String)> {
-    let text = |name: &String| {
-        let text = directory.read(name);
-        let mut parts = text.split("\"wall_seconds\":");
-        let first = parts.next().unwrap_or_default().to_owned();
-        let is_number = |letter: char| letter.is_ascii_digit() || "+-.e".contains(letter);
-        parts.fold(first, |all, part| all + part.trim_start_matches(is_number))
-    };
-    files(directory).iter().map(|name| (name.clone(), text(name))).collect()
+    files(directory).into_iter().map(|name| (name.clone(), untimed(&directory.read(name)))).collect()
 }
 
 /// Grains with contact springs, and deformable grains.
@@ -196,8 +189,7 @@ fn killed_and_continued(scene: &str, options: &str, every: &str) -> Folder {
     path.ok(format!("{simulate} --out straight"));
 
     let watched = format!("{simulate} --checkpoint run.checkpoint --checkpoint-every {every}");
-    let mut victim = path.program(format!("{watched} --out killed"));
-    let mut victim = victim.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+    let mut victim = path.start(format!("{watched} --out killed"));
     while !path.join("run.checkpoint").exists() {
         assert!(victim.try_wait().unwrap().is_none(), "{options}: it ended before its first checkpoint");
         std::thread::sleep(std::time::Duration::from_millis(5));
@@ -262,8 +254,7 @@ fn a_run_that_breaks_leaves_what_there_is() {
         let run = path.run(format!("simulate scene.toml --out out {options}"));
         assert_eq!(run.code, Some(1), "{options}: {}", run.err);
         assert!(run.err.contains("the incomplete output"), "{}", run.err);
-        let broken = path.read("out/broken.json");
-        let broken: serde_json::Value = serde_json::from_str(&broken).unwrap();
+        let broken = path.json("out/broken.json");
         assert!(run.err.contains(broken["error"].as_str().unwrap()), "{broken}");
         let dump = path.read("out/snapshots.dump");
         let last = dump.rsplit("ITEM: TIMESTEP\n").next().unwrap().lines().next().unwrap();
@@ -311,16 +302,9 @@ fn an_interrupted_run_leaves_what_is_finished() {
     while !catches() {
         std::thread::sleep(std::time::Duration::from_millis(5));
     }
-    let sent = Command::new("kill").args(["-INT", &child.id().to_string()]).status().unwrap();
-    assert!(sent.success());
-    let ended = child.wait_with_output().unwrap();
-    let message = String::from_utf8(ended.stderr).unwrap();
-    assert_eq!(ended.status.code(), Some(1), "{message}");
-    assert!(
-        message.contains("interrupted: ") && message.contains("the report contains the finished checks"),
-        "{message}"
-    );
-    let results = directory.json("out/results.json");
-    let options = results["provenance"]["options"].to_string();
+    let (code, message) = interrupted(child);
+    assert!(code == Some(1) && message.contains("interrupted: "), "{message}");
+    assert!(message.contains("the report contains the finished checks"), "{message}");
+    let options = directory.json("out/results.json")["provenance"]["options"].to_string();
     assert!(options.contains("interrupted: "), "{options}");
 }

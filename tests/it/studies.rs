@@ -1,6 +1,6 @@
 //! The three studies on the command line. Their results hold, also after an interruption at any time.
 
-use crate::common::{Directory, temporary, temporary_with};
+use crate::common::{Directory, files, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
@@ -15,7 +15,6 @@ use rayon::prelude::*;
 use serde_json::Value;
 use std::fs;
 use std::path::Path;
-use std::process::Stdio;
 use std::sync::Arc;
 use std::time::Duration;
 
@@ -118,28 +117,20 @@ fn ended_at_any_moment_it_goes_on_to_the_same_result() {
     let mut state = 12345_u64;
     for _ in 0..10 {
         state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1);
-        let mut child = folder.program(format!("{COST} --out out"));
-        let mut child = child.stdout(Stdio::null()).stderr(Stdio::null()).spawn().unwrap();
+        let mut child = folder.start(format!("{COST} --out out"));
         std::thread::sleep(Duration::from_millis(5 + (state >> 33) % 400));
         let _ = child.kill();
         child.wait().unwrap();
         // Each JSON file is complete.
-        for name in
-            crate::common::files(&folder).iter().filter(|name| name.starts_with("out/") && name.ends_with(".json"))
-        {
+        for name in files(&folder).iter().filter(|name| name.starts_with("out/") && name.ends_with(".json")) {
             if !name.contains(".grainbench-") {
-                let text = folder.read(name);
-                serde_json::from_str::<Value>(&text).unwrap_or_else(|error| panic!("{name}: {error}"));
+                folder.json(name);
             }
         }
     }
     folder.ok(format!("{COST} --out out"));
     assert_eq!(results(&out), results(&folder.join("whole")));
-    assert!(
-        !crate::common::files(&out).iter().any(|name| name.contains(".grainbench-")),
-        "{:?}",
-        crate::common::files(&out)
-    );
+    assert!(!files(&out).iter().any(|name| name.contains(".grainbench-")), "{:?}", files(&out));
     let again = folder.run(format!("{COST} --out out"));
     assert!(again.out.contains("24 of 24 tasks were finished before"), "{}", again.out);
 }

@@ -17,7 +17,7 @@ fn another_number_is_another_task() {
 fn one_grain(here: &Path, replaced: (&str, &str)) {
     fs::create_dir_all(here.join("s")).unwrap();
     for name in ["SOLVER.toml", "one_grain.py"] {
-        let text = fs::read_to_string(crate::common::root("examples/python").join(name)).unwrap();
+        let text = fs::read_to_string(root("examples/python").join(name)).unwrap();
         here.join("s").write(name, text.replace(replaced.0, replaced.1));
     }
 }
@@ -35,7 +35,7 @@ fn an_edited_input_is_run_again() {
     let here = temporary();
     fs::create_dir(here.join("c")).unwrap();
     for name in ["scene.toml", "claims.toml"] {
-        fs::copy(crate::common::root("examples/case").join(name), here.join("c").join(name)).unwrap();
+        fs::copy(root("examples/case").join(name), here.join("c").join(name)).unwrap();
     }
     one_grain(&here, ("", ""));
     here.write("s/pkg/core.py", "FACTOR = 1.0\n");
