@@ -1,6 +1,6 @@
 //! External solvers with manifests: one that moves a grain correctly, and several with wrong output.
 
-use crate::common::{Answer, Directory, Folder, temporary};
+use crate::common::{Answer, Directory, Folder, is_here, temporary};
 use rayon::prelude::*;
 use serde_json::Value;
 use std::fs;
@@ -22,85 +22,65 @@ fn running() -> String {
     running.map(|output| String::from_utf8_lossy(&output.stdout).into_owned()).unwrap_or_default()
 }
 
-fn judged(folder: &Path, further: &str) -> (Answer, Value) {
+/// Runs the claims of a case with a solver. The solver passes no claim, so that the run is red.
+fn red(folder: &Path, further: &str) -> Answer {
     let answer = folder.run(format!("run {CASE} --solver SOLVER.toml --json {further}"));
-    let results = answer.json();
-    (answer, results)
+    assert_eq!(answer.code, Some(1), "{}", answer.err);
+    answer
 }
 
-/// Each wrong output is detected, and its message helps the author of a solver. An entry contains a name, a script, the
-/// outcome of all results, and a part of the message.
+/// Checks the outcome of all results of a solver, and a part of their message.
+fn is_found_out(manifest: &str, script: &str, verdict: &str, message: &str) {
+    let directory = temporary();
+    write(&directory, manifest, script);
+    let rows = red(&directory, "--no-controls").rows();
+    assert!(!rows.is_empty(), "{script}");
+    for row in rows {
+        assert_eq!(row["verdict"], verdict, "{script}: {row}");
+        assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{script}: {row}");
+    }
+}
+
+/// Each wrong output is detected, and its message helps the author of a solver.
 #[test]
 fn a_program_that_lies_is_found_out() {
+    let row = "0,1,0,0.4995,0,0,0,0,0,0,0";
     let table = |row: &str| format!("printf '{HEAD}\\n{row}\\n' > \"$2/grains.csv\"");
-    let lies: [(&str, String, &str, &str); 15] = [
-        ("leaves nothing", "exit 0".to_owned(), "broken", "grains.csv"),
+    let lies = [
+        // No output.
+        ("exit 0".to_owned(), "grains.csv"),
+        ("echo 'a,b' > \"$2/grains.csv\"; echo 'x,y' >> \"$2/grains.csv\"".to_owned(), "grains.csv:2:1"),
+        (table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "found `nan`"),
+        (table("0,1.5,0,0.4995,0,0,0,0,0,0,0"), "expected a whole number of 0 or more"),
+        (table("0,-5.5,0,0.4995,0,0,0,0,0,0,0"), "found -5.5"),
+        // Other names of spins.
         (
-            "garbage",
-            "echo 'a,b' > \"$2/grains.csv\"; echo 'x,y' >> \"$2/grains.csv\"".to_owned(),
-            "broken",
-            "grains.csv:2:1",
-        ),
-        ("no number", table("0,1,nan,0.4995,0,0,0,0,0,0,0"), "broken", "found `nan`"),
-        (
-            "a fraction for an id",
-            table("0,1.5,0,0.4995,0,0,0,0,0,0,0"),
-            "broken",
-            "expected a whole number of 0 or more",
-        ),
-        ("a negative id", table("0,-5.5,0,0.4995,0,0,0,0,0,0,0"), "broken", "found -5.5"),
-        (
-            "leaves a session",
-            "setsid sleep 1235 > /dev/null 2>&1 & sleep 1000".to_owned(),
-            "broken",
-            "not done after 2 s",
-        ),
-        (
-            "names its spins otherwise",
-            format!("printf '{}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > \"$2/grains.csv\"", HEAD.replace("omega", "w")),
-            "broken",
+            table(row).replace("omega", "w"),
             "expected the column `omegax`, or its name in `output.grains.map`, found `wx`",
         ),
-        ("ends early", table("0,1,0,0.4995,0,0,0,0,0,0,0"), "broken", "expected samples to step"),
-        ("hangs", "sleep 1000".to_owned(), "broken", "not done after 2 s"),
-        ("leaves a child", "sleep 1234 & exit 0".to_owned(), "broken", "grains.csv"),
-        ("floods the disk", "head -c 10000000000 /dev/zero > \"$2/big\"".to_owned(), "broken", "found more"),
-        ("talks without end", "yes".to_owned(), "broken", "found more"),
-        ("breaks", "echo 'out of memory' >&2; exit 3".to_owned(), "broken", "it said last: out of memory"),
-        ("links elsewhere", "ln -s /dev/zero \"$2/grains.csv\"".to_owned(), "broken", "expected a plain file"),
-        ("cannot", "echo 'no friction here'; exit 64".to_owned(), "unsupported", "no friction here"),
+        // An early end.
+        (table(row), "expected samples to step"),
+        ("sleep 1000".to_owned(), "not done after 2 s"),
+        // A child that goes on, and a child in another session.
+        ("sleep 1234 & exit 0".to_owned(), "grains.csv"),
+        ("setsid sleep 1235 > /dev/null 2>&1 & sleep 1000".to_owned(), "not done after 2 s"),
+        ("head -c 10000000000 /dev/zero > \"$2/big\"".to_owned(), "found more"),
+        ("yes".to_owned(), "found more"),
+        ("echo 'out of memory' >&2; exit 3".to_owned(), "it said last: out of memory"),
+        ("ln -s /dev/zero \"$2/grains.csv\"".to_owned(), "expected a plain file"),
     ];
-    for (what, script, verdict, message) in lies {
-        let directory = temporary();
-        write(&directory, MANIFEST, &script);
-        let (answer, results) = judged(&directory, "--no-controls");
-        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
-        let rows = results["verdicts"].as_array().unwrap();
-        assert!(!rows.is_empty(), "{what}");
-        for row in rows {
-            assert_eq!(row["verdict"], verdict, "{what}: {row}");
-            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
-        }
+    for (script, message) in lies {
+        is_found_out(MANIFEST, &script, "broken", message);
     }
+    is_found_out(MANIFEST, "echo 'no friction here'; exit 64", "unsupported", "no friction here");
     assert!(!running().contains("sleep 1234"), "what it started goes with it");
     assert!(!running().contains("sleep 1235"), "and what it started in a session");
-}
-
-/// A folder that is a symbolic link is rejected, because its files may belong to another run.
-#[test]
-fn grains_in_a_linked_folder_are_refused() {
-    let directory = temporary();
-    let script = format!(
-        "mkdir elsewhere; printf '{HEAD}\\n0,1,0,0.4995,0,0,0,0,0,0,0\\n' > elsewhere/grains.csv; \
-         ln -s \"$PWD/elsewhere\" \"$2/sub\""
-    );
-    write(&directory, &MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\""), &script);
-    let (answer, results) = judged(&directory, "--no-controls");
-    assert_eq!(answer.code, Some(1), "{}", answer.err);
-    for row in results["verdicts"].as_array().unwrap() {
-        let detail = row["detail"].as_str().unwrap_or_default();
-        assert!(detail.contains("sub/grains.csv: expected the folder sub, found a link or a file"), "{row}");
-    }
+    // The files of a folder that is a symbolic link may belong to another run.
+    let script = table(row).replace("\"$2/grains.csv\"", "elsewhere/grains.csv");
+    let script = format!("mkdir elsewhere; {script}; ln -s \"$PWD/elsewhere\" \"$2/sub\"");
+    let manifest = MANIFEST.replace("\"grains.csv\"", "\"sub/grains.csv\"");
+    let message = "sub/grains.csv: expected the folder sub, found a link or a file";
+    is_found_out(&manifest, &script, "broken", message);
 }
 
 /// A worker process with wrong output is detected too, and its child processes end with it.
@@ -108,30 +88,19 @@ fn grains_in_a_linked_folder_are_refused() {
 fn a_worker_that_lies_is_found_out() {
     let manifest =
         MANIFEST.replace("run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]", "worker = [\"sh\", \"liar.sh\"]");
-    let lies: [(&str, &str, &str, &str); 8] = [
-        ("leaves nothing", "echo '{\"ran\": {}}'", "broken", "grains.csv"),
-        ("nonsense", "echo nonsense", "broken", "found `nonsense`"),
-        ("ends", "exit 0", "broken", "the worker ended"),
-        ("hangs", "sleep 1000", "broken", "not done after 2 s"),
-        ("floods the disk", "head -c 10000000000 /dev/zero > big", "broken", "found more"),
-        ("breaks", "echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "time 0.5, place unknown"),
-        (
-            "tells no time",
-            "echo '{\"ran\": {\"seconds\": -1}}'",
-            "broken",
-            "expected seconds of zero or more, found -1",
-        ),
-        ("cannot", "echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
+    let lies = [
+        ("echo '{\"ran\": {}}'", "broken", "grains.csv"),
+        ("echo nonsense", "broken", "found `nonsense`"),
+        ("exit 0", "broken", "the worker ended"),
+        ("sleep 1000", "broken", "not done after 2 s"),
+        ("head -c 10000000000 /dev/zero > big", "broken", "found more"),
+        ("echo '{\"failed\": {\"why\": \"a nail\", \"when\": 0.5}}'", "broken", "time 0.5, place unknown"),
+        ("echo '{\"ran\": {\"seconds\": -1}}'", "broken", "expected seconds of zero or more, found -1"),
+        ("echo '{\"cannot\": \"no friction here\"}'", "unsupported", "no friction here"),
     ];
-    for (what, script, verdict, message) in lies {
-        let directory = temporary();
-        write(&directory, &manifest, &format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone"));
-        let (answer, results) = judged(&directory, "--no-controls");
-        assert_eq!(answer.code, Some(1), "{what}: {}", answer.err);
-        for row in results["verdicts"].as_array().unwrap() {
-            assert_eq!(row["verdict"], verdict, "{what}: {row}");
-            assert!(row["detail"].as_str().unwrap_or_default().contains(message), "{what}: {row}");
-        }
+    for (script, verdict, message) in lies {
+        let script = format!("sleep 4321 &\nwhile read -r line; do\n{script}\ndone");
+        is_found_out(&manifest, &script, verdict, message);
     }
     assert!(!running().contains("sleep 4321"), "what it started goes with it");
 }
@@ -142,8 +111,7 @@ fn what_is_not_declared_is_not_asked_for() {
     let path = temporary();
     let reason = |manifest: &str| {
         write(&path, manifest, "exit 0");
-        let (answer, results) = judged(&path, "");
-        assert_eq!(answer.code, Some(1), "{}", answer.err);
+        let results = red(&path, "").json();
         assert!(results["controls"].as_array().unwrap().is_empty(), "what cannot be expressed has no control");
         let row = &results["verdicts"][0];
         (row["verdict"].as_str().unwrap().to_owned(), row["detail"].as_str().unwrap_or_default().to_owned())
@@ -170,11 +138,9 @@ fn a_scene_is_printed_as_programs_are_given_it() {
     let json = print("").json();
     let toml: toml::Table = print("--format toml").out.parse().unwrap();
     assert_eq!(json, serde_json::to_value(toml).unwrap());
-    assert!(
-        json["format"] == 1 && json["steps"]["count"].as_u64() > Some(0) && json["columns"][0] == "grain.x",
-        "{json}"
-    );
-    assert_eq!(json["laws"][0]["friction"], 0.9);
+    assert!(json["steps"]["count"].as_u64() > Some(0), "{json}");
+    let [format, column, friction] = [&json["format"], &json["columns"][0], &json["laws"][0]["friction"]];
+    assert!(*format == 1 && *column == "grain.x" && *friction == 0.9, "{json}");
     let other = print("--set contacts.plane.friction=0.25").json();
     assert_eq!(other["laws"][0]["friction"], 0.25);
     // The printed scene has every key that the schema of resolved scenes requires.
@@ -201,13 +167,6 @@ fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> Folder {
         }
     }
     directory
-}
-
-/// Returns true if a program is installed. In CI, a missing program is an error.
-fn is_here(program: &str) -> bool {
-    let is_here = Command::new(program).arg("--version").output().is_ok_and(|output| output.status.success());
-    assert!(is_here || std::env::var_os("CI").is_none(), "{program} is not here");
-    is_here
 }
 
 /// Returns the exit code of a run of an example, and the number of passed results.
@@ -355,10 +314,8 @@ fn a_program_is_timed_and_its_longest_stable_step_is_found() {
     assert!(closest < 1e-4, "stiff contacts are rigid ones: {closest}");
     // The cause of its constant error is unknown to the study.
     let floors: Vec<&str> = points.iter().filter_map(|point| point["floor"].as_str()).collect();
-    assert!(
-        !floors.is_empty() && floors.iter().all(|floor| floor.starts_with("error that smaller steps")),
-        "{floors:?}"
-    );
+    let unexplained = floors.iter().all(|floor| floor.starts_with("error that smaller steps"));
+    assert!(!floors.is_empty() && unexplained, "{floors:?}");
     let page = folder.read("cost/index.html");
     assert!(page.contains("<th scope=\"col\">one-grain-cpp</th>"), "it has its column beside ours");
     let stability = study("stability disc-on-a-wall", "stability");
@@ -398,11 +355,8 @@ fn energy_gained_in_mid_run_is_red() {
     let folder = temporary();
     let manifest = MANIFEST.replace("[\"sh\", \"liar.sh\"", "[\"python3\", \"liar.sh\"");
     write(&folder, &manifest.replace("seconds = 2", "seconds = 20"), script);
-    let answer = folder.run("conform SOLVER.toml --json");
-    let results = answer.json();
-    let rows = results["verdicts"].as_array().unwrap().iter();
-    let gains: Vec<&Value> =
-        rows.filter(|row| row["quantity"].as_str().unwrap().starts_with("energy gained")).collect();
+    let mut gains = folder.run("conform SOLVER.toml --json").rows();
+    gains.retain(|row| row["quantity"].as_str().unwrap().starts_with("energy gained"));
     assert!(gains.iter().any(|row| row["variant"] == "passivity/between-planes-2d"), "{gains:#?}");
     for row in gains.into_iter().filter(|row| row["verdict"] != "unsupported") {
         assert!(row["verdict"] == "fail" && row["value"].as_f64().is_some_and(|gain| gain > 1.0), "{row}");
@@ -420,20 +374,13 @@ fn what_cannot_be_fed_with_wrong_physics_is_not_earned() {
     let folder = example("python", "one_grain.py", Some((read, &picky)));
     assert_eq!(passes(&folder, "incline-disc/60deg-mu.3", "--no-controls").1, 3);
     let answer = folder.run("run incline-disc/60deg-mu.3 --solver SOLVER.toml --json");
-    let results = answer.json();
-    for row in results["verdicts"].as_array().unwrap() {
+    for row in answer.rows() {
         let says = row["detail"].as_str().unwrap_or_default();
-        assert!(
-            row["verdict"] == "unsupported"
-                && says.contains("cannot run the negative control of this claim, friction ×1.05"),
-            "{row}"
-        );
+        let message = "cannot run the negative control of this claim, friction ×1.05";
+        assert!(row["verdict"] == "unsupported" && says.contains(message), "{row}");
     }
-    assert!(
-        answer.code == Some(1) && results["controls"] == Value::Array(Vec::new()),
-        "nothing was earned: {}",
-        answer.out
-    );
+    let controls = &answer.json()["controls"];
+    assert!(answer.code == Some(1) && *controls == Value::Array(Vec::new()), "{}", answer.out);
 }
 
 /// An interrupt ends a program without output immediately, and leaves no incomplete output.
@@ -443,21 +390,17 @@ fn an_interrupt_ends_a_silent_program() {
     let silent = MANIFEST.replace("seconds = 2", "seconds = 900");
     let run = "run = [\"sh\", \"liar.sh\", \"{scene}\", \"{out}\"]";
     let worker = silent.replace(run, "worker = [\"sh\", \"liar.sh\"]");
-    for (number, (manifest, signal)) in
-        [(&silent, "-TERM"), (&worker, "-INT"), (&worker, "-TERM")].into_iter().enumerate()
-    {
+    let runs = [("31405.9", &silent, "-TERM"), ("31415.9", &worker, "-INT"), ("31425.9", &worker, "-TERM")];
+    for (mark, manifest, signal) in runs {
         let folder = temporary();
-        let mark = format!("314{number}5.9");
         write(&folder, manifest, &format!("touch {}/begun; sleep {mark}", folder.display()));
-        let mut program = folder.program(format!("run {CASE} --solver SOLVER.toml --out out -q"));
-        let mut child =
-            program.stdout(std::process::Stdio::null()).stderr(std::process::Stdio::null()).spawn().unwrap();
+        let mut child = folder.start(format!("run {CASE} --solver SOLVER.toml --out out -q"));
         while !folder.join("begun").exists() {
             std::thread::sleep(std::time::Duration::from_millis(5));
         }
         assert!(Command::new("kill").args([signal, &child.id().to_string()]).status().unwrap().success());
         assert_eq!(child.wait().unwrap().code(), Some(1));
-        assert!(!running().contains(&mark), "it goes on");
+        assert!(!running().contains(mark), "it goes on");
         let results = folder.json("out/results.json");
         assert_eq!(results["verdicts"].as_array().unwrap().len(), 0, "a run that was ended is no result");
         assert!(results["provenance"]["options"].to_string().contains("interrupted: "));
