@@ -300,12 +300,8 @@ mod tests {
             }
         });
         let is_of_grains = |pairs: &Pairs, grains: usize| pairs.is_of(grains, layout);
-        assert!(
-            is_of_grains(&pairs, 2)
-                && is_of_grains(&Pairs::empty(), 2)
-                && !is_of_grains(&pairs, 1)
-                && !is_of_grains(&pairs, 3)
-        );
+        assert_eq!([1, 2, 3].map(|grains| is_of_grains(&pairs, grains)), [false, true, false]);
+        assert!(is_of_grains(&Pairs::empty(), 2));
         let mut other = pairs.clone();
         other.partner[0] = 2;
         assert!(!is_of_grains(&other, 2));

@@ -194,21 +194,6 @@ fn driven_grains_give_what_they_say() {
     assert!((open - budget("friction")).abs() > 1e-2 * budget("work").abs(), "it would not close without friction");
 }
 
-/// Forces do not move a grain with prescribed motion. Such a grain acts on the dashpot of a contact like a wall of
-/// infinite mass, so the coefficient of restitution has the requested value.
-#[test]
-fn a_driven_grain_has_no_finite_mass() {
-    let text = "dimension = 2\nduration = 0.4\n\
-         materials.n.density = 1000.0\ncontacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e7, restitution = 0.5 }\n\
-         [grains.free]\nmaterial = 'n'\nradius = 0.5\nposition = [-1.1, 0.0]\nvelocity = [1.0, 0.0]\n\
-         [grains.held]\nmaterial = 'n'\nradius = 0.5\nposition = [0.0, 0.0]\n\
-         [driven.held]\ngrains = 'held'\n[probes]\nfree.grain = 'free'\n";
-    // The error of the rebound velocity is of first order in the step. The velocity is .480 m/s at 0.1 of the critical
-    // time step and .4996 m/s at 0.02, as in this run. With the mass of a free grain, it would be .618 m/s.
-    let rebound = -last(&run(text), "free.vx");
-    assert!((rebound - 0.5).abs() < 5e-3, "{rebound}");
-}
-
 /// Grains in a box are held, grains outside it are free. The effective mass of the contact of a held grain with a wall is
 /// zero, so the dashpot of this contact has no effect. The grain stays at its position, and the spring of the contact
 /// exerts its usual force.
