@@ -165,6 +165,28 @@ mod tests {
     use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 
+    /// Returns the first step of a box of 2 kg/m² on cells of 1 m. Its side on nodes is constrained.
+    fn held(kind: &str, velocity: &str) -> Simulation<Plane> {
+        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
+        let text = format!(
+            "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
+             materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
+             [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n\
+             velocity = {velocity}\n"
+        );
+        let (mut simulation, _) = prepared(setting, &text, 1.0, 2);
+        simulation.begin().expect("it starts");
+        simulation
+    }
+
+    /// Returns the simulation with the masses and momenta of its points on the nodes.
+    fn scattered(kind: &str, velocity: &str) -> Simulation<Plane> {
+        let mut simulation = held(kind, velocity);
+        simulation.place_windows().expect("it fits");
+        simulation.scatter();
+        simulation
+    }
+
     /// A box of 2 kg/m² on cells of 1 m moves at (3, 5) m/s before its side on nodes is constrained. Points are at
     /// quarters of cells, where the quadratic function of a node has the values N(¼) = 11/16, N(¾) = 9/32 and N(1¼) =
     /// 1/32.
@@ -175,16 +197,8 @@ mod tests {
     /// and (1 − 1/32) of this value on a fixed side.
     #[test]
     fn a_held_side_gives_nodes_the_mass_of_the_mirror_image() {
-        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
         for (kind, along) in [("sliding", 5.0), ("fixed", 5.0 * (1.0 - 1.0 / 32.0))] {
-            let text = format!(
-                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
-                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
-                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n\
-                 velocity = [3.0, 5.0]\n"
-            );
-            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
-            simulation.begin().expect("it starts");
+            let mut simulation = held(kind, "[3.0, 5.0]");
             simulation.cycle(false).expect("it holds together");
             let (lattice, window) = (simulation.grid.lattice, simulation.state.bodies[0].part.window);
             assert!(lattice.cell[0] == 1.0 && lattice.origin == [0.0; 3], "{lattice:?}");
@@ -206,18 +220,8 @@ mod tests {
     /// those from folded momenta and masses.
     #[test]
     fn a_held_side_folds_momenta_before_they_are_divided() {
-        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
         for kind in ["sliding", "fixed"] {
-            let text = format!(
-                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
-                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
-                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n\
-                 velocity = [3.0, 5.0]\n"
-            );
-            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
-            simulation.begin().expect("it starts");
-            simulation.place_windows().expect("it fits");
-            simulation.scatter();
+            let mut simulation = scattered(kind, "[3.0, 5.0]");
             let Simulation { state, grid, boundary, .. } = &mut simulation;
             grid.project();
             boundary.held.fold(&state.bodies, &mut grid.nodes, Vector2::zeros());
@@ -238,17 +242,8 @@ mod tests {
     /// minus the weight of the folded mass. Along a sliding side the full weight acts.
     #[test]
     fn a_held_side_mirrors_gravity() {
-        let setting = Setting { basis: Basis::Quadratic, transfer: Transfer::Flip { pic: 0.0 }, ..Setting::BEST };
         for (kind, along) in [("sliding", 7.0), ("fixed", 7.0 * (1.0 - 1.0 / 32.0))] {
-            let text = format!(
-                "dimension = 2\nduration = 0.1\nreference_length = 1.0\n\
-                 materials.m = {{ density = 2.0, young_modulus = 1.0, poisson_ratio = 0.0 }}\n\
-                 [bodies.b]\nmaterial = 'm'\nbox = {{ low = [0.0, 0.0], high = [6.0, 8.0] }}\n{kind} = ['x-low']\n"
-            );
-            let (mut simulation, _) = prepared::<Plane>(setting, &text, 1.0, 2);
-            simulation.begin().expect("it starts");
-            simulation.place_windows().expect("it fits");
-            simulation.scatter();
+            let mut simulation = scattered(kind, "[0.0, 0.0]");
             let Simulation { state, grid, boundary, .. } = &mut simulation;
             let gravity = Vector2::new(3.0, 7.0);
             boundary.held.fold(&state.bodies, &mut grid.nodes, gravity);
