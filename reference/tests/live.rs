@@ -92,12 +92,6 @@ fn a_program_that_leaves_nothing() {
     assert!(error.contains("left output that cannot be used") && error.contains("dump.grains"), "{error}");
 }
 
-#[test]
-fn a_program_that_leaves_nonsense() {
-    let error = run("echo nonsense > dump.grains").unwrap_err().to_string();
-    assert!(error.ends_with("dump.grains:1: expected a line `ITEM: …`, found `nonsense`"), "{error}");
-}
-
 /// Returns a script that writes a complete run with three samples and a log. `x` is the position at the second sample.
 fn whole(x: &str, steps: &str) -> String {
     format!(
@@ -124,16 +118,18 @@ fn a_program_that_does_its_run() {
     assert_eq!(record.snapshots.iter().map(|snapshot| snapshot.step).collect::<Vec<_>>(), [0, 2]);
 }
 
-/// Incomplete runs and runs with NaN are failures and are not evaluated.
+/// Unreadable files, incomplete runs and runs with NaN are failures and are not evaluated.
 #[test]
 fn a_program_that_leaves_less_than_its_run() {
-    let message = |text: &str| run(text).unwrap_err().to_string();
-    let short = message(&whole("1", "0 1"));
-    assert!(short.ends_with("expected samples to step 2, found the last sample at step 1"), "{short}");
-    let gap = message(&whole("1", "0 2"));
-    assert!(gap.ends_with("expected a sample at step 1, found step 2"), "{gap}");
-    let nan = message(&whole("nan", "0 1 2"));
-    assert!(nan.ends_with("expected finite numbers, found disc.x = NaN at step 1"), "{nan}");
+    for (script, message) in [
+        ("echo nonsense > dump.grains", "dump.grains:1: expected a line `ITEM: …`, found `nonsense`"),
+        (&*whole("1", "0 1"), "expected samples to step 2, found the last sample at step 1"),
+        (&*whole("1", "0 2"), "expected a sample at step 1, found step 2"),
+        (&*whole("nan", "0 1 2"), "expected finite numbers, found disc.x = NaN at step 1"),
+    ] {
+        let error = run(script).unwrap_err().to_string();
+        assert!(error.ends_with(message), "{error}");
+    }
 }
 
 #[test]

@@ -347,28 +347,16 @@ mod tests {
 
     #[test]
     fn other_shapes_are_refused_in_words() {
-        assert_eq!(
-            read("contacts-late.npz").unwrap_err(),
-            "contacts-late.npz:1: expected steps of the grains in ascending order in the array `contact_step`, found 5 \
-             in row 2"
-        );
-        assert_eq!(
-            read("contacts-short.npz").unwrap_err(),
-            "contacts-short.npz:1: expected the shape (3, 3) of the array `contact_force`, found [2, 3]"
-        );
-        assert_eq!(
-            read("wall-flat.npz").unwrap_err(),
-            "wall-flat.npz:1: expected the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"
-        );
-        assert_eq!(
-            read("flat.npz").unwrap_err(),
-            "flat.npz:1: expected the shape (3, grains, 3) of the array `position`, found [3, 3]"
-        );
-        assert_eq!(
-            read("fortran.npz").unwrap_err(),
-            "fortran.npz:1: expected arrays in C order (last index fastest) in the array `position`, found \
-             `fortran_order`"
-        );
+        for (file, message) in [
+            ("contacts-late", "steps of the grains in ascending order in the array `contact_step`, found 5 in row 2"),
+            ("contacts-short", "the shape (3, 3) of the array `contact_force`, found [2, 3]"),
+            ("wall-flat", "the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"),
+            ("flat", "the shape (3, grains, 3) of the array `position`, found [3, 3]"),
+            ("fortran", "arrays in C order (last index fastest) in the array `position`, found `fortran_order`"),
+        ] {
+            let file = format!("{file}.npz");
+            assert_eq!(read(&file).unwrap_err(), format!("{file}:1: expected {message}"));
+        }
     }
 
     #[test]
