@@ -289,11 +289,8 @@ mod tests {
         let figures = figures(&[named("", &solid)], &FigureOptions::default());
         assert!(!is_plane(&solid) && figures.iter().any(|figure| figure.name == "grains"));
         let empty = Record { snapshots: Vec::new(), ..sample::record() };
-        assert!(
-            super::figures(&[named("", &empty)], &FigureOptions::default())
-                .iter()
-                .all(|figure| figure.name.starts_with("probe-"))
-        );
+        let figures = super::figures(&[named("", &empty)], &FigureOptions::default());
+        assert!(figures.iter().all(|figure| figure.name.starts_with("probe-")));
     }
 
     /// A dump contains neither contacts nor angles. Its panels are then left out, and the caption states this.

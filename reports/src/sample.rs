@@ -7,7 +7,7 @@ use grainbench_harness::case::Physics;
 use grainbench_harness::control::FailureMode;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
-use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, ForceBar, ForcePlot, Graph, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Figure, ForceBar, ForcePlot, Stroke};
 use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
 
@@ -20,12 +20,8 @@ use crate::study::Study;
 pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expected: f64, allowed: f64) -> Verdict {
     let error = (value - expected) / expected.abs();
     Verdict {
-        case: case.into(),
-        variant: String::new(),
         solver: solver.into(),
         resolution: "dt=.1".into(),
-        quantity: quantity.into(),
-        unit: "m/s".into(),
         value: Some(value),
         expected: Some(ExpectedValue::Value(expected)),
         scale: Some(expected.abs()),
@@ -36,7 +32,7 @@ pub(crate) fn verdict(case: &str, solver: &str, quantity: &str, value: f64, expe
         evidence: Evidence::Analytic,
         source: "rigid sphere under Coulomb friction, eq. 26".into(),
         outcome: if error.abs() <= allowed { Outcome::Pass } else { Outcome::Fail },
-        detail: None,
+        ..Verdict::open(case, quantity, "m/s")
     }
 }
 
@@ -103,10 +99,13 @@ fn backspin() -> Section {
     momentum.because = "a thousand roundings of double precision".into();
     momentum.outcome = Outcome::Pass;
     let levels = [0.4, 0.2, 0.1, 0.05, 0.025, 0.0125];
-    let convergence = Graph {
-        x: Axis::log("Δt / critical (1)"),
-        y: Axis::log("|error| of v(t = 0.5 s) (1)"),
-        curves: vec![
+    let convergence = Figure::graph(
+        "convergence",
+        "Error against time step",
+        "Error of the end speed over the levels. The in-house solver converges with the first power of the step, LAMMPS' \
+         convention with the second.",
+        [Axis::log("Δt / critical (1)"), Axis::log("|error| of v(t = 0.5 s) (1)")],
+        vec![
             Curve::new("dem", Stroke::MarkedLine, levels.map(|x| (x, 0.03 * x)).to_vec()),
             Curve::new("dem:lammps", Stroke::MarkedLine, levels.map(|x| (x, 0.19 * x * x)).to_vec()),
             Curve::new(
@@ -117,11 +116,13 @@ fn backspin() -> Section {
             Curve::new("allowed", Stroke::Dashed, vec![(0.0125, 0.02), (0.4, 0.02)]),
             Curve::new("first order", Stroke::Dashed, vec![(0.0125, 1.25e-3), (0.1, 1e-2)]),
         ],
-    };
-    let series = Graph {
-        x: Axis::linear("time t (s)"),
-        y: Axis::linear("velocity v (m/s)"),
-        curves: vec![
+    );
+    let velocity = Figure::graph(
+        "velocity",
+        "Velocity of the centre",
+        "Sliding, then rolling. The kink is at t* = 0.291 s.",
+        [Axis::linear("time t (s)"), Axis::linear("velocity v (m/s)")],
+        vec![
             Curve::new("dem", Stroke::Line, times().map(|t| (t, exact(t) + 0.004 * (60.0 * t).sin())).collect()),
             Curve::new("dem:liggghts", Stroke::Line, times().map(|t| (t, exact(t) * (1.0 - 0.05 * t))).collect()),
             Curve::new(
@@ -131,7 +132,7 @@ fn backspin() -> Section {
             ),
             Curve::new("exact", Stroke::Dashed, times().map(|t| (t, exact(t))).collect()),
         ],
-    };
+    );
     Section {
         name: case.into(),
         title: "A sphere with backspin on a rough floor".into(),
@@ -153,22 +154,7 @@ fn backspin() -> Section {
                on μ; only **t\\*** depends on it."
                 .into(),
         omitted: None,
-        figures: vec![
-            Figure {
-                name: "convergence".into(),
-                title: "Error against time step".into(),
-                caption: "Error of the end speed over the levels. The in-house solver converges with the first power \
-                          of the step, LAMMPS' convention with the second."
-                    .into(),
-                drawing: Drawing::Graph(convergence),
-            },
-            Figure {
-                name: "velocity".into(),
-                title: "Velocity of the centre".into(),
-                caption: "Sliding, then rolling. The kink is at t* = 0.291 s.".into(),
-                drawing: Drawing::Graph(series),
-            },
-        ],
+        figures: vec![convergence, velocity],
         verdicts: vec![
             verdict(case, "dem", "v(t=0.5 s)", 1.4268, 1.428_571, 0.02),
             fail,
@@ -225,6 +211,7 @@ fn nine_discs() -> Section {
         let centre: [f64; 2] = discs[disc].0;
         bars.push(ForceBar { from: centre, to: [centre[0], 0.0], force: size, slipping: false });
     }
+    let walls = vec![([0.0, 0.0], [0.34, 0.0]), ([0.0, 0.0], [0.0, 0.31]), ([0.34, 0.0], [0.34, 0.31])];
     let mut absent = verdict(case, "lammps", "force on the floor", 1.0, 214.9, 0.01);
     absent.unit = "N".into();
     absent.value = None;
@@ -251,16 +238,12 @@ fn nine_discs() -> Section {
         derivation: "The expected forces are those that the paper prints.".into(),
         weak: "Three digits were printed.".into(),
         omitted: None,
-        figures: vec![Figure {
-            name: "forces".into(),
-            title: "Contact forces at the end".into(),
-            caption: "Width is proportional to force; radii show rotation since the start.".into(),
-            drawing: Drawing::Forces(ForcePlot {
-                discs,
-                walls: vec![([0.0, 0.0], [0.34, 0.0]), ([0.0, 0.0], [0.0, 0.31]), ([0.34, 0.0], [0.34, 0.31])],
-                bars,
-            }),
-        }],
+        figures: vec![Figure::forces(
+            "forces",
+            "Contact forces at the end",
+            "Width is proportional to force; radii show rotation since the start.",
+            ForcePlot { discs, walls, bars },
+        )],
         verdicts: vec![paper, absent, unsupported],
         controls: vec![control(case, "force on the floor", "gravity turned off", true)],
         runs: vec![run("dem", "dt=.1", 2e-5, 40_000)],

@@ -80,40 +80,15 @@ mod tests {
         for snapshot in [sample::snapshot(), later] {
             add(&snapshot, &mut out).unwrap();
         }
-        let columns = format!("ITEM: ATOMS {COLUMNS}{FORCES}");
-        assert_eq!(
-            String::from_utf8(out).unwrap(),
-            [
-                "ITEM: UNITS",
-                "si",
-                "ITEM: TIME",
-                "0.1",
-                "ITEM: TIMESTEP",
-                "10",
-                "ITEM: NUMBER OF ATOMS",
-                "2",
-                "ITEM: BOX BOUNDS pp ff ff",
-                "0.0 4.0",
-                "0.0 3.0",
-                "-0.5 0.5",
-                &columns,
-                "1 1 0.5 1.25 3.75 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
-                "2 1 0.5 1.25 0.5 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
-                "ITEM: TIME",
-                "0.2",
-                "ITEM: TIMESTEP",
-                "20",
-                "ITEM: NUMBER OF ATOMS",
-                "1",
-                "ITEM: BOX BOUNDS pp ff ff",
-                "0.0 4.0",
-                "0.0 3.0",
-                "-0.5 0.5",
-                &columns,
-                "1 1 0.5 1.25 3.75 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125",
-                "",
-            ]
-            .join("\n")
-        );
+        let head = |time: &str, step: u32, grains: u32| {
+            format!(
+                "ITEM: TIME\n{time}\nITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{grains}\n\
+                 ITEM: BOX BOUNDS pp ff ff\n0.0 4.0\n0.0 3.0\n-0.5 0.5\nITEM: ATOMS {COLUMNS}{FORCES}\n"
+            )
+        };
+        let first = "1 1 0.5 1.25 3.75 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125\n";
+        let second = "2 1 0.5 1.25 0.5 0.25 0.0 0.1 -2e-7 0.0 0.0 0.0 3.0 1.0 2.0 0.0 0.0 0.0 -0.125\n";
+        let expected = ["ITEM: UNITS\nsi\n", &head("0.1", 10, 2), first, second, &head("0.2", 20, 1), first];
+        assert_eq!(String::from_utf8(out).unwrap(), expected.concat());
     }
 }

@@ -235,11 +235,7 @@ mod tests {
     #[test]
     fn linear_ticks_are_round() {
         let scale = Scale::fit([0.0, 0.5].into_iter(), false, 0.0, 6);
-        assert_eq!(
-            labels(&scale),
-            ["0.0", "0.1", "0.2", "0.3", "0.4", "0.5"]
-                .map(|text| { if text == "0.0" { "0".to_owned() } else { text.to_owned() } })
-        );
+        assert_eq!(labels(&scale), ["0", "0.1", "0.2", "0.3", "0.4", "0.5"]);
         let scale = Scale::fit([-3e-5, 2e-5].into_iter(), false, 0.0, 5);
         assert_eq!(labels(&scale), ["−3×10⁻⁵", "−2×10⁻⁵", "−1×10⁻⁵", "0", "1×10⁻⁵", "2×10⁻⁵"]);
     }
