@@ -396,11 +396,8 @@ mod tests {
         for allowed in [0.0, 1.0, f64::INFINITY, f64::NAN] {
             for value in [f64::NAN, -f64::NAN, f64::INFINITY, f64::NEG_INFINITY] {
                 let row = Verdict { allowed, ..Verdict::open("case", "quantity", "1") };
-                assert_eq!(
-                    row.judged(&Measurement::new(value, 0.0, 1.0)).outcome,
-                    Outcome::Fail,
-                    "{value} of {allowed}"
-                );
+                let judged = row.judged(&Measurement::new(value, 0.0, 1.0));
+                assert_eq!(judged.outcome, Outcome::Fail, "{value} of {allowed}");
             }
         }
         let row = Verdict { allowed: f64::NAN, ..Verdict::open("case", "quantity", "1") };

@@ -45,11 +45,8 @@ fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
 /// Checks that a frictionless scene has the same final state with the frictionless kernel and with friction that has no effect.
 fn same_without(scene: &Scene, resolution: Resolution) {
     let idle = with_idle_friction(scene);
-    assert!(
-        !Effects::from_scene(scene).friction
-            && Effects::from_scene(&idle).friction
-            && Effects::from_scene(&idle).rolling_resistance
-    );
+    let (without, with) = (Effects::from_scene(scene), Effects::from_scene(&idle));
+    assert!(!without.friction && with.friction && with.rolling_resistance);
     let (without, with) = (run(scene, resolution), run(&idle, resolution));
     let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
     assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));

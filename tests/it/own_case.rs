@@ -36,10 +36,8 @@ fn claims_in_a_file_are_judged_as_those_in_rust_are() {
     assert_eq!(answer.code, Some(0), "{}", answer.err);
     assert!(verdicts.len() == 3 && verdicts.iter().all(|row| row["verdict"] == "pass"), "{verdicts:#?}");
     assert!(controls.len() == 3 && controls.iter().all(|control| control["turned_red"] == true), "{controls:#?}");
-    assert_eq!(
-        [&verdicts[0]["tolerance"], &verdicts[2]["tolerance"], &verdicts[0]["evidence"]],
-        ["computed", "judged", "analytic"]
-    );
+    assert_eq!([&verdicts[0]["tolerance"], &verdicts[2]["tolerance"]], ["computed", "judged"]);
+    assert_eq!(verdicts[0]["evidence"], "analytic");
     // Computed by hand: 5/2 · 0.1 · 9.81 · cos 30° / 0.005 times the time of the last sample.
     let spin = 2.5 * 0.1 * 9.81 * 30.0_f64.to_radians().cos() / 0.005;
     let found = verdicts[1]["expected"].as_f64().unwrap() / spin;

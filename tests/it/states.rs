@@ -67,45 +67,29 @@ fn a_state_is_the_one_whose_origin_is_told() {
     assert!(states.len() >= 3, "cases that begin with the end of another run");
     let mut wrong = Vec::new();
     for path in &states {
-        let (origin_of_state, bytes) = (origin(path), fs::read(path).unwrap());
+        let (told, bytes) = (origin(path), fs::read(path).unwrap());
         let found = blake3::hash(&bytes).to_hex().to_string();
-        if found != origin_of_state.blake3 {
+        if found != told.blake3 {
             wrong.push(format!("{}: another file: {found}", path.display()));
         }
         assert!(bytes.len() <= 10_000_000, "{} is too large to be kept", path.display());
         let state = EndState::from_bytes(&bytes).unwrap();
-        let scene = scene_source(path, &origin_of_state).scene(&read_grains).unwrap();
-        assert_eq!(
-            (state.of[0].as_str(), state.grains.len()),
-            (&*scene.title, origin_of_state.grains),
-            "{}",
-            path.display()
-        );
-        let stepping = Stepping::new(&scene, &Resolution::TimeStep(origin_of_state.time_step)).unwrap();
+        let scene = scene_source(path, &told).scene(&read_grains).unwrap();
+        assert!(state.of[0] == *scene.title && state.grains.len() == told.grains, "{}", path.display());
+        let stepping = Stepping::new(&scene, &Resolution::TimeStep(told.time_step)).unwrap();
         let hash = scene_hash(&scene, &stepping);
-        if hash != origin_of_state.scene_blake3 {
+        if hash != told.scene_blake3 {
             wrong.push(format!("{}: of another scene: {hash}", path.display()));
         }
-        for word in
-            [&*origin_of_state.scene, path.file_name().unwrap().to_str().unwrap(), "grainbench simulate", "--time-step"]
-        {
-            assert!(origin_of_state.command.contains(word), "{}: `{word}` in the command", path.display());
+        let name = path.file_name().unwrap().to_str().unwrap();
+        for word in [&*told.scene, name, "grainbench simulate", "--time-step"] {
+            assert!(told.command.contains(word), "{}: `{word}` in the command", path.display());
         }
-        for part in [
-            &origin_of_state.program,
-            &origin_of_state.commit,
-            &origin_of_state.date,
-            &origin_of_state.machine,
-            &origin_of_state.note,
-        ] {
+        for part in [&told.program, &told.commit, &told.date, &told.machine, &told.note] {
             assert!(!part.trim().is_empty(), "{}: a part of its origin is empty", path.display());
         }
-        for [key, value] in &origin_of_state.set {
-            assert!(
-                origin_of_state.command.contains(&format!("{key}={value}")),
-                "{}: `{key}` in the command",
-                path.display()
-            );
+        for [key, value] in &told.set {
+            assert!(told.command.contains(&format!("{key}={value}")), "{}: `{key}` in the command", path.display());
         }
     }
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
@@ -123,8 +107,8 @@ fn scene_source(state: &Path, origin: &Origin) -> SceneSource {
 fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
     let mut wrong = Vec::new();
     for path in &states() {
-        let (origin_of_state, state) = (origin(path), EndState::from_bytes(&fs::read(path).unwrap()).unwrap());
-        let [low, high] = origin_of_state.within;
+        let (told, state) = (origin(path), EndState::from_bytes(&fs::read(path).unwrap()).unwrap());
+        let [low, high] = told.within;
         let volume: f64 = (0..3).map(|axis| high[axis] - low[axis]).product();
         let period = high[1] - low[1];
         let overlap = |grain: &grainbench::scene::end_state::StateGrain, image: f64| {
@@ -136,7 +120,7 @@ fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
         let solid: f64 =
             state.grains.iter().flat_map(|grain| [-1.0, 0.0, 1.0].map(|image| overlap(grain, image))).sum();
         let found = solid / volume;
-        if (found - origin_of_state.packing_fraction).abs() > 5.1e-5 {
+        if (found - told.packing_fraction).abs() > 5.1e-5 {
             wrong.push(format!("{}: {found:.6}", path.display()));
         }
     }

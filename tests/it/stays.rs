@@ -59,10 +59,7 @@ fn a_grain_that_is_poured_falls_from_when_it_comes() {
         }
     }
     let column = |name: &str| record.series.column(name).unwrap().last().copied();
-    assert_eq!(
-        (column("grains.present"), column("grains.entered"), column("grains.left")),
-        (Some(3.0), Some(3.0), Some(0.0))
-    );
+    assert_eq!(["present", "entered", "left"].map(|of| column(&format!("grains.{of}"))), [3.0, 3.0, 0.0].map(Some));
 }
 
 /// A grain is inserted at the position and velocity of another grain in flight. Both hit a grain on the floor in the same way.
@@ -151,21 +148,19 @@ fn grains_that_are_driven_for_a_while_are_so_after_a_checkpoint_too() {
     let path = temporary_with("scene.toml", LIFTED);
     let with =
         |further: &str| path.ok(format!("simulate scene.toml --solver dem --time-step 1e-3 --write dump {further}"));
-    let file_text = |folder: &str, file: &str| path.join(folder).read(file);
+    let of_whole = |file: &str| path.join("whole").read(file);
     with("--out whole --threads 2");
     // Checkpoints before, at the start of, during, at the end of, and after the prescribed motion.
     for every in ["200", "300", "400", "600", "700", "900"] {
         with(&format!("--out one --checkpoint half --checkpoint-every {every}"));
         with("--out two --restart half");
         for file in ["series.csv", "snapshots.dump"] {
-            assert!(
-                file_text("whole", file) == file_text("one", file) && file_text("one", file) == file_text("two", file),
-                "{file}, {every}"
-            );
+            let same = ["one", "two"].map(|folder| path.join(folder).read(file) == of_whole(file));
+            assert_eq!(same, [true, true], "{file}, {every}");
         }
     }
     with("--out always --set driven.lifted.start=0.0 --set driven.lifted.stop=1.0");
-    assert!(file_text("whole", "series.csv") != file_text("always", "series.csv"));
+    assert!(path.read("always/series.csv") != of_whole("series.csv"));
 }
 
 /// Two groups are inserted in one box, a heap grows into the box, or a wall crosses the box. Each run ends with an

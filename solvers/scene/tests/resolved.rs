@@ -126,11 +126,8 @@ fn overlaps_with_walls_are_parts_of_the_radius() {
              [walls.w]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n"
         )
     };
-    assert!(
-        refusal(&text(0.4)).contains("grain 1 and wall w overlapping by 0.2000 of the radius"),
-        "{}",
-        refusal(&text(0.4))
-    );
+    let found = refusal(&text(0.4));
+    assert!(found.contains("grain 1 and wall w overlapping by 0.2000 of the radius"), "{found}");
     close(scene(&text(0.46)).grains[0].position.y, 0.46);
 }
 
