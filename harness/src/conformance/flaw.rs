@@ -189,12 +189,12 @@ impl Wrapper for FlawedSolver<'_> {
 }
 
 #[cfg(test)]
-mod tests {
+pub(super) mod tests {
     use super::*;
     use grainbench_solver::resolution::Resolution;
 
     /// A solver that rejects every scene.
-    struct RefusingSolver;
+    pub(crate) struct RefusingSolver;
 
     impl Solver for RefusingSolver {
         fn name(&self) -> String {

@@ -271,30 +271,15 @@ fn work(rows: &Rows<'_>, named: &NamedScene) -> Result<PropertyValue, NoEnd> {
 
 #[cfg(test)]
 mod tests {
+    use super::super::flaw::tests::RefusingSolver;
     use super::*;
-    use grainbench_solver::Solver;
-    use grainbench_solver::failure::RunError;
-    use grainbench_solver::observer::Observer;
     use grainbench_solver::resolution::Resolution;
     use grainbench_solver::terms::Terms;
-
-    /// A solver that rejects every scene.
-    struct IdleSolver;
-
-    impl Solver for IdleSolver {
-        fn name(&self) -> String {
-            "nothing".to_owned()
-        }
-
-        fn run(&self, _: &Scene, _: &Resolution, _: &mut dyn Observer) -> Result<Record, RunError> {
-            Err(RunError::Unsupported { solver: self.name(), reason: "everything".to_owned() })
-        }
-    }
 
     #[test]
     fn every_scene_is_right() {
         let scenes = |terms: &Terms| {
-            bouncing(&Rows { solver: &IdleSolver, again: &IdleSolver, terms, property: &PROPERTY }).unwrap()
+            bouncing(&Rows { solver: &RefusingSolver, again: &RefusingSolver, terms, property: &PROPERTY }).unwrap()
         };
         assert_eq!((scenes(&Terms::SECOND_ORDER).len(), cycles().unwrap().len()), (4, 2));
         let steps = |named: &NamedScene| Resolution::CriticalFraction(0.02).steps(&named.scene).unwrap().1;
