@@ -1,6 +1,6 @@
 //! `check` and `compare` with output of external solvers, and with output that cannot be judged.
 
-use crate::common::{Directory, count, data, temporary, unpacked};
+use crate::common::{Directory, count, data, temporary, temporary_with, unpacked};
 use serde_json::Value;
 
 /// Returns the exit code and the results of `check` on a stored dump.
@@ -11,6 +11,12 @@ fn check(case: &str, dump: &str, more: &str) -> (i32, Vec<Value>) {
     assert_eq!(answer.err, "");
     assert!(directory.join("grainbench-out/index.html").is_file());
     (answer.code.unwrap(), answer.rows())
+}
+
+/// Returns the exit code and the results of `check` on a changed dump of a disc on an incline.
+fn check_text(dump: &str, more: &str) -> (Option<i32>, Vec<Value>) {
+    let directory = temporary_with("changed", dump);
+    directory.run(format!("check incline-disc/60deg-mu.9 --dump changed --json {more}")).judged()
 }
 
 #[test]
@@ -154,14 +160,11 @@ fn two_outputs_against_each_other() {
 /// `check` reports a dump with only the first half of the snapshots as incomplete.
 #[test]
 fn half_a_run_is_not_judged_as_the_whole() {
-    let directory = temporary();
     let whole = unpacked("lammps-incline.dump.gz");
     let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
     assert!(snapshots.len() > 90, "{}", snapshots.len());
     let half = snapshots[..50].concat();
-    directory.write("half", half.trim_end_matches("ITEM: TIME\n"));
-    let checked =
-        |more: &str| directory.run(format!("check incline-disc/60deg-mu.9 --dump half --json {more}")).judged();
+    let checked = |more: &str| check_text(half.trim_end_matches("ITEM: TIME\n"), more);
     let (code, rows) = checked("");
     assert_eq!((code, &rows[0]["verdict"], count(&rows, "fail")), (Some(1), &"fail".into(), 1), "{rows:#?}");
     assert_eq!(rows[0]["expected"]["at_least"], 1.0);
@@ -181,15 +184,12 @@ fn half_a_run_is_not_judged_as_the_whole() {
 /// The first and the last snapshot are not enough to judge a run. Every tenth snapshot is enough.
 #[test]
 fn samples_far_apart_judge_no_course() {
-    let directory = temporary();
     let whole = unpacked("lammps-incline.dump.gz");
     let snapshots: Vec<&str> = whole.split_inclusive("ITEM: TIME\n").collect();
     let checked = |kept: &dyn Fn(usize) -> bool, more: &str| {
         // Each part ends with the first line of the next snapshot. The first part contains no snapshot.
         let kept: String = (1..snapshots.len()).filter(|at| kept(at - 1)).map(|at| snapshots[at]).collect();
-        let text = format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n"));
-        directory.write("thinned", text);
-        directory.run(format!("check incline-disc/60deg-mu.9 --dump thinned --json {more}")).judged()
+        check_text(&format!("{}{}", snapshots[0], kept.trim_end_matches("ITEM: TIME\n")), more)
     };
     let last = snapshots.len() - 2;
     let is_end = move |at: usize| at == 0 || at == last;
@@ -229,18 +229,15 @@ fn an_interval_of_the_caller_does_not_excuse_missing_samples() {
 /// A sample between two steps has no counterpart in our runs. The result is red, because all other samples are then not compared.
 #[test]
 fn a_time_between_two_steps_is_red() {
-    let directory = temporary();
     let whole = unpacked("lammps-incline.dump.gz");
     let time = whole.split("ITEM: TIME\n").nth(50).unwrap().lines().next().unwrap();
     for off in [1e-4, 3e-3] {
         let moved = format!("ITEM: TIME\n{:?}\n", time.parse::<f64>().unwrap() + off * 0.01);
         let text = whole.replacen(&format!("ITEM: TIME\n{time}\n"), &moved, 1);
-        directory.write("off", text);
         let checked = |more: &str| {
-            let answer = directory.run(format!("check incline-disc/60deg-mu.9 --dump off --json {more}"));
-            let mut rows = answer.rows();
+            let (code, mut rows) = check_text(&text, more);
             rows.retain(|row| row["quantity"] == "comparison with our solvers");
-            (answer.code, rows)
+            (code, rows)
         };
         let (code, rows) = checked("");
         assert_eq!((code, count(&rows, "fail")), (Some(1), 1), "{off}: {rows:#?}");
@@ -268,7 +265,6 @@ fn rounded_and_repeated_numbers_are_judged() {
 /// With three digits, the file agrees with two initial states of the variant. The nearer one is used for the exact solutions.
 #[test]
 fn few_digits_take_no_other_start() {
-    let directory = temporary();
     let whole = unpacked("lammps-incline.dump.gz");
     for digits in [3, 4] {
         let word = |word: &str| match word.parse::<f64>() {
@@ -278,8 +274,7 @@ fn few_digits_take_no_other_start() {
         let row = |line: &str| line.split(' ').map(word).collect::<Vec<_>>().join(" ");
         let line = |line: &str| if line.starts_with("1 1 ") { row(line) } else { line.to_owned() };
         let text: String = whole.lines().map(|text| line(text) + "\n").collect();
-        directory.write("rounded", text);
-        let rows = directory.run("check incline-disc/60deg-mu.9 --dump rounded --json").rows();
+        let (_, rows) = check_text(&text, "");
         let exact = rows.iter().filter(|row| row["evidence"] == "analytic").count();
         assert_eq!((exact, count(&rows, "fail")), (3, 0), "{digits}: {rows:#?}");
     }
