@@ -83,19 +83,17 @@ fn a_python_function_needs_python() {
             bin.write("python3", format!("#!/bin/sh\n{script}\n"));
             fs::set_permissions(bin.join("python3"), fs::Permissions::from_mode(0o755)).unwrap();
         }
-        let answer = Answer::of(path.program(format!("judge {name} {}", CASES[1])).env("PATH", &bin));
-        (answer.code, answer.err)
+        Answer::of(path.program(format!("judge {name} {}", CASES[1])).env("PATH", &bin))
     };
-    let (code, message) = judge("sphere:sphere", None);
-    assert_eq!(code, Some(2));
-    assert_eq!(message, "error: sphere:sphere: expected the program `python3`, which runs the function; found none\n");
-    let (code, message) = judge("sphere.py:sphere", Some("echo \"No module named 'grainbench'\" >&2; exit 1"));
-    assert!(code == Some(2) && message.contains("pip install ./python"), "{message}");
-    let (code, message) = judge("sphere.py:other", Some("echo 'found NoneType' >&2; exit 1"));
-    assert!(code == Some(2) && message.contains("python3 reports: found NoneType"), "{message}");
-    assert!(!message.contains("pip install"), "{message}");
-    let (code, message) = judge("dem:lamps", Some("exit 1"));
-    assert!(code == Some(2) && message.contains("did you mean `dem:lammps`?"), "{message}");
+    let absent = "error: sphere:sphere: expected the program `python3`, which runs the function; found none\n";
+    let answer = judge("sphere:sphere", None);
+    assert_eq!((answer.code, answer.err.as_str()), (Some(2), absent));
+    judge("sphere.py:sphere", Some("echo \"No module named 'grainbench'\" >&2; exit 1"))
+        .refused("pip install ./python");
+    let other = judge("sphere.py:other", Some("echo 'found NoneType' >&2; exit 1"));
+    other.refused("python3 reports: found NoneType");
+    assert!(!other.err.contains("pip install"), "{}", other.err);
+    judge("dem:lamps", Some("exit 1")).refused("did you mean `dem:lammps`?");
     path.run("judge sphere.py:sphere --plan plan").refused("--plan: expected a manifest");
 }
 
@@ -175,9 +173,7 @@ fn figures_have_the_style_of_a_file() {
     }
     assert_eq!(path.read("out/index.html"), page, "the page keeps its figures");
     let report = "report out --style style.toml --figures pdf --figures png";
-    let answer = path.run(report);
-    assert_eq!(answer.code, Some(2), "the family is not installed");
-    assert!(answer.err.contains("font: expected the name of an installed family"), "{}", answer.err);
+    path.run(report).refused("font: expected the name of an installed family");
     path.write("style.toml", "width = 86");
     path.run(report).quiet();
     for svg in names() {
@@ -186,6 +182,6 @@ fn figures_have_the_style_of_a_file() {
         // 86 mm with 300 pixels in an inch.
         assert_eq!(read("png")[16..20], 1016_u32.to_be_bytes());
     }
-    let answer = path.run("report . --style style.toml");
-    assert_eq!(answer.code, Some(2), "a directory without a report");
+    // A directory without a report.
+    assert_eq!(path.run("report . --style style.toml").code, Some(2));
 }
