@@ -124,7 +124,7 @@ pub fn time_of(folder: &Path) -> SystemTime {
 }
 
 #[cfg(test)]
-mod tests {
+pub(crate) mod tests {
     use super::*;
 
     const TERMS: LockTerms =
@@ -132,7 +132,7 @@ mod tests {
     const SHORT: LockTerms = LockTerms { wait: Duration::from_millis(50), ..TERMS };
 
     /// Returns the number of a process that has ended.
-    fn gone() -> u32 {
+    pub(crate) fn gone() -> u32 {
         let mut child = process::Command::new("true").spawn().unwrap();
         child.wait().unwrap();
         child.id()

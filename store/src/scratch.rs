@@ -92,13 +92,7 @@ pub(crate) fn without_its_path(error: io::Error) -> io::Error {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    /// Returns the number of a process that has ended.
-    fn gone() -> u32 {
-        let mut child = process::Command::new("true").spawn().unwrap();
-        child.wait().unwrap();
-        child.id()
-    }
+    use crate::lock::tests::gone;
 
     #[test]
     fn only_what_is_left_of_a_process_that_is_no_more_goes() {
