@@ -8,13 +8,11 @@ mod support;
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::stability::damped_step;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::record::{Record, Snapshot};
 use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::{FRAC_PI_2, PI};
-use std::path::Path;
-use support::{column, last, run, run_at};
+use support::{column, last, run, run_at, scene};
 
 /// Relative tolerance. A number has sixteen significant digits. Sums over some thousand steps lose at most three digits.
 /// The difference of two lengths that are ten times as large as the resulting overlap loses one digit.
@@ -410,8 +408,7 @@ fn a_dashpot_shortens_the_stable_step() {
              contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e6, restitution = 0.5 }}\n\
              grains.a = {{ material = 'n', radius = 0.1, position = [0.0, 0.0] }}\n{partner}\n"
         );
-        let source = SceneSource::from_text("test", Path::new(""), &text);
-        damped_step(&source.scene(&grainbench_scene::resolve::no_data_file).unwrap(), &Convention::LAMMPS)
+        damped_step(&scene(&text).unwrap(), &Convention::LAMMPS)
     };
     let (mass, ratio) = (10.0 * PI, 2.0_f64.ln() / (PI * PI + 2.0_f64.ln().powi(2)).sqrt());
     for (partner, mass) in [

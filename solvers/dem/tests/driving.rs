@@ -6,11 +6,9 @@
 mod support;
 
 use grainbench_dem::convention::Convention;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
-use support::{MATERIAL, column, last, run, run_at};
+use support::{MATERIAL, column, last, run, run_at, scene};
 
 /// Gravity (m/s²).
 const GRAVITY: f64 = 10.0;
@@ -96,8 +94,7 @@ fn times_that_make_no_span_are_refused() {
             "{MATERIAL}dimension = 2\nduration = 0.4\n[grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n\
              [driven.d]\ngrains = 'g'\n{span}\n"
         );
-        let source = SceneSource::from_text("test", Path::new(""), &text);
-        let error = source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string();
+        let error = scene(&text).unwrap_err().to_string();
         assert!(error.contains(says), "{span}: {error}");
     };
     refused("start = -1.0", "driven.d.start: expected");

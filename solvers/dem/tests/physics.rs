@@ -7,11 +7,9 @@ mod support;
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
-use support::{MATERIAL, last, run, run_as};
+use support::{MATERIAL, last, run, run_as, scene};
 
 /// A disc dropped on the face of a segment moves as on a plane.
 #[test]
@@ -176,8 +174,7 @@ fn driven_grains_give_what_they_say() {
          [probes]\nmoved.grain = 'row.3'\nstill.grain = 'row.1'\nfree.grain = 'row.2'\n\
          budget.budget = true\nright.driven = 'right'\n"
     );
-    let source = SceneSource::from_text("test", Path::new(""), &text);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene(&text).unwrap();
     assert_eq!(scene.driven.iter().map(|driven| driven.grains.clone()).collect::<Vec<_>>(), [[0], [2]]);
     let record =
         Dem::new(Convention::CUNDALL_STRACK).run(&scene, &Resolution::CriticalFraction(0.02), &mut ()).unwrap();
@@ -207,10 +204,7 @@ fn grains_of_a_region_are_held_against_a_wall() {
          [walls.left]\nmaterial = 'n'\nplane = { point = [0.0, 0.0], normal = [1.0, 0.0] }\n\
          [driven.held]\nregion = { low = [0.0, -1.0], high = [2.0, 1.0] }\n\
          [probes]\nall.system = true\nfirst.grain = 'row.1'\nlast.grain = 'row.3'\nc.contact = ['row.1', 'left']\n";
-    let scene = |text: &str| {
-        let source = SceneSource::from_text("test", Path::new(""), &format!("{}{text}", support::MATERIAL));
-        source.scene(&grainbench_scene::resolve::no_data_file)
-    };
+    let scene = |text: &str| scene(&format!("{MATERIAL}{text}"));
     assert_eq!(scene(text).unwrap().driven[0].grains, [0, 1]);
     let record = run(text);
     assert_eq!((last(&record, "first.x"), last(&record, "last.x")), (0.499, 2.499));

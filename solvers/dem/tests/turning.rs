@@ -7,19 +7,16 @@ mod support;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::{Cause, RunError};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::TAU;
-use std::path::Path;
 use support::{column, last};
 
 fn scene(text: &str) -> Scene {
-    let text = format!("title = 'test'\n{text}");
-    SceneSource::from_text("test", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    support::scene(&format!("title = 'test'\n{text}")).unwrap()
 }
 
 fn run(text: &str, fraction: f64) -> Record {

@@ -3,6 +3,9 @@
 
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
+use grainbench_scene::error::SceneError;
+use grainbench_scene::resolve::no_data_file;
+use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::record::Record;
@@ -24,9 +27,13 @@ pub fn run_as(text: &str, convention: Convention) -> Record {
     run_at(text, convention, &Resolution::CriticalFraction(0.02))
 }
 
+/// Returns the scene of a text, without [`MATERIAL`].
+pub fn scene(text: &str) -> Result<Scene, SceneError> {
+    SceneSource::from_text("test", Path::new(""), text).scene(&no_data_file)
+}
+
 pub fn run_at(text: &str, convention: Convention, resolution: &Resolution) -> Record {
-    let source = SceneSource::from_text("test", Path::new(""), &format!("{MATERIAL}{text}"));
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene(&format!("{MATERIAL}{text}")).unwrap();
     Dem::new(convention).run(&scene, resolution, &mut ()).unwrap()
 }
 
