@@ -1,7 +1,7 @@
 //! Free flight: grains without contacts move along straight lines or parabolas.
 
 use super::end::End;
-use super::moved::APART;
+use super::invariance::APART;
 use super::row::{PropertyValue, Rows};
 use super::{Flaw, Property, scenes};
 use crate::evidence::Evidence;

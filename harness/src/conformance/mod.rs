@@ -4,21 +4,16 @@
 //! A property runs its own scenes, in two and three dimensions, with and without friction. Its results have the form of
 //! claim results: measured value, tolerance and reason. Every property has a [`Flaw`] of a solver that it must detect.
 
+mod determinism;
 mod end;
 mod flaw;
 mod free_flight;
-mod galilean;
-mod mirror;
+mod invariance;
 mod momentum;
-mod moved;
 mod objectivity;
 mod once;
 mod order;
 mod passivity;
-mod permutation;
-mod rerun;
-mod restart;
-mod rotation;
 mod row;
 mod scenes;
 mod turning;
@@ -26,6 +21,7 @@ mod turning;
 use once::CachedRuns;
 use row::Rows;
 
+pub use determinism::HalfwayCheckpoint;
 pub use flaw::{Flaw, FlawedSolver};
 
 use crate::control::FailureMode;
@@ -77,16 +73,16 @@ impl Property {
 /// All conformance properties.
 pub const ALL: [Property; 11] = [
     momentum::PROPERTY,
-    galilean::PROPERTY,
-    mirror::PROPERTY,
-    rotation::PROPERTY,
-    permutation::PROPERTY,
+    invariance::GALILEAN,
+    invariance::MIRROR,
+    invariance::ROTATION,
+    invariance::PERMUTATION,
     free_flight::PROPERTY,
     objectivity::PROPERTY,
     passivity::PROPERTY,
     order::PROPERTY,
-    rerun::PROPERTY,
-    restart::PROPERTY,
+    determinism::RERUN,
+    determinism::RESTART,
 ];
 
 /// Returns the results of all properties, and a control for each result that passes.

@@ -34,15 +34,12 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
     let angular = rows.each(frictionless, &terms.resolution, quantity, |named| {
         let end = End::from_solver(solver, &named.scene, &terms.resolution)?;
         let grains = &named.scene.grains;
-        let angular_momentum =
-            |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;
-        let turning = |spin: &Vector3<f64>, at: usize| spin * grains[at].inertia;
-        let before = grains.iter().map(|grain| angular_momentum(&grain.position, &grain.velocity, grain.mass));
-        let before =
-            before.chain(grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
-        let after = end.grains.iter().map(|grain| angular_momentum(&grain.position, &grain.velocity, grain.mass));
-        let after =
-            after.chain(end.grains.iter().enumerate().map(|(at, grain)| turning(&grain.spin, at))).collect::<Vec<_>>();
+        let orbital = |position: &Vector3<f64>, velocity: &Vector3<f64>, mass: f64| position.cross(velocity) * mass;
+        let before = grains.iter().map(|grain| orbital(&grain.position, &grain.velocity, grain.mass));
+        let before: Vec<_> = before.chain(grains.iter().map(|grain| grain.spin * grain.inertia)).collect();
+        let after = end.grains.iter().map(|grain| orbital(&grain.position, &grain.velocity, grain.mass));
+        let spins = end.grains.iter().zip(grains.iter()).map(|(grain, start)| grain.spin * start.inertia);
+        let after: Vec<_> = after.chain(spins).collect();
         Ok(kept(&before, &after, end.steps))
     });
     [linear, angular].concat()

@@ -8,7 +8,6 @@ use super::{Flaw, Property};
 use crate::evidence::Evidence;
 use crate::expect::larger;
 use crate::verdict::Verdict;
-use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
@@ -47,38 +46,47 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 
 /// Returns the results for rigid grains and for grains with contact springs.
 fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
-    let places = |twisted: bool| turning::all().map(|all| only(all, |turning| turning.twisted == twisted));
-    // Contacts that rotate only about their normals exert no torque on a grain. These scenes are left out.
-    let spinning = turning::all().map(|all| only(all, |turning| turning.across > 0.0 || turning.carried));
+    let only = |wanted: fn(&RotatingScene) -> bool| {
+        turning::all().map(|all| all.into_iter().filter(wanted).collect::<Vec<_>>())
+    };
+    // A solver that claims an order also runs at four times the time step. The tolerance varies with this order.
+    let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
+    let levels = [Some(rows.terms.resolution), coarse];
+    let end = |turning: &RotatingScene, resolution: &Resolution| {
+        End::from_solver(rows.solver, &turning.named.scene, resolution)
+    };
     let place = |turning: &RotatingScene| {
-        worst(rows, turning, |end| (place_off(turning, end), place_allowed(rows, turning, end)), turning.reach())
+        worst(levels, turning.reach(), |resolution| {
+            let end = end(turning, resolution)?;
+            Ok((place_off(turning, &end), place_allowed(rows, turning, &end)))
+        })
     };
     let spin = |turning: &RotatingScene| {
-        let spinning = |end: &End| (spin_off(turning, end), spin_allowed(turning, end, rows.terms));
-        worst(rows, turning, spinning, turning.spin.norm())
+        worst(levels, turning.spin.norm(), |resolution| {
+            let end = end(turning, resolution)?;
+            Ok((spin_off(turning, &end), spin_allowed(turning, &end, rows.terms)))
+        })
     };
+    let resolution = &rows.terms.resolution;
     [
-        each(rows, places(false), PLACE, place),
-        each(rows, places(true), TWISTED, place),
-        each(rows, spinning, SPIN, spin),
+        rows.each(only(|turning| !turning.twisted), resolution, PLACE, place),
+        rows.each(only(|turning| turning.twisted), resolution, TWISTED, place),
+        // Contacts that rotate only about their normals exert no torque on a grain. These scenes are left out.
+        rows.each(only(|turning| turning.across > 0.0 || turning.carried), resolution, SPIN, spin),
     ]
     .concat()
 }
 
-/// Returns the deviation that is the largest fraction of its tolerance.
-///
-/// The solver runs at its resolution and, if it claims an order, also at four times the time step. The tolerance varies
-/// with the time step according to this order.
+/// Returns the deviation that is the largest fraction of its tolerance. `read` returns the deviation and its tolerance at a
+/// resolution. A deviation that is NaN is returned at once.
 fn worst(
-    rows: &Rows<'_>,
-    turning: &RotatingScene,
-    read: impl Fn(&End) -> (f64, f64),
+    levels: [Option<Resolution>; 2],
     scale: f64,
+    read: impl Fn(&Resolution) -> Result<(f64, f64), NoEnd>,
 ) -> Result<PropertyValue, NoEnd> {
-    let coarse = rows.terms.order.and_then(|_| rows.terms.resolution.coarser(4.0));
     let mut worst: Option<(f64, f64)> = None;
-    for resolution in [Some(rows.terms.resolution), coarse].into_iter().flatten() {
-        let (off, allowed) = read(&End::from_solver(rows.solver, &turning.named.scene, &resolution)?);
+    for resolution in levels.iter().flatten() {
+        let (off, allowed) = read(resolution)?;
         if off.is_nan() {
             return Ok(PropertyValue::deviation(off, scale, allowed));
         }
@@ -88,20 +96,6 @@ fn worst(
     }
     let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
     Ok(PropertyValue::deviation(off, scale, allowed))
-}
-
-fn only(all: Vec<RotatingScene>, wanted: impl Fn(&RotatingScene) -> bool) -> Vec<RotatingScene> {
-    all.into_iter().filter(wanted).collect()
-}
-
-/// Returns one result for each rotating scene.
-fn each(
-    rows: &Rows<'_>,
-    scenes: Result<Vec<RotatingScene>, SceneError>,
-    quantity: (&str, &str),
-    find: impl Fn(&RotatingScene) -> Result<PropertyValue, NoEnd>,
-) -> Vec<Verdict> {
-    rows.each_of(scenes, &rows.terms.resolution, quantity, |turning: &RotatingScene| &turning.named, find)
 }
 
 /// Returns the largest distance of a grain from its exact position (m).
@@ -130,7 +124,7 @@ fn place_allowed(rows: &Rows<'_>, turning: &RotatingScene, end: &End) -> f64 {
     let terms = rows.terms;
     let rate = turning.spin.norm();
     let softness = |frequency: f64| 2.0 * (rate / frequency).powi(2);
-    let swing = turning.frequency().map_or(0.0, |frequency| {
+    let swing = turning.frequency.map_or(0.0, |frequency| {
         let phase = frequency * end.time * (frequency * end.time_step).powi(2) / 24.0;
         let arms = 0.5 * turning.across * RotatingScene::angle().min(2.0);
         softness(frequency) * (arms + if terms.order.is_some() { phase } else { 1.0 })
@@ -154,16 +148,10 @@ pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
 fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
     let judge = |named: &NamedScene, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {
-        let mut worst: Option<(f64, f64)> = None;
-        for resolution in levels.iter().flatten() {
+        worst(levels, 1.0, |resolution| {
             let record = rows.solver.run(&named.scene, resolution, &mut ())?;
-            let (off, allowed) = (read(rows.solver, &named.scene, &record)?, times * strained(&named.scene, &record));
-            if off.is_nan() || worst.is_none_or(|(most, passes)| off / allowed > most / passes) {
-                worst = Some((off, allowed));
-            }
-        }
-        let (off, allowed) = worst.unwrap_or((f64::NAN, 0.0));
-        Ok(PropertyValue::deviation(off, 1.0, allowed))
+            Ok((read(rows.solver, &named.scene, &record)?, times * strained(&named.scene, &record)))
+        })
     };
     let resolution = &rows.terms.resolution;
     let size = rows.each(turning::free(), resolution, SIZE, |named| judge(named, 1.0, size_off));

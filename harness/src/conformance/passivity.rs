@@ -117,7 +117,7 @@ fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Nam
         at(zero, height),
         at(zero, -1.0)
     );
-    scene_of(name, &text, true)
+    scene_of(name, &[&text], true)
 }
 
 /// Ratio of the coarse time step to the solver's time step. 0.02 of the critical time step becomes the usual 0.1.
@@ -248,7 +248,7 @@ fn cycle(name: &'static str, legs: &[[f64; 2]]) -> Result<NamedScene, SceneError
          probes = {{ ball = {{ grain = 'ball' }}, floor = {{ wall = 'floor' }} }}\n",
         LEG * legs.len() as f64
     );
-    scene_of(name, &text, true)
+    scene_of(name, &[&text], true)
 }
 
 /// Returns the work gained in a closed cycle, divided by the energy of the tangential spring at the largest overlap.

@@ -10,6 +10,7 @@ use grainbench_scene::error::SceneError;
 use grainbench_solver::Solver;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::terms::Terms;
+use std::borrow::Borrow;
 
 /// Inputs that all results of a property share.
 pub(super) struct Rows<'a> {
@@ -41,34 +42,19 @@ impl PropertyValue {
 impl Rows<'_> {
     /// Returns one result for each scene. Three-dimensional scenes are left out if `terms.in_space` is false. `find`
     /// measures the quantity.
-    pub(super) fn each(
-        &self,
-        scenes: Result<Vec<NamedScene>, SceneError>,
-        resolution: &Resolution,
-        (quantity, unit): (&str, &str),
-        find: impl Fn(&NamedScene) -> Result<PropertyValue, NoEnd>,
-    ) -> Vec<Verdict> {
-        self.each_of(scenes, resolution, (quantity, unit), |named| named, find)
-    }
-
-    /// Returns one result for each entry of a list, as [`Rows::each`]. `named` returns the scene of an entry.
-    pub(super) fn each_of<T>(
+    pub(super) fn each<T: Borrow<NamedScene>>(
         &self,
         scenes: Result<Vec<T>, SceneError>,
         resolution: &Resolution,
-        (quantity, unit): (&str, &str),
-        named: impl Fn(&T) -> &NamedScene,
+        quantity: (&str, &str),
         find: impl Fn(&T) -> Result<PropertyValue, NoEnd>,
     ) -> Vec<Verdict> {
-        match scenes {
-            Ok(scenes) => {
-                let asked = scenes.iter().filter(|entry| self.terms.in_space || flat(&named(entry).scene));
-                asked.map(|entry| self.row(named(entry).name, resolution, (quantity, unit), find(entry))).collect()
-            }
-            Err(error) => {
-                vec![self.row("scenes", resolution, (quantity, unit), Err(NoEnd::Record(error.to_string())))]
-            }
-        }
+        let scenes = match scenes {
+            Ok(scenes) => scenes,
+            Err(error) => return vec![self.row("scenes", resolution, quantity, Err(NoEnd::Record(error.to_string())))],
+        };
+        let asked = scenes.iter().filter(|entry| self.terms.in_space || flat(&(*entry).borrow().scene));
+        asked.map(|entry| self.row(entry.borrow().name, resolution, quantity, find(entry))).collect()
     }
 
     /// Returns the result for one scene.

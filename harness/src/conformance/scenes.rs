@@ -131,33 +131,29 @@ const HELD_3D: &str = "title = 'A sphere held by two walls'\ndimension = 3\ndura
 /// code we know, which is an error of first order.
 const ROUGH: &str = "tangential_stiffness = 5.0e3\nfriction = 100.0\n";
 
-fn scene(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedScene, SceneError> {
-    scene_of(name, &parts.concat(), frictional)
-}
-
-/// Builds a scene from the text of a scene file. `frictional` states that grains exert torques on each other.
-pub(super) fn scene_of(name: &'static str, text: &str, frictional: bool) -> Result<NamedScene, SceneError> {
-    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), text);
+/// Builds a scene from the parts of a scene file. `frictional` states that grains exert torques on each other.
+pub(super) fn scene_of(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedScene, SceneError> {
+    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), &parts.concat());
     Ok(NamedScene { name, scene: source.scene(&grainbench_scene::resolve::no_data_file)?, frictional })
 }
 
 /// Returns collisions in free space in two and three dimensions, without friction or with friction and dashpots.
 pub(super) fn collisions() -> Result<Vec<NamedScene>, SceneError> {
     Ok(vec![
-        scene("2d", &[COLLISION_2D, SPRINGS], false)?,
-        scene("2d-friction", &[COLLISION_2D, SPRINGS, FRICTION], true)?,
-        scene("3d", &[COLLISION_3D, SPRINGS], false)?,
-        scene("3d-friction", &[COLLISION_3D, SPRINGS, FRICTION], true)?,
+        scene_of("2d", &[COLLISION_2D, SPRINGS], false)?,
+        scene_of("2d-friction", &[COLLISION_2D, SPRINGS, FRICTION], true)?,
+        scene_of("3d", &[COLLISION_3D, SPRINGS], false)?,
+        scene_of("3d-friction", &[COLLISION_3D, SPRINGS, FRICTION], true)?,
     ])
 }
 
 /// Returns scenes of free flight with and without gravity. Two have friction, so that solvers integrate the spin.
 pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
-        scene("2d", &[FLIGHT_2D, SPRINGS], false)?,
-        scene("3d-friction", &[FLIGHT_3D, SPRINGS, FRICTION], true)?,
-        scene("2d-friction-gravity", &[FLIGHT_2D, SPRINGS, FRICTION], true)?,
-        scene("3d-gravity", &[FLIGHT_3D, SPRINGS], false)?,
+        scene_of("2d", &[FLIGHT_2D, SPRINGS], false)?,
+        scene_of("3d-friction", &[FLIGHT_3D, SPRINGS, FRICTION], true)?,
+        scene_of("2d-friction-gravity", &[FLIGHT_2D, SPRINGS, FRICTION], true)?,
+        scene_of("3d-gravity", &[FLIGHT_3D, SPRINGS], false)?,
     ];
     for named in &mut all[2..] {
         named.scene.gravity[named.scene.dimension.count() - 1] = -9.8;
@@ -173,10 +169,10 @@ pub(super) fn flights() -> Result<Vec<NamedScene>, SceneError> {
 /// first order in the time step, and its coefficient is proportional to the overlap.
 pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     let mut all = vec![
-        scene("held-2d", &[HELD_2D, SPRINGS], false)?,
-        scene("held-2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,
-        scene("held-3d", &[HELD_3D, SPRINGS], false)?,
-        scene("held-3d-friction", &[HELD_3D, SPRINGS, ROUGH], true)?,
+        scene_of("held-2d", &[HELD_2D, SPRINGS], false)?,
+        scene_of("held-2d-friction", &[HELD_2D, SPRINGS, ROUGH], true)?,
+        scene_of("held-3d", &[HELD_3D, SPRINGS], false)?,
+        scene_of("held-3d-friction", &[HELD_3D, SPRINGS, ROUGH], true)?,
     ];
     for named in &mut all {
         if named.frictional {

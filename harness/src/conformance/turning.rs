@@ -5,8 +5,8 @@
 
 use super::scenes::{NamedScene, scene_of};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::scene::Scene;
 use nalgebra::{Rotation3, Vector3};
+use std::borrow::Borrow;
 
 type V = Vector3<f64>;
 
@@ -25,22 +25,14 @@ const HELD: f64 = 2.0e-3;
 /// Radius of the drum (m).
 const DRUM: f64 = 3.0;
 
-/// Motion of the grains when everything rotates.
-#[derive(Clone, Copy, Debug, PartialEq)]
-enum Course {
-    /// Each grain is at rest in the rotating frame.
-    Rigid,
-    /// Springs hold a grain. They have the same stiffness in all directions and exert no net force at the start. The grain
-    /// vibrates on them at the angular frequency ω (rad/s).
-    Sprung(f64),
-}
-
 /// Scene in which all bodies rotate as one rigid body.
 pub(super) struct RotatingScene {
     pub(super) named: NamedScene,
     /// Angular velocity Ω of all bodies (rad/s).
     pub(super) spin: V,
-    course: Course,
+    /// Angular frequency ω (rad/s) of a grain that vibrates on springs. They have the same stiffness in all directions and exert
+    /// no net force at the start. None if each grain is at rest in the rotating frame.
+    pub(super) frequency: Option<f64>,
     /// Largest overlap (m).
     pub(super) overlap: f64,
     /// True if the overlap shortens the lever arms, so that surfaces slip and the centres move.
@@ -52,6 +44,12 @@ pub(super) struct RotatingScene {
     pub(super) across: f64,
 }
 
+impl Borrow<NamedScene> for RotatingScene {
+    fn borrow(&self) -> &NamedScene {
+        &self.named
+    }
+}
+
 impl RotatingScene {
     /// Returns the exact position of a grain (m) at a time (s).
     ///
@@ -61,7 +59,7 @@ impl RotatingScene {
     pub(super) fn place(&self, start: V, time: f64) -> V {
         let angle = RATE * time;
         let turned = |by: f64| Rotation3::from_scaled_axis(self.spin * (by / RATE)) * start;
-        let Course::Sprung(frequency) = self.course else { return turned(angle) };
+        let Some(frequency) = self.frequency else { return turned(angle) };
         let axis = self.spin / RATE;
         let along = axis * axis.dot(&start);
         let across = |by: f64| turned(by) - along;
@@ -70,11 +68,6 @@ impl RotatingScene {
         let [forth, back] = [0.5 * (sum + difference), 0.5 * (sum - difference)];
         let phase = frequency * time;
         along + across(angle) * forced + across(phase) * forth + across(-phase) * back
-    }
-
-    /// Returns the angular frequency ω of a grain on springs (rad/s); none if the grains are at rest in the rotating frame.
-    pub(super) fn frequency(&self) -> Option<f64> {
-        if let Course::Sprung(frequency) = self.course { Some(frequency) } else { None }
     }
 
     /// Returns the angle of rotation of the scene at the end (rad).
@@ -119,20 +112,15 @@ impl Law {
     /// Returns the materials and contacts of a scene file for 2 or 3 dimensions.
     fn text(self, dimension: usize) -> String {
         let density = if dimension == 2 { 1.0 } else { 0.75 } / std::f64::consts::PI;
-        let (moduli, springs, rolling) = match self {
-            Self::Linear(rolling) => (
-                String::new(),
-                format!("normal_stiffness = {STIFFNESS:?}\ntangential_stiffness = {STIFFNESS:?}"),
-                rolling,
-            ),
-            Self::Hertz(rolling) => {
-                // E* = E/2(1 − ν²) of two equal materials.
-                let young = 2.0 * (1.0 - POISSON * POISSON) * MODULUS;
-                (
-                    format!("young_modulus = {young:?}\npoisson_ratio = {POISSON:?}\n"),
-                    "law = 'hertz'".to_owned(),
-                    rolling,
-                )
+        let (Self::Linear(rolling) | Self::Hertz(rolling)) = self;
+        // E* = E/2(1 − ν²) of two equal materials.
+        let young = 2.0 * (1.0 - POISSON * POISSON) * MODULUS;
+        let (moduli, springs) = match self {
+            Self::Linear(_) => {
+                (String::new(), format!("normal_stiffness = {STIFFNESS:?}\ntangential_stiffness = {STIFFNESS:?}"))
+            }
+            Self::Hertz(_) => {
+                (format!("young_modulus = {young:?}\npoisson_ratio = {POISSON:?}\n"), "law = 'hertz'".to_owned())
             }
         };
         format!(
@@ -203,8 +191,10 @@ impl Builder {
         self.wall(name, &format!("rectangle = {{ corner = {corner}, edges = {edges} }}"))
     }
 
-    fn scene(&self, name: &'static str) -> Result<NamedScene, SceneError> {
-        scene_of(name, &self.text, true)
+    /// Returns the scene of grains at rest in the rotating frame, whose overlap shortens the lever arms.
+    fn carried(self, name: &'static str, overlap: f64) -> Result<RotatingScene, SceneError> {
+        let (named, spin) = (scene_of(name, &[&self.text], true)?, self.spin);
+        Ok(RotatingScene { named, spin, frequency: None, overlap, carried: true, twisted: false, across: 0.0 })
     }
 }
 
@@ -224,8 +214,8 @@ fn clamped(
     let overlap = HELD + 2.0 * centre.norm() * (RATE / frequency).powi(2);
     let twisted = spin.dot(&normal).abs() > 1e-9;
     let across = spin.cross(&normal).norm() / RATE;
-    let course = Course::Sprung(frequency);
-    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: false, twisted, across })
+    let (named, frequency) = (scene_of(name, &[&builder.text], true)?, Some(frequency));
+    Ok(RotatingScene { named, spin, frequency, overlap, carried: false, twisted, across })
 }
 
 /// Returns a scene with two grains in a row between two walls. The row intersects the axis at a right angle. The forces
@@ -246,8 +236,7 @@ fn row(
     let overlap = law.overlap(force + RATE * RATE * second);
     let builder = builder.grain("b", normal * second);
     let builder = walls(builder, "high", normal * (second + 1.0 - overlap), -normal);
-    let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
+    builder.carried(name, overlap)
 }
 
 /// Returns a scene with a sphere on the inside of a drum. The overlap δ obeys k δ = m Ω² (R_drum − R + δ) for linear springs.
@@ -261,8 +250,7 @@ fn drum(name: &'static str, law: Law, axis: V) -> Result<RotatingScene, SceneErr
     let builder = Builder::new(3, law, axis).grain("a", out * (DRUM - 1.0 + overlap));
     let ends = [builder.vector(axis * -5.0), builder.vector(axis * 5.0)].join(", ");
     let builder = builder.wall("drum", &format!("cylinder = {{ axis = [{ends}], radius = {DRUM:?} }}"));
-    let (spin, course) = (builder.spin, Course::Rigid);
-    Ok(RotatingScene { named: builder.scene(name)?, spin, course, overlap, carried: true, twisted: false, across: 0.0 })
+    builder.carried(name, overlap)
 }
 
 /// Returns the rotating scenes of rigid grains and of grains with contact springs.
@@ -289,12 +277,6 @@ pub(super) fn smooth() -> Result<Vec<NamedScene>, SceneError> {
     Ok(all()?.into_iter().map(|turning| turning.named).filter(|named| shown.contains(&named.name)).collect())
 }
 
-/// Returns the angular velocity of a free body (rad/s). Its rim moves at 0.01 of the speed of longitudinal waves.
-fn slow_spin(scene: &Scene) -> f64 {
-    // `crossing_time(1.0)` is the time (s) in which a wave crosses the radius of 1 m.
-    0.01 / scene.crossing_time(1.0)
-}
-
 /// Returns freely rotating deformable bodies with each constitutive law. In two dimensions they rotate about the normal of
 /// the plane, and in three about an oblique axis.
 pub(super) fn free() -> Result<Vec<NamedScene>, SceneError> {
@@ -318,8 +300,9 @@ fn one_free(name: &'static str, dimension: usize, law: &str) -> Result<NamedScen
          [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = {:?}\n",
         &centre[..dimension]
     );
-    let mut named = scene_of(name, &text, true)?;
-    let rate = slow_spin(&named.scene);
+    let mut named = scene_of(name, &[&text], true)?;
+    // The rim moves at 0.01 of the speed of longitudinal waves, which cross the radius of 1 m in `crossing_time(1.0)`.
+    let rate = 0.01 / named.scene.crossing_time(1.0);
     named.scene.grains[0].spin = if dimension == 2 { V::z() } else { V::new(0.0, 0.6, 0.8) } * rate;
     named.scene.duration = grainbench_scene::scene::Duration::Seconds(1.0 / rate);
     Ok(named)
@@ -338,7 +321,7 @@ mod tests {
     /// The closed-form solution starts at r₀ with velocity Ω × r₀, and obeys r̈ = −ω²(r − r₀(t)).
     #[test]
     fn a_sprung_grain_obeys_its_equation() {
-        for turning in all().unwrap().iter().filter(|turning| turning.frequency().is_some()) {
+        for turning in all().unwrap().iter().filter(|turning| turning.frequency.is_some()) {
             let (start, step) = (turning.named.scene.grains[0].position, 1e-4);
             let at = |time: f64| turning.place(start, time);
             assert!((at(0.0) - start).norm() < 1e-14);
@@ -347,7 +330,7 @@ mod tests {
             let time = 0.37;
             let acceleration = (at(time + step) - at(time) * 2.0 + at(time - step)) / (step * step);
             let anchor = Rotation3::from_scaled_axis(turning.spin * time) * start;
-            let exact = (anchor - at(time)) * turning.frequency().unwrap().powi(2);
+            let exact = (anchor - at(time)) * turning.frequency.unwrap().powi(2);
             assert!((acceleration - exact).norm() < 1e-3 * exact.norm(), "{}", turning.named.name);
         }
     }
@@ -356,7 +339,7 @@ mod tests {
     #[test]
     fn steady_scenes_are_in_balance() {
         use grainbench_scene::overlap::distance;
-        for turning in all().unwrap().iter().filter(|turning| turning.frequency().is_none()) {
+        for turning in all().unwrap().iter().filter(|turning| turning.frequency.is_none()) {
             let scene = &turning.named.scene;
             let law = scene.laws[0].unwrap();
             let force = |overlap: f64, radius: f64| {
