@@ -37,12 +37,13 @@ fn planted_defects_fail_claims_by_value() {
         (MethodMistake::SpinsDropped, &["carried-grain", "turning-walls", "rocking"]),
     ];
     for (mistake, cases) in expected {
+        let (_, words) = MethodMistake::ALL.into_iter().find(|(known, _)| *known == mistake).unwrap();
         for case in cases {
             let rows = rows(Some(mistake), &[case]);
             let red: Vec<_> =
                 rows.iter().filter(|row| row.red() == Some(FailureMode::Value)).map(|row| &row.quantity).collect();
             assert!(!red.is_empty(), "{mistake:?} in {case}");
-            let is_named = |row: &&Verdict| row.detail.as_ref().is_some_and(|detail| detail.contains(mistake.words()));
+            let is_named = |row: &&Verdict| row.detail.as_ref().is_some_and(|detail| detail.contains(words));
             assert_eq!(rows.iter().filter(is_named).count(), red.len(), "{mistake:?} in {case}: {rows:#?}");
             println!("{mistake:?} in {case}: {} of {} red: {red:?}", red.len(), rows.len());
         }

@@ -14,6 +14,7 @@ use crate::run::{Run, Set};
 use crate::runner::Runner;
 use crate::solvers::Solvers;
 use crate::verdict::{Outcome, Verdict};
+use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
@@ -44,16 +45,15 @@ enum Mistake {
     Scene(Control),
     /// The negative control with this name, in all claims that have it.
     Control(&'static str),
-    /// A wrong method.
-    Method(MethodMistake),
+    /// A wrong method with this description.
+    Method(MethodMistake, &'static str),
 }
 
 impl Mistake {
     const fn words(&self) -> &'static str {
         match self {
             Self::Scene(control) => control.name,
-            Self::Control(name) => name,
-            Self::Method(slip) => slip.words(),
+            Self::Control(name) | Self::Method(_, name) => name,
         }
     }
 }
@@ -87,17 +87,18 @@ pub fn explain(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[&Claim
 fn hints(case: &'static Case, solvers: &Arc<dyn Solvers>, claims: &[&Claim], rows: &[Verdict]) -> Vec<Option<String>> {
     let failed = |row: &Verdict| row.outcome == Outcome::Fail && row.error.is_some();
     let scenes = |claim: &Claim| claim.runs.iter().map(Run::scene_words).collect::<BTreeSet<String>>();
-    let judged: Vec<ClaimResult<'_>> = claims.iter().zip(rows).map(|(claim, row)| ClaimResult { claim, row }).collect();
+    let judged = || claims.iter().zip(rows).map(|(claim, row)| ClaimResult { claim, row });
     let in_question: BTreeSet<String> =
-        judged.iter().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
-    let judged: Vec<ClaimResult<'_>> = judged
-        .into_iter()
-        .filter(|judged| failed(judged.row) || judged.row.outcome == Outcome::Pass)
-        .filter(|judged| judged.row.error.is_some() && scenes(judged.claim).is_subset(&in_question))
-        .collect();
+        judged().filter(|judged| failed(judged.row)).flat_map(|judged| scenes(judged.claim)).collect();
     if in_question.is_empty() {
         return vec![None; rows.len()];
     }
+    let is_asked = |judged: &ClaimResult<'_>| {
+        matches!(judged.row.outcome, Outcome::Fail | Outcome::Pass)
+            && judged.row.error.is_some()
+            && scenes(judged.claim).is_subset(&in_question)
+    };
+    let judged: Vec<ClaimResult<'_>> = judged().filter(is_asked).collect();
     let found = candidates(case, solvers, &judged);
     let scores: Vec<i64> = found.iter().map(|candidate| score(candidate, &judged)).collect();
     let hint_of = |row: &Verdict| {
@@ -166,11 +167,11 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
     };
     let errors = |mistake: &Mistake| -> Vec<Option<f64>> {
         let runner = match mistake {
-            Mistake::Method(slip) => small(case, solvers, Some(*slip)),
+            Mistake::Method(slip, _) => small(case, solvers, Some(*slip)),
             Mistake::Scene(_) | Mistake::Control(_) => Runner::new(case, Arc::clone(solvers)),
         };
         let candidate_error = |(place, judged): (usize, &ClaimResult<'_>)| match mistake {
-            Mistake::Method(_) if is_right(by_method[place], place) => {
+            Mistake::Method(..) if is_right(by_method[place], place) => {
                 changed(method_error(&runner, judged), by_method[place])
             }
             Mistake::Scene(control) if can[place][0] && passes(place) => {
@@ -268,16 +269,17 @@ fn mistakes(runner: &Runner, judged: &[ClaimResult<'_>]) -> Vec<Mistake> {
             add(Mistake::Control(claim.control.name));
         }
     }
-    MethodMistake::ALL.into_iter().for_each(|slip| add(Mistake::Method(slip)));
+    MethodMistake::ALL.into_iter().for_each(|(slip, words)| add(Mistake::Method(slip, words)));
     found
 }
 
 /// Returns common mistakes in a scene.
 fn of_scene(scene: &Scene) -> Vec<Control> {
     let off = Effect::switches().filter(|effect| effect.is_on(scene)).map(Control::without);
-    let parts =
-        [of_gravity(scene), of_inertia(scene.grain_shape), of_strength(scene), of_damping(scene), of_springs(scene)];
-    off.chain(parts.into_iter().flatten()).collect()
+    let laws = scene.laws.iter().flatten();
+    let wrong_laws = LAWS.iter().filter(|(is_affected, ..)| laws.clone().any(is_affected));
+    let wrong_laws = wrong_laws.map(|&(_, name, change)| Control::contact_law(name, change));
+    off.chain(of_gravity(scene)).chain(of_inertia(scene.grain_shape)).chain(wrong_laws).collect()
 }
 
 fn of_gravity(scene: &Scene) -> Vec<Control> {
@@ -285,20 +287,18 @@ fn of_gravity(scene: &Scene) -> Vec<Control> {
     if size == 0.0 {
         return Vec::new();
     }
-    let set = |name: &'static str, to: f64| {
-        let is_other = (size - to).abs() > 1e-9 * size;
-        is_other.then(|| Control::scene(name, move |scene: &mut Scene| scene.gravity *= to / size))
-    };
     let rounded = [
         ("gravity of 9.8 m/s²", 9.8),
         ("gravity of 9.80665 m/s²", 9.80665),
         ("gravity of 9.81 m/s²", 9.81),
         ("gravity of 10 m/s²", 10.0),
     ];
-    let near = rounded.into_iter().filter(|_| (size - 9.8).abs() < 0.3).filter_map(|(name, to)| set(name, to));
+    let is_near = |to: f64| (size - 9.8).abs() < 0.3 && (size - to).abs() > 1e-9 * size;
+    let near = rounded.into_iter().filter(|&(_, to)| is_near(to));
+    let near = near.map(|(name, to)| Control::scene(name, move |scene| scene.gravity *= to / size));
     let is_oblique = scene.gravity.x != 0.0 && scene.gravity.y != 0.0;
     let exchanged = is_oblique.then(|| {
-        Control::scene("sine and cosine of the slope exchanged", |scene: &mut Scene| {
+        Control::scene("sine and cosine of the slope exchanged", |scene| {
             let [x, y] = [scene.gravity.x, scene.gravity.y];
             (scene.gravity.x, scene.gravity.y) = (y.abs().copysign(x), x.abs().copysign(y));
         })
@@ -306,89 +306,60 @@ fn of_gravity(scene: &Scene) -> Vec<Control> {
     near.chain(exchanged).collect()
 }
 
-fn of_inertia(shape: GrainShape) -> Vec<Control> {
-    let scaled = |name: &'static str, by: f64| {
-        Control::scene(name, move |scene: &mut Scene| scene.grains.iter_mut().for_each(|grain| grain.inertia *= by))
-    };
-    let mut found = match shape {
-        GrainShape::Disc => {
-            vec![scaled("the inertia of a sphere in a disc", 0.8), scaled("the inertia of a ring", 2.0)]
-        }
+fn of_inertia(shape: GrainShape) -> [Control; 4] {
+    let scaled = |name: &'static str, by: f64| Control::grains(name, move |grain| grain.inertia *= by);
+    let [other_shape, hollow] = match shape {
+        GrainShape::Disc => [("the inertia of a sphere in a disc", 0.8), ("the inertia of a ring", 2.0)],
         GrainShape::Sphere => {
-            vec![scaled("the inertia of a disc in a sphere", 1.25), scaled("the inertia of a hollow sphere", 5.0 / 3.0)]
+            [("the inertia of a disc in a sphere", 1.25), ("the inertia of a hollow sphere", 5.0 / 3.0)]
         }
     };
-    found.push(scaled("grains that do not rotate", 1e12));
-    found.push(Control::scene("half the mass of each grain", |scene: &mut Scene| {
-        for grain in &mut scene.grains {
+    [
+        scaled(other_shape.0, other_shape.1),
+        scaled(hollow.0, hollow.1),
+        scaled("grains that do not rotate", 1e12),
+        Control::grains("half the mass of each grain", |grain| {
             (grain.mass, grain.inertia) = (0.5 * grain.mass, 0.5 * grain.inertia);
-        }
-    }));
-    found
+        }),
+    ]
 }
 
-/// Returns a control that changes all contact laws of a scene.
-fn laws(name: &'static str, change: fn(&mut grainbench_scene::contact_law::ContactLaw)) -> Control {
-    Control::scene(name, move |scene: &mut Scene| scene.laws.iter_mut().flatten().for_each(change))
-}
+/// Mistake in contact laws: contact laws that it affects, name and change.
+type LawMistake = (fn(&ContactLaw) -> bool, &'static str, fn(&mut ContactLaw));
 
-fn of_strength(scene: &Scene) -> Vec<Control> {
-    let mut found = Vec::new();
-    if scene.laws.iter().flatten().any(|law| law.friction > 0.0) {
-        found.push(laws("half the friction", |law| law.friction *= 0.5));
-        found.push(laws("twice the friction", |law| law.friction *= 2.0));
-    }
-    if scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0) {
-        found.push(laws("half the rolling resistance", |law| law.rolling_friction *= 0.5));
-        found.push(laws("twice the rolling resistance", |law| law.rolling_friction *= 2.0));
-    }
-    found
-}
-
-fn of_damping(scene: &Scene) -> Vec<Control> {
-    let mut found = Vec::new();
-    if scene.laws.iter().flatten().any(|law| law.damping_ratio > 0.0) {
-        found.push(laws("the restitution taken as the damping ratio", |law| {
+/// Common mistakes in contact laws.
+const LAWS: [LawMistake; 12] = [
+    (|law| law.friction > 0.0, "half the friction", |law| law.friction *= 0.5),
+    (|law| law.friction > 0.0, "twice the friction", |law| law.friction *= 2.0),
+    (|law| law.rolling_friction > 0.0, "half the rolling resistance", |law| law.rolling_friction *= 0.5),
+    (|law| law.rolling_friction > 0.0, "twice the rolling resistance", |law| law.rolling_friction *= 2.0),
+    (
+        |law| law.damping_ratio > 0.0,
+        "the restitution taken as the damping ratio",
+        |law| {
             if law.damping_ratio > 0.0 {
                 law.damping_ratio = law.restitution();
             }
-        }));
-    }
-    if scene.laws.iter().flatten().any(|law| law.damping_ratio > 0.0 || law.normal_damping > 0.0) {
-        found.push(laws("half the normal damping", |law| {
-            (law.damping_ratio, law.normal_damping) = (0.5 * law.damping_ratio, 0.5 * law.normal_damping);
-        }));
-        found.push(laws("twice the normal damping", |law| {
-            (law.damping_ratio, law.normal_damping) = ((2.0 * law.damping_ratio).min(0.99), 2.0 * law.normal_damping);
-        }));
-    }
-    if scene.laws.iter().flatten().any(|law| law.tangential_damping > 0.0) {
-        found.push(laws("no tangential damping", |law| law.tangential_damping = 0.0));
-    }
-    found
-}
+        },
+    ),
+    (is_damped, "half the normal damping", |law| {
+        (law.damping_ratio, law.normal_damping) = (0.5 * law.damping_ratio, 0.5 * law.normal_damping);
+    }),
+    (is_damped, "twice the normal damping", |law| {
+        (law.damping_ratio, law.normal_damping) = ((2.0 * law.damping_ratio).min(0.99), 2.0 * law.normal_damping);
+    }),
+    (|law| law.tangential_damping > 0.0, "no tangential damping", |law| law.tangential_damping = 0.0),
+    (ContactLaw::has_stiffness, "half the stiffness", |law| law.springs = law.springs.scaled([0.5; 2])),
+    (ContactLaw::has_stiffness, "twice the stiffness", |law| law.springs = law.springs.scaled([2.0; 2])),
+    (ContactLaw::has_stiffness, "half the tangential stiffness", |law| law.scale_tangential(0.5)),
+    (ContactLaw::has_stiffness, "a tangential stiffness equal to the normal one", |law| {
+        let [normal, tangential] = law.springs.constants();
+        if tangential > 0.0 {
+            law.scale_tangential(normal / tangential);
+        }
+    }),
+];
 
-fn of_springs(scene: &Scene) -> Vec<Control> {
-    if !scene.laws.iter().flatten().any(|law| law.has_stiffness()) {
-        return Vec::new();
-    }
-    let both = |name: &'static str, by: f64| {
-        Control::scene(name, move |scene: &mut Scene| {
-            for law in scene.laws.iter_mut().flatten() {
-                law.scale_normal(by);
-                law.scale_tangential(by);
-            }
-        })
-    };
-    vec![
-        both("half the stiffness", 0.5),
-        both("twice the stiffness", 2.0),
-        laws("half the tangential stiffness", |law| law.scale_tangential(0.5)),
-        laws("a tangential stiffness equal to the normal one", |law| {
-            let [normal, tangential] = law.springs.constants();
-            if tangential > 0.0 {
-                law.scale_tangential(normal / tangential);
-            }
-        }),
-    ]
+fn is_damped(law: &ContactLaw) -> bool {
+    law.damping_ratio > 0.0 || law.normal_damping > 0.0
 }

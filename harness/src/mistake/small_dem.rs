@@ -5,10 +5,10 @@
 //! The solver checks every pair of grains and integrates by central differences. The slip velocity is computed from the
 //! normals, lever arms and wall positions at mid-step.
 
-use grainbench_scene::contact_law::{ContactLaw, Springs};
+use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::overlap::{nearest_on_rectangle, nearest_on_round, nearest_on_segment};
 use grainbench_scene::release::no_tension_ratio;
-use grainbench_scene::scene::{Driven, Grain, Scene, Wall, WallShape};
+use grainbench_scene::scene::{Grain, Scene, Wall, WallShape};
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::observer::Observer;
@@ -69,60 +69,31 @@ pub enum MethodMistake {
 }
 
 impl MethodMistake {
-    /// All mistakes, in a fixed order.
-    pub const ALL: [Self; 22] = [
-        Self::SpringNotTurned,
-        Self::TwistNotFollowed,
-        Self::MeanArm,
-        Self::OneArm,
-        Self::WrongSpin,
-        Self::NoSpin,
-        Self::NoSecondTorque,
-        Self::TorqueReversed,
-        Self::WallSpinDropped,
-        Self::SecantSpring,
-        Self::NotRescaled,
-        Self::RollingNotCut,
-        Self::SpinsDropped,
-        Self::SpringForgotten,
-        Self::SpringNotCut,
-        Self::LimitOnSpring,
-        Self::LimitOfElastic,
-        Self::Pulls,
-        Self::WholeMass,
-        Self::WholeRadius,
-        Self::HalfStepOld,
-        Self::OldVelocity,
+    /// All mistakes in a fixed order, with their descriptions.
+    pub const ALL: [(Self, &str); 22] = [
+        (Self::SpringNotTurned, "tangential springs do not rotate with their contact"),
+        (Self::TwistNotFollowed, "tangential springs do not rotate about the normal with their grains"),
+        (Self::MeanArm, "the lever arm (R₁ + R₂)/2 for both grains"),
+        (Self::OneArm, "the lever arm of the first grain for both grains"),
+        (Self::WrongSpin, "spins with the wrong sign in the slip"),
+        (Self::NoSpin, "no spins in the slip"),
+        (Self::NoSecondTorque, "no torque on the second grain of a pair"),
+        (Self::TorqueReversed, "torques with the wrong sign"),
+        (Self::WallSpinDropped, "no spin of walls in the rolling moment"),
+        (Self::SecantSpring, "Mindlin's force as the current stiffness times the total displacement"),
+        (Self::NotRescaled, "Mindlin's force not reduced while a contact is unloaded"),
+        (Self::RollingNotCut, "a rolling angle that grows beyond its limit"),
+        (Self::SpinsDropped, "no spins at the start"),
+        (Self::SpringForgotten, "tangential springs reset after each step"),
+        (Self::SpringNotCut, "a tangential spring that grows beyond Coulomb's limit"),
+        (Self::LimitOnSpring, "Coulomb's limit on the spring alone, with the dashpot added"),
+        (Self::LimitOfElastic, "Coulomb's limit from the elastic normal force alone"),
+        (Self::Pulls, "a normal dashpot that pulls separating grains together"),
+        (Self::WholeMass, "dashpots with the mass of one grain instead of the reduced mass"),
+        (Self::WholeRadius, "Hertz contacts with the radius of one grain instead of the effective radius"),
+        (Self::HalfStepOld, "velocities reported half a step early"),
+        (Self::OldVelocity, "positions moved with the velocity before the step"),
     ];
-
-    /// Returns the mistake in words.
-    #[must_use]
-    pub const fn words(self) -> &'static str {
-        match self {
-            Self::SpringNotTurned => "tangential springs do not rotate with their contact",
-            Self::TwistNotFollowed => "tangential springs do not rotate about the normal with their grains",
-            Self::MeanArm => "the lever arm (R₁ + R₂)/2 for both grains",
-            Self::OneArm => "the lever arm of the first grain for both grains",
-            Self::WrongSpin => "spins with the wrong sign in the slip",
-            Self::NoSpin => "no spins in the slip",
-            Self::NoSecondTorque => "no torque on the second grain of a pair",
-            Self::TorqueReversed => "torques with the wrong sign",
-            Self::WallSpinDropped => "no spin of walls in the rolling moment",
-            Self::SecantSpring => "Mindlin's force as the current stiffness times the total displacement",
-            Self::NotRescaled => "Mindlin's force not reduced while a contact is unloaded",
-            Self::RollingNotCut => "a rolling angle that grows beyond its limit",
-            Self::SpinsDropped => "no spins at the start",
-            Self::SpringForgotten => "tangential springs reset after each step",
-            Self::SpringNotCut => "a tangential spring that grows beyond Coulomb's limit",
-            Self::LimitOnSpring => "Coulomb's limit on the spring alone, with the dashpot added",
-            Self::LimitOfElastic => "Coulomb's limit from the elastic normal force alone",
-            Self::Pulls => "a normal dashpot that pulls separating grains together",
-            Self::WholeMass => "dashpots with the mass of one grain instead of the reduced mass",
-            Self::WholeRadius => "Hertz contacts with the radius of one grain instead of the effective radius",
-            Self::HalfStepOld => "velocities reported half a step early",
-            Self::OldVelocity => "positions moved with the velocity before the step",
-        }
-    }
 }
 
 /// Small DEM solver, with or without a mistake.
@@ -146,7 +117,6 @@ struct Side {
 }
 
 /// Contact with its history.
-#[derive(Clone, Debug)]
 struct Contact {
     first: usize,
     partner: Partner,
@@ -162,7 +132,6 @@ struct Contact {
     slipping: bool,
 }
 
-#[derive(Clone)]
 struct Body {
     grain: Grain,
     before: V,
@@ -175,7 +144,7 @@ struct Body {
 
 struct State<'a> {
     scene: &'a Scene,
-    mistake: Option<MethodMistake>,
+    solver: SmallDem,
     step: f64,
     count: u64,
     bodies: Vec<Body>,
@@ -211,7 +180,7 @@ impl State<'_> {
         let (spin, speed) =
             ((gone.rotation - was.rotation) / self.step, (gone.translation - was.translation) / self.step);
         let centre = wall.motion.centre + (gone.translation + was.translation) * 0.5;
-        let middle = self.middle(wall, body, now - 0.5 * self.step)?;
+        let middle = nearest(&at(now - 0.5 * self.step).0, (body.before + body.position) * 0.5)?;
         Some(Side {
             between: [past - body.before, spot - body.position],
             velocity: speed + spin.cross(&(middle - centre)),
@@ -220,12 +189,6 @@ impl State<'_> {
             mass: f64::INFINITY,
             partner: Partner::Wall(place as u16),
         })
-    }
-
-    /// Returns the point of a wall nearest to the grain's centre at mid-step.
-    fn middle(&self, wall: &Wall, body: &Body, time: f64) -> Option<V> {
-        let displacement = wall.motion.displacement(time.max(0.0), self.step);
-        nearest(&wall.shape.moved(&wall.motion, &displacement), (body.before + body.position) * 0.5)
     }
 
     fn sides(&self, first: usize) -> Vec<Side> {
@@ -273,30 +236,24 @@ impl State<'_> {
         let normal = side.between[1] / distance;
         let found = self.contacts.iter().position(|old| old.first == first && old.partner == side.partner);
         let place = found.unwrap_or_else(|| {
-            let partner = side.partner;
-            let zero = V::zeros();
-            let (spring, rolled, shear) = (zero, zero, zero);
-            let (seen, normal_force, slipping) = (0, 0.0, false);
             self.contacts.push(Contact {
                 first,
-                partner,
-                spring,
-                rolled,
+                partner: side.partner,
+                spring: V::zeros(),
+                rolled: V::zeros(),
                 normal,
                 overlap,
-                seen,
-                normal_force,
-                shear,
-                slipping,
+                seen: 0,
+                normal_force: 0.0,
+                shear: V::zeros(),
+                slipping: false,
             });
             self.contacts.len() - 1
         });
-        let mut contact = self.contacts[place].clone();
-        let answer = respond(self.mistake, &law, body, side, [distance, overlap, elapsed], &mut contact);
+        let contact = &mut self.contacts[place];
         contact.seen = self.count;
-        self.contacts[place] = contact;
-        let [force, torque, opposite] = answer;
-        let (torque, opposite) = match self.mistake {
+        let [force, torque, opposite] = self.solver.respond(&law, body, side, [distance, overlap, elapsed], contact);
+        let (torque, opposite) = match self.solver.mistake {
             Some(MethodMistake::NoSecondTorque) => (torque, V::zeros()),
             Some(MethodMistake::TorqueReversed) => (-torque, -opposite),
             _ => (torque, opposite),
@@ -316,12 +273,6 @@ impl State<'_> {
     }
 
     fn advance(&mut self) {
-        self.move_bodies();
-        self.count += 1;
-        self.evaluate(self.step);
-    }
-
-    fn move_bodies(&mut self) {
         let (scene, step, time) = (self.scene, self.step, self.time());
         for body in &mut self.bodies {
             body.before = body.velocity;
@@ -329,27 +280,25 @@ impl State<'_> {
             body.spin += body.torque / body.grain.inertia * step;
         }
         for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
-            self.drive(driven, time);
+            for &grain in &driven.grains {
+                self.bodies[grain].velocity = driven.velocity_over(time, step);
+                self.bodies[grain].spin = driven.spin;
+            }
         }
         for body in &mut self.bodies {
-            let velocity = if self.mistake == Some(MethodMistake::OldVelocity) { body.before } else { body.velocity };
+            let velocity = if self.solver.has(MethodMistake::OldVelocity) { body.before } else { body.velocity };
             body.before = body.position;
             body.position += velocity * step;
         }
-    }
-
-    fn drive(&mut self, driven: &Driven, time: f64) {
-        for &grain in &driven.grains {
-            self.bodies[grain].velocity = driven.velocity_over(time, self.step);
-            self.bodies[grain].spin = driven.spin;
-        }
+        self.count += 1;
+        self.evaluate(step);
     }
 
     fn look(&self) -> StepState {
         let half = 0.5 * self.step;
         let is_driven = |id: usize| self.scene.driven.iter().any(|driven| driven.grains.contains(&id));
         let grains = self.bodies.iter().enumerate().map(|(id, body)| {
-            let is_old = self.mistake == Some(MethodMistake::HalfStepOld);
+            let is_old = self.solver.has(MethodMistake::HalfStepOld);
             let free = if is_driven(id) || is_old { 0.0 } else { half };
             GrainState {
                 position: body.position,
@@ -381,152 +330,152 @@ impl State<'_> {
     }
 }
 
-/// Returns the lever arms of both sides (m). For two grains, their sum is the distance of the centres. At a wall, the
-/// first is the distance from the wall, and the second is zero.
-fn arms(mistake: Option<MethodMistake>, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
-    if wall {
-        return [distance, 0.0];
+impl SmallDem {
+    /// Returns true if the solver makes a mistake.
+    fn has(self, mistake: MethodMistake) -> bool {
+        self.mistake == Some(mistake)
     }
-    let [first, second] = radii.map(|radius| radius - 0.5 * overlap);
-    match mistake {
-        Some(MethodMistake::MeanArm) => [0.5 * (first + second); 2],
-        Some(MethodMistake::OneArm) => [first; 2],
-        _ => [first, second],
-    }
-}
 
-/// Returns the rotation of a contact during a step: the rotation of its normal, followed by the mean rotation of both
-/// sides about the normal.
-fn turn(mistake: Option<MethodMistake>, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
-    if mistake == Some(MethodMistake::SpringNotTurned) {
-        return Rotation3::identity();
-    }
-    let across = from.cross(&to);
-    let sine = across.norm();
-    let tilt = if sine > 0.0 {
-        Rotation3::from_scaled_axis(across * (sine.atan2(from.dot(&to)) / sine))
-    } else {
-        Rotation3::identity()
-    };
-    if mistake == Some(MethodMistake::TwistNotFollowed) {
-        return tilt;
-    }
-    let twist = (spins[0] + spins[1]).dot(&to) * 0.5 * elapsed;
-    Rotation3::from_scaled_axis(to * twist) * tilt
-}
-
-/// Returns the force (N) and the torque (N m) on the first grain, and the torque on the second side. Updates the history of
-/// the contact.
-fn respond(
-    mistake: Option<MethodMistake>,
-    law: &ContactLaw,
-    body: &Body,
-    side: &Side,
-    [distance, overlap, elapsed]: [f64; 3],
-    contact: &mut Contact,
-) -> [V; 3] {
-    let radii = [body.grain.radius, side.radius.unwrap_or(0.0)];
-    let normal = side.between[1] / distance;
-    let middle = (side.between[0] + side.between[1]).normalize();
-    let wall = side.radius.is_none();
-    let is_whole = wall || mistake == Some(MethodMistake::WholeRadius);
-    let effective = if is_whole { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
-    let is_whole = mistake == Some(MethodMistake::WholeMass);
-    let mass = if is_whole { body.grain.mass } else { 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass) };
-    let [first, second] = arms(mistake, radii, wall, distance, overlap);
-    let between = 0.5 * (side.between[0].norm() + side.between[1].norm());
-    let moving = arms(mistake, radii, wall, between, radii[0] + radii[1] - between);
-    let second_spin = if wall { V::zeros() } else { side.spin };
-    let sign = match mistake {
-        Some(MethodMistake::WrongSpin) => -1.0,
-        Some(MethodMistake::NoSpin) => 0.0,
-        _ => 1.0,
-    };
-    let relative =
-        body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
-    let slip = relative - middle * relative.dot(&middle);
-    let (stiff, _) = law.springs.stiffness(overlap, effective);
-    let ratio =
-        if mistake == Some(MethodMistake::Pulls) { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) };
-    let damping = law.normal_damping * mass + 2.0 * ratio * (stiff * mass * damped_share(law)).sqrt();
-    let secant = law.springs.secant_stiffness(overlap, effective);
-    let push = secant * overlap + damping * (body.velocity - side.velocity).dot(&normal);
-    let push = if mistake == Some(MethodMistake::Pulls) { push } else { push.max(0.0) };
-    let base = if mistake == Some(MethodMistake::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
-    let limit = law.friction * base + law.cohesion;
-    shear(mistake, law, [effective, overlap, elapsed, limit], (slip, normal, [body.spin, side.spin]), contact);
-    let dashpot = slip * (law.tangential_damping * mass);
-    contact.shear = if mistake == Some(MethodMistake::LimitOnSpring) {
-        contact.spring - dashpot
-    } else {
-        (contact.spring - dashpot).cap_magnitude(limit)
-    };
-    if mistake == Some(MethodMistake::SpringForgotten) {
-        contact.spring = V::zeros();
-    }
-    let spin = if wall && mistake == Some(MethodMistake::WallSpinDropped) { V::zeros() } else { side.spin };
-    let moment = roll(mistake, law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
-    (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
-    let force = contact.shear - normal * push;
-    let lever = normal.cross(&contact.shear);
-    [force, lever * first + moment, lever * second - moment]
-}
-
-fn damped_share(law: &ContactLaw) -> f64 {
-    if law.is_hertz() { 5.0 / 6.0 } else { 1.0 }
-}
-
-/// Updates the force of the tangential spring over one step.
-fn shear(
-    mistake: Option<MethodMistake>,
-    law: &ContactLaw,
-    [effective, overlap, elapsed, limit]: [f64; 4],
-    (slip, normal, spins): (V, V, [V; 2]),
-    contact: &mut Contact,
-) {
-    // The slip velocity belongs to mid-step, so the slip must be rotated over the second half of the step.
-    let half = turn(mistake, normal, normal, spins, 0.5 * elapsed);
-    let along = half * slip * elapsed;
-    let along = along - normal * along.dot(&normal);
-    let turned = turn(mistake, contact.normal, normal, spins, elapsed) * contact.spring;
-    let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
-    let (was, is) = (contact.overlap, overlap);
-    let kept = match (law.springs, mistake) {
-        (Springs::Hertz { .. }, Some(MethodMistake::SecantSpring)) if was > 0.0 => (is / was).sqrt(),
-        (Springs::Hertz { .. }, mistake) if is < was && mistake != Some(MethodMistake::NotRescaled) => {
-            (is / was).sqrt()
+    /// Returns the lever arms of both sides (m). For two grains, their sum is the distance of the centres. At a wall, the
+    /// first is the distance from the wall, and the second is zero.
+    fn arms(self, radii: [f64; 2], wall: bool, distance: f64, overlap: f64) -> [f64; 2] {
+        if wall {
+            return [distance, 0.0];
         }
-        _ => 1.0,
-    };
-    contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
-    contact.slipping = contact.spring.norm() > limit;
-    if mistake != Some(MethodMistake::SpringNotCut) {
-        contact.spring = contact.spring.cap_magnitude(limit);
+        let [first, second] = radii.map(|radius| radius - 0.5 * overlap);
+        match self.mistake {
+            Some(MethodMistake::MeanArm) => [0.5 * (first + second); 2],
+            Some(MethodMistake::OneArm) => [first; 2],
+            _ => [first, second],
+        }
     }
-}
 
-/// Returns the moment on the first grain that resists rolling (N m). Updates the rolling angle.
-fn roll(
-    mistake: Option<MethodMistake>,
-    law: &ContactLaw,
-    [effective, secant, elapsed, push]: [f64; 4],
-    (spin, normal): (V, V),
-    contact: &mut Contact,
-) -> V {
-    let arm = law.rolling_friction * effective;
-    if arm == 0.0 {
-        return V::zeros();
+    /// Returns the rotation of a contact during a step: the rotation of its normal, followed by the mean rotation of both
+    /// sides about the normal.
+    fn turn(self, from: V, to: V, spins: [V; 2], elapsed: f64) -> Rotation3<f64> {
+        if self.has(MethodMistake::SpringNotTurned) {
+            return Rotation3::identity();
+        }
+        let across = from.cross(&to);
+        let sine = across.norm();
+        let tilt = if sine > 0.0 {
+            Rotation3::from_scaled_axis(across * (sine.atan2(from.dot(&to)) / sine))
+        } else {
+            Rotation3::identity()
+        };
+        if self.has(MethodMistake::TwistNotFollowed) {
+            return tilt;
+        }
+        let twist = (spins[0] + spins[1]).dot(&to) * 0.5 * elapsed;
+        Rotation3::from_scaled_axis(to * twist) * tilt
     }
-    let rate = spin - normal * spin.dot(&normal);
-    let stiffness = 2.25 * secant * arm * arm;
-    contact.rolled += rate * elapsed;
-    contact.rolled -= normal * contact.rolled.dot(&normal);
-    let most = arm * push;
-    let moment = (-contact.rolled * stiffness).cap_magnitude(most);
-    if mistake != Some(MethodMistake::RollingNotCut) {
-        contact.rolled = -moment / stiffness;
+
+    /// Returns the force (N) and the torque (N m) on the first grain, and the torque on the second side. Updates the history of
+    /// the contact.
+    fn respond(
+        self,
+        law: &ContactLaw,
+        body: &Body,
+        side: &Side,
+        [distance, overlap, elapsed]: [f64; 3],
+        contact: &mut Contact,
+    ) -> [V; 3] {
+        let radii = [body.grain.radius, side.radius.unwrap_or(0.0)];
+        let normal = side.between[1] / distance;
+        let middle = (side.between[0] + side.between[1]).normalize();
+        let wall = side.radius.is_none();
+        let is_whole = wall || self.has(MethodMistake::WholeRadius);
+        let effective = if is_whole { radii[0] } else { radii[0] * radii[1] / (radii[0] + radii[1]) };
+        let is_whole = self.has(MethodMistake::WholeMass);
+        let mass = if is_whole { body.grain.mass } else { 1.0 / (1.0 / body.grain.mass + 1.0 / side.mass) };
+        let [first, second] = self.arms(radii, wall, distance, overlap);
+        let between = 0.5 * (side.between[0].norm() + side.between[1].norm());
+        let moving = self.arms(radii, wall, between, radii[0] + radii[1] - between);
+        let second_spin = if wall { V::zeros() } else { side.spin };
+        let sign = match self.mistake {
+            Some(MethodMistake::WrongSpin) => -1.0,
+            Some(MethodMistake::NoSpin) => 0.0,
+            _ => 1.0,
+        };
+        let relative =
+            body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
+        let slip = relative - middle * relative.dot(&middle);
+        let (stiff, _) = law.springs.stiffness(overlap, effective);
+        let ratio =
+            if self.has(MethodMistake::Pulls) { law.damping_ratio } else { no_tension_ratio(law.damping_ratio) };
+        let damped_share = if law.is_hertz() { 5.0 / 6.0 } else { 1.0 };
+        let damping = law.normal_damping * mass + 2.0 * ratio * (stiff * mass * damped_share).sqrt();
+        let secant = law.springs.secant_stiffness(overlap, effective);
+        let push = secant * overlap + damping * (body.velocity - side.velocity).dot(&normal);
+        let push = if self.has(MethodMistake::Pulls) { push } else { push.max(0.0) };
+        let base = if self.has(MethodMistake::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
+        let limit = law.friction * base + law.cohesion;
+        self.shear(law, [effective, overlap, elapsed, limit], (slip, normal, [body.spin, side.spin]), contact);
+        let dashpot = slip * (law.tangential_damping * mass);
+        contact.shear = if self.has(MethodMistake::LimitOnSpring) {
+            contact.spring - dashpot
+        } else {
+            (contact.spring - dashpot).cap_magnitude(limit)
+        };
+        if self.has(MethodMistake::SpringForgotten) {
+            contact.spring = V::zeros();
+        }
+        let spin = if wall && self.has(MethodMistake::WallSpinDropped) { V::zeros() } else { side.spin };
+        let moment = self.roll(law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
+        (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
+        let force = contact.shear - normal * push;
+        let lever = normal.cross(&contact.shear);
+        [force, lever * first + moment, lever * second - moment]
     }
-    moment
+
+    /// Updates the force of the tangential spring over one step.
+    fn shear(
+        self,
+        law: &ContactLaw,
+        [effective, overlap, elapsed, limit]: [f64; 4],
+        (slip, normal, spins): (V, V, [V; 2]),
+        contact: &mut Contact,
+    ) {
+        // The slip velocity belongs to mid-step, so the slip must be rotated over the second half of the step.
+        let half = self.turn(normal, normal, spins, 0.5 * elapsed);
+        let along = half * slip * elapsed;
+        let along = along - normal * along.dot(&normal);
+        let turned = self.turn(contact.normal, normal, spins, elapsed) * contact.spring;
+        let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
+        let (was, is) = (contact.overlap, overlap);
+        let is_rescaled =
+            is < was && !self.has(MethodMistake::NotRescaled) || was > 0.0 && self.has(MethodMistake::SecantSpring);
+        let kept = if law.is_hertz() && is_rescaled { (is / was).sqrt() } else { 1.0 };
+        contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
+        contact.slipping = contact.spring.norm() > limit;
+        if !self.has(MethodMistake::SpringNotCut) {
+            contact.spring = contact.spring.cap_magnitude(limit);
+        }
+    }
+
+    /// Returns the moment on the first grain that resists rolling (N m). Updates the rolling angle.
+    fn roll(
+        self,
+        law: &ContactLaw,
+        [effective, secant, elapsed, push]: [f64; 4],
+        (spin, normal): (V, V),
+        contact: &mut Contact,
+    ) -> V {
+        let arm = law.rolling_friction * effective;
+        if arm == 0.0 {
+            return V::zeros();
+        }
+        let rate = spin - normal * spin.dot(&normal);
+        let stiffness = 2.25 * secant * arm * arm;
+        contact.rolled += rate * elapsed;
+        contact.rolled -= normal * contact.rolled.dot(&normal);
+        let most = arm * push;
+        let moment = (-contact.rolled * stiffness).cap_magnitude(most);
+        if !self.has(MethodMistake::RollingNotCut) {
+            contact.rolled = -moment / stiffness;
+        }
+        moment
+    }
 }
 
 impl Solver for SmallDem {
@@ -548,13 +497,13 @@ impl Solver for SmallDem {
             before: grain.position,
             position: grain.position,
             velocity: grain.velocity,
-            spin: if self.mistake == Some(MethodMistake::SpinsDropped) { V::zeros() } else { grain.spin },
+            spin: if self.has(MethodMistake::SpinsDropped) { V::zeros() } else { grain.spin },
             force: V::zeros(),
             torque: V::zeros(),
         });
         let walls = vec![V::zeros(); scene.walls.len()];
-        let (mistake, bodies) = (self.mistake, bodies.collect());
-        let mut state = State { scene, mistake, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
+        let (solver, bodies) = (*self, bodies.collect());
+        let mut state = State { scene, solver, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
         state.evaluate(0.0);
         for body in &mut state.bodies {
             body.velocity -= (body.force / body.grain.mass + scene.gravity) * (0.5 * step);
