@@ -39,7 +39,7 @@ pub trait RunsReader<T>: Fn(&[FinishedRun]) -> Result<T, MissingData> + Send + S
 impl<T, F: Fn(&[FinishedRun]) -> Result<T, MissingData> + Send + Sync + 'static> RunsReader<T> for F {}
 
 /// Kind of the expected result.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Expectation {
     /// A value from the scene or from a cited work.
     Equals,
@@ -48,9 +48,9 @@ pub enum Expectation {
     /// Agreement of two runs.
     Agrees,
     /// A bound or a band.
-    Bound(Bound),
+    Bound,
     /// An order of convergence, or a bound on it.
-    Converges(Bound),
+    Converges,
     /// A scene that the solver must reject as unsupported.
     Refusal,
 }
@@ -184,38 +184,32 @@ impl Quantity {
 
     /// Expects a value of at least `bound`.
     pub fn at_least(self, bound: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::AtLeast(bound);
-        self.bounded(Expectation::Bound(bound), bound, source, value)
+        self.bounded(Expectation::Bound, Bound::AtLeast(bound), source, value)
     }
 
     /// Expects a value of at most `bound`.
     pub fn at_most(self, bound: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::AtMost(bound);
-        self.bounded(Expectation::Bound(bound), bound, source, value)
+        self.bounded(Expectation::Bound, Bound::AtMost(bound), source, value)
     }
 
     /// Expects a value within a band.
     pub fn between(self, band: [f64; 2], source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::Between(band);
-        self.bounded(Expectation::Bound(bound), bound, source, value)
+        self.bounded(Expectation::Bound, Bound::Between(band), source, value)
     }
 
     /// Expects this order of convergence.
     pub fn converges(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::Order(order);
-        self.bounded(Expectation::Converges(bound), bound, source, value)
+        self.bounded(Expectation::Converges, Bound::Order(order), source, value)
     }
 
     /// Expects at least this order of convergence.
     pub fn converges_at_least(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::AtLeast(order);
-        self.bounded(Expectation::Converges(bound), bound, source, value)
+        self.bounded(Expectation::Converges, Bound::AtLeast(order), source, value)
     }
 
     /// Expects at most this order of convergence. An error that does not decrease also passes.
     pub fn converges_at_most(self, order: f64, source: Source, value: impl RunsReader<f64>) -> ClaimWithExpectation {
-        let bound = Bound::AtMost(order);
-        self.bounded(Expectation::Converges(bound), bound, source, value)
+        self.bounded(Expectation::Converges, Bound::AtMost(order), source, value)
     }
 
     /// Expects that the solver rejects the scene as unsupported. The result is then amber and states the solver's reason.
@@ -319,17 +313,15 @@ impl Claim {
             (Source::Program, _) => Evidence::OtherCode,
             (Source::Regression(_), _) => Evidence::Regression,
             // The method determines the order. Agreement of a prototype with this order is no stronger evidence.
-            (Source::Printed(..), Expectation::Converges(_)) => Evidence::Convergence,
+            (Source::Printed(..), Expectation::Converges) => Evidence::Convergence,
             (Source::Printed(work, _), _) => match work.kind {
                 Kind::Literature => Evidence::Paper,
                 Kind::Experiment => Evidence::Experiment,
                 Kind::Prototype => Evidence::Prototype,
             },
-            (Source::Ourselves(_), _) | (Source::Derived(_), Expectation::Converges(_)) => Evidence::Convergence,
+            (Source::Ourselves(_), _) | (Source::Derived(_), Expectation::Converges) => Evidence::Convergence,
             (Source::Derived(_), Expectation::Holds | Expectation::Refusal) => Evidence::Invariant,
-            (Source::Derived(_), Expectation::Equals | Expectation::Agrees | Expectation::Bound(_)) => {
-                Evidence::Analytic
-            }
+            (Source::Derived(_), Expectation::Equals | Expectation::Agrees | Expectation::Bound) => Evidence::Analytic,
         }
     }
 

@@ -127,46 +127,32 @@ impl Series {
 }
 
 impl Sweep {
-    fn falls(self, bound: Bound, source: Source, power: Option<f64>) -> ClaimWithExpectation {
+    /// Expects this order of convergence, fitted over all runs.
+    pub fn converges(self, order: f64, source: Source) -> ClaimWithExpectation {
         let fitted = Arc::clone(&self.read);
         let read = self.read;
         let trace: Trace = Arc::new(move |done| {
             let measured: Points =
                 done.iter().map(|done| read(done).map(|(x, y)| (x, y.abs()))).collect::<Result<_, _>>()?;
-            let ends = measured.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
+            let end = measured.iter().copied().reduce(|a, b| if b.0 < a.0 { b } else { a });
             let widest = measured.iter().map(|point| point.0).fold(0.0, f64::max);
-            let guide = power.zip(ends).map(|(power, (x, y))| vec![(x, y), (widest, y * (widest / x).powf(power))]);
-            Ok(ClaimCurves { measured, expected: guide.unwrap_or_default(), slope: power })
+            let guide = end.map(|(x, y)| vec![(x, y), (widest, y * (widest / x).powf(order))]);
+            Ok(ClaimCurves { measured, expected: guide.unwrap_or_default(), slope: Some(order) })
         });
         let measure = move |done: &[FinishedRun]| {
             let points: Result<Points, MissingData> = done.iter().map(|done| fitted(done)).collect();
-            Ok(Measurement::new(slope(&points?), ExpectedValue::Bound(bound), 1.0))
+            Ok(Measurement::new(slope(&points?), ExpectedValue::Bound(Bound::Order(order)), 1.0))
         };
-        self.quantity.expects(Expectation::Converges(bound), source, measure).traced(trace)
+        self.quantity.expects(Expectation::Converges, source, measure).traced(trace)
     }
 
     /// Expects that the quantity is proportional to the varied parameter raised to `power`. The error of the fitted power is
     /// divided by `scale`.
     pub fn scales(self, power: f64, scale: f64, source: Source) -> ClaimWithExpectation {
-        let expecting = self.falls(Bound::Order(power), source, Some(power));
+        let expecting = self.converges(power, source);
         let fitted = Arc::clone(&expecting.measure);
         let measure = Arc::new(move |done: &[FinishedRun]| Ok(Measurement::new(fitted(done)?.value, power, scale)));
         ClaimWithExpectation { expectation: Expectation::Equals, measure, ..expecting }
-    }
-
-    /// Expects this order of convergence, fitted over all runs.
-    pub fn converges(self, order: f64, source: Source) -> ClaimWithExpectation {
-        self.falls(Bound::Order(order), source, Some(order))
-    }
-
-    /// Expects at least this order of convergence.
-    pub fn converges_at_least(self, order: f64, source: Source) -> ClaimWithExpectation {
-        self.falls(Bound::AtLeast(order), source, Some(order))
-    }
-
-    /// Expects at most this order of convergence. An error that does not decrease also passes.
-    pub fn converges_at_most(self, order: f64, source: Source) -> ClaimWithExpectation {
-        self.falls(Bound::AtMost(order), source, None)
     }
 }
 
