@@ -149,12 +149,6 @@ impl Runner {
         claims
     }
 
-    /// Returns the case.
-    #[must_use]
-    pub const fn case(&self) -> &'static Case {
-        self.case
-    }
-
     /// Returns a finished run, and does the run if it was not done before.
     ///
     /// # Errors
@@ -165,7 +159,7 @@ impl Runner {
             return done.clone();
         }
         let by = SolverChoice { solver: run.solver, defect: None, resolution: &run.resolution, control: None };
-        let done = self.done_by(run, by, None);
+        let done = self.done_by(run, by);
         let mut runs = self.runs.lock().unwrap_or_else(PoisonError::into_inner);
         runs.entry(key).or_insert_with(|| (run.clone(), done)).1.clone()
     }
@@ -211,22 +205,15 @@ impl Runner {
         }
     }
 
-    /// Judges a claim and, if `with_control` is true and the control can be run, its negative control.
+    /// Judges a claim and, if `with_control` is true and the control can be run, its negative control. All runs of the claim must
+    /// be available. An external solver must support the claim and be able to run the wrong physics.
     #[must_use]
     pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<ControlResult>) {
         let row = self.judge(claim);
-        let control = (with_control && self.tries_control(claim, &row)).then(|| self.control(claim));
+        let is_run =
+            || self.stranger.is_none() || row.outcome != Outcome::Unsupported && self.refused_control(claim).is_none();
+        let control = (with_control && self.is_available(claim) && is_run()).then(|| self.control(claim));
         (row, control)
-    }
-
-    /// Returns true if the negative control of a judged claim can be run: all runs of the claim are available. For an
-    /// external solver, the claim must also be supported, and the solver must be able to run the wrong physics.
-    fn tries_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
-        self.is_available(claim) && self.has_control(claim, verdict)
-    }
-
-    fn has_control(&self, claim: &Claim, verdict: &Verdict) -> bool {
-        self.stranger.is_none() || verdict.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
     }
 
     /// Returns the reason why an external solver cannot run the wrong physics of a claim; none if it can.
@@ -262,53 +249,37 @@ impl Runner {
     /// # Errors
     /// When the solver does not support the scene or fails.
     pub fn run_wrong(&self, claim: &Claim, run: &Run) -> Result<FinishedRun, RunError> {
-        let control = Some(&claim.control);
-        let resolution = claim.control.resolution.as_ref().unwrap_or(&run.resolution);
-        let mut by = SolverChoice { solver: run.solver, defect: None, resolution, control };
-        match &claim.control.wrong {
-            _ if run.aside => self.run(run),
+        let control = &claim.control;
+        let resolution = control.resolution.as_ref().unwrap_or(&run.resolution);
+        let mut by = SolverChoice { solver: run.solver, defect: None, resolution, control: Some(control) };
+        match &control.wrong {
+            _ if run.aside => return self.run(run),
             // Only our solver gets the wrong physics.
             WrongPhysics::Ours(_) | WrongPhysics::OtherSolver(_) if self.solvers.is_program(run.solver) => {
-                self.run(run)
+                return self.run(run);
             }
-            WrongPhysics::Scene(change) | WrongPhysics::Ours(change) => self.done_by(run, by, Some(&**change)),
-            WrongPhysics::Solver(defect) => {
-                by.defect = Some(*defect);
-                self.done_by(run, by, None)
-            }
-            WrongPhysics::OtherSolver(solver) => {
-                by.solver = solver;
-                self.done_by(run, by, None)
-            }
-            WrongPhysics::OtherRun(solver, resolution) => {
-                (by.solver, by.resolution) = (solver, resolution);
-                self.done_by(run, by, None)
-            }
+            WrongPhysics::Scene(_) | WrongPhysics::Ours(_) => {}
+            WrongPhysics::Solver(defect) => by.defect = Some(*defect),
+            WrongPhysics::OtherSolver(solver) => by.solver = solver,
+            WrongPhysics::OtherRun(solver, resolution) => (by.solver, by.resolution) = (solver, resolution),
             WrongPhysics::OtherVariant(variant) => {
                 let done = self.run(&Run { variant, ..run.clone() })?;
-                Ok(FinishedRun { scene: self.scene(run)?, ..done })
+                return Ok(FinishedRun { scene: self.scene(run)?, ..done });
             }
-            WrongPhysics::Misread(change) => self.run(run).map(|done| misread(done, *change)),
+            WrongPhysics::Misread(change) => {
+                let mut done = self.run(run)?;
+                change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
+                return Ok(done);
+            }
         }
+        self.done_by(run, by)
     }
 
-    /// Does a run with a given solver, on the scene of the case or on a changed scene.
-    fn done_by(
-        &self,
-        run: &Run,
-        by: SolverChoice<'_>,
-        wrong: Option<&dyn Fn(&mut Scene)>,
-    ) -> Result<FinishedRun, RunError> {
+    /// Does a run with a given solver, on the scene of the case or on the scene that a control changes.
+    fn done_by(&self, run: &Run, by: SolverChoice<'_>) -> Result<FinishedRun, RunError> {
         let scene = self.scene(run)?;
-        let given = match wrong {
-            None => Arc::clone(&scene),
-            Some(change) => {
-                let mut given = (*scene).clone();
-                change(&mut given);
-                Arc::new(given)
-            }
-        };
-        if wrong.is_none()
+        let given = changed(&scene, by.control);
+        if Arc::ptr_eq(&given, &scene)
             && self.stranger.is_none()
             && run.reading.is_none()
             && !self.live
@@ -411,15 +382,7 @@ impl Runner {
     /// # Errors
     /// When the scene file is invalid, or third-party data are missing.
     pub fn given(&self, claim: &Claim, run: &Run, wrong: bool) -> Result<Arc<Scene>, RunError> {
-        let scene = self.scene(run)?;
-        match &claim.control.wrong {
-            WrongPhysics::Scene(change) | WrongPhysics::Ours(change) if wrong => {
-                let mut given = (*scene).clone();
-                change(&mut given);
-                Ok(Arc::new(given))
-            }
-            _ => Ok(scene),
-        }
+        Ok(changed(&self.scene(run)?, wrong.then_some(&claim.control)))
     }
 
     /// Returns the external solver if there is one, otherwise the solver with this name.
@@ -587,10 +550,14 @@ fn unless_panicked<T>(work: impl FnOnce() -> T) -> Result<T, String> {
     })
 }
 
-/// Changes the tables of a run, as a negative control requires.
-fn misread(mut done: FinishedRun, change: fn(&mut [Table])) -> FinishedRun {
-    change(Arc::<Vec<Table>>::make_mut(&mut done.tables));
-    done
+/// Returns the scene as a negative control changes it, or the same scene.
+fn changed(scene: &Arc<Scene>, control: Option<&control::Control>) -> Arc<Scene> {
+    let Some(WrongPhysics::Scene(change) | WrongPhysics::Ours(change)) = control.map(|control| &control.wrong) else {
+        return Arc::clone(scene);
+    };
+    let mut given = (**scene).clone();
+    change(&mut given);
+    Arc::new(given)
 }
 
 /// Returns the result, with the outcome `known` if its error is documented, finite and at most the limit of the known error.
