@@ -32,12 +32,9 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
         return None;
     }
     let (first, second) = (block_means(first, blocks)?, block_means(second, blocks)?);
-    let count = blocks as f64;
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / count;
+    let mean = |values: &[f64]| values.iter().sum::<f64>() / blocks as f64;
     let differences: Vec<f64> = first.iter().zip(&second).map(|(a, b)| b - a).collect();
-    let of_all = mean(&differences);
-    let variance = differences.iter().map(|value| (value - of_all).powi(2)).sum::<f64>() / (count - 1.0);
-    let half_width = quantile(count - 1.0)? * (variance / count).sqrt();
+    let (_, half_width) = interval(&differences)?;
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
 }
 
@@ -61,10 +58,8 @@ pub fn median(values: &[f64]) -> f64 {
 /// deviation of the given independent values, and t is Student's t. Returns none for fewer than two values or if all are equal.
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
-    let half_width = quantile(count - 1.0)? * (2.0 * variance).sqrt();
+    let (_, variance) = mean_and_variance(values);
+    let half_width = quantile(values.len() as f64 - 1.0)? * (2.0 * variance).sqrt();
     (half_width > 0.0).then_some(half_width)
 }
 
@@ -73,9 +68,16 @@ pub fn spread(values: &[f64]) -> Option<f64> {
 #[must_use]
 pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let variance = values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0);
+    let (mean, variance) = mean_and_variance(values);
     Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
+}
+
+/// Returns the mean and the variance s² of independent values; the variance of a single value is NaN.
+#[must_use]
+pub fn mean_and_variance(values: &[f64]) -> (f64, f64) {
+    let count = values.len() as f64;
+    let mean = values.iter().sum::<f64>() / count;
+    (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0))
 }
 
 /// Returns the mean of n independent values and the half-width t s √(1 + 1/n) of the prediction interval for one further value.
@@ -116,8 +118,7 @@ pub fn next_mean(runs: &[&[f64]], blocks: usize, judged: usize) -> Option<(f64, 
 
 /// Returns the means over blocks of equal length; the first samples that fill no block are not used. Returns none if a block
 /// would be empty.
-#[must_use]
-pub fn block_means(values: &[f64], blocks: usize) -> Option<Vec<f64>> {
+fn block_means(values: &[f64], blocks: usize) -> Option<Vec<f64>> {
     let length = values.len() / blocks.max(2);
     let used = values.len().checked_sub(length * blocks).filter(|_| length > 0)?;
     Some(values[used..].chunks_exact(length).map(|block| block.iter().sum::<f64>() / length as f64).collect())

@@ -17,6 +17,7 @@
 //! range from the smallest to the largest of the three values. In a chaotic scene, single values scatter, so their mean is
 //! the reference.
 
+use grainbench_harness::statistics::mean_and_variance;
 use grainbench_reports::study::estimate::Basis;
 
 /// Smallest order of which an extrapolation makes use.
@@ -108,10 +109,7 @@ pub fn scatter(deviation: f64) -> f64 {
 /// Returns the sample standard deviation; zero for fewer than two values.
 #[must_use]
 pub fn deviation(values: &[f64]) -> f64 {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    let squares: f64 = values.iter().map(|value| (value - mean).powi(2)).sum();
-    if values.len() < 2 { 0.0 } else { (squares / (count - 1.0)).sqrt() }
+    if values.len() < 2 { 0.0 } else { mean_and_variance(values).1.sqrt() }
 }
 
 fn range(levels: &[LevelValue]) -> f64 {
