@@ -41,7 +41,7 @@ fn after_the_horizon() -> Claim {
         unit: "1",
         logarithm: true,
     };
-    const PARTING: DivergenceColumns = DivergenceColumns { columns: &[MOTION.column] };
+    const PARTING: DivergenceColumns = &[MOTION.column];
     let on = |solver| Run::new("thousand-deep", solver, STEP).slow();
     let perturbed = [on(SIDES[0]).aside(), on(SIDES[0]).adjusted(PERTURBED, move_one).aside()];
     let control = Control::our_contact_law("no friction in ours", |law| law.friction = 0.0);

@@ -203,9 +203,8 @@ fn step() -> Claim {
 }
 
 /// Columns for the comparison of perturbed runs, and of our solver with LAMMPS and LIGGGHTS.
-const PARTING: DivergenceColumns = DivergenceColumns {
-    columns: &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"],
-};
+const PARTING: DivergenceColumns =
+    &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
 
 /// Predictability horizon (steps). The horizon is late, because discs that come into contact separate and touch many
 /// times before they carry force.

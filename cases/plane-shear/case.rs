@@ -50,7 +50,7 @@ fn long(solver: &'static str) -> Run {
 }
 
 /// Columns for the comparison of perturbed runs of our solver in the convention of LAMMPS.
-const PARTING: DivergenceColumns = DivergenceColumns { columns: &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"] };
+const PARTING: DivergenceColumns = &[ENERGY, "packing.sigma_xx", "packing.sigma_xy"];
 
 fn claims() -> Vec<Claim> {
     let friction = Control::our_contact_law("friction .1 for .5 in ours", |law| law.friction = 0.1);

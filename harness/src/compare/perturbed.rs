@@ -24,17 +24,13 @@ pub const ALLOWED: f64 = 1e-8;
 /// Name of the scene change that makes a perturbed run.
 pub const PERTURBED: &str = "one position moved by 1 ulp";
 
-/// Columns of the series in which the divergence of perturbed runs is measured.
-#[derive(Clone, Copy, Debug)]
-pub struct DivergenceColumns {
-    /// Names of the columns.
-    pub columns: &'static [&'static str],
-}
+/// Names of the columns of the series in which the divergence of perturbed runs is measured.
+pub type DivergenceColumns = &'static [&'static str];
 
 /// Returns the index of the last sample before a run and its perturbed run differ by more than [`PARTED`] of the largest value.
 fn last_together(columns: DivergenceColumns, run: &FinishedRun, perturbed: &FinishedRun) -> Result<usize, MissingData> {
     let mut last = run.series().step.len();
-    for column in columns.columns {
+    for column in columns {
         let (b, a) = together(perturbed, run, column)?;
         let scale = PARTED * largest(&a);
         let parted = |(a, b): (&f64, &f64)| (a - b).is_nan() || (a - b).abs() > scale;
@@ -96,7 +92,6 @@ pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -
         .agrees(Source::Program, move |done| {
             let horizon = step_of_horizon(columns, &done[2], &done[3])?;
             let found: Result<Vec<Measurement>, MissingData> = columns
-                .columns
                 .iter()
                 .map(|column| {
                     let (ours, theirs) = together(&done[0], &done[1], column)?;
