@@ -225,7 +225,7 @@ impl Wrapper for CachingSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::source::SceneSource;
+    use crate::scene_from_text;
     use grainbench_solver::record::{Cost, Provenance, Series};
 
     /// Solver whose record states the number of its runs.
@@ -251,8 +251,7 @@ mod tests {
     fn runs_with_other_options_share_no_entry() {
         let text = "title = 'one'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1000.0\n[grains.ball]\n\
             material = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n";
-        let source = SceneSource::from_text("one", Path::new(""), text);
-        let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let scene = scene_from_text("one", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let cache = RunCache::open(folder.path(), u64::MAX, false, |_| Some(String::new())).unwrap();
         let solver = Arc::new(Counting(AtomicU64::new(0)));

@@ -7,15 +7,14 @@
 
 use super::knobs::nominal_seconds;
 use crate::clock::cpu_seconds;
+use crate::scene_from_text;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::load::{Load, TimingDifference};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
 use std::sync::Arc;
 
 /// Numbers of discs along each edge of the square packing.
@@ -143,7 +142,7 @@ fn box_of_discs(edge: u32) -> Result<Scene, SceneError> {
          [output]\nevery = 1.0\n",
         f64::from(edge)
     );
-    SceneSource::from_text("discs in a box", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file)
+    scene_from_text("discs in a box", &text)
 }
 
 #[cfg(test)]

@@ -8,18 +8,17 @@
 //! timing is the processor time of a long run minus that of a short run.
 
 use crate::clock::cpu_seconds;
+use crate::scene_from_text;
 use grainbench_harness::solvers::Solvers;
 use grainbench_lanes::{Processor, Quad, probe};
 use grainbench_reports::study::step::{Model, Probe, TaskCost};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Cost;
 use grainbench_solver::resolution::Resolution;
 use std::hint::black_box;
-use std::path::Path;
 
 /// Numbers of steps of the short and the long run, first for grains, then for a block.
 const STEPS: [[u64; 2]; 2] = [[20, 1620], [20, 320]];
@@ -234,7 +233,7 @@ fn block() -> Result<Scene, SceneError> {
 
 fn scene(title: &str, text: &str) -> Result<Scene, SceneError> {
     let text = format!("title = '{title}'\n{text}[output]\nevery = 1.0\n");
-    SceneSource::from_text(title, Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file)
+    scene_from_text(title, &text)
 }
 
 #[cfg(test)]

@@ -4,14 +4,13 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
+use crate::scene_from_text;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
 use rand::{RngExt, SeedableRng};
 use rand_pcg::Pcg64Mcg;
-use std::path::Path;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
 /// Number of drawn scenes.
@@ -166,8 +165,7 @@ fn with_study(
     budget: Duration,
     runs: impl FnOnce(&mut Measurement<'_>),
 ) -> SceneCost {
-    let source = SceneSource::from_text("scene", Path::new(""), text);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene_from_text("scene", text).unwrap();
     let cache = Directory::none();
     let study = SceneStudy {
         name: "drawn".to_owned(),

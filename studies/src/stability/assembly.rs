@@ -21,14 +21,13 @@
 //! more energy than its spring stored if and only if Δt > 2/ω.
 
 use super::failure::{Failure, finite};
+use crate::scene_from_text;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::record::Record;
 use nalgebra::Vector3;
 use std::f64::consts::SQRT_2;
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// Overlap of every contact (m). All radii are 1 m.
 const OVERLAP: f64 = 1e-5;
@@ -96,9 +95,7 @@ impl Assembly {
             }
         }
     }
-}
 
-impl Assembly {
     /// Returns the minimum image of a displacement (m) in a periodic domain.
     fn nearest_image(&self, mut way: Vector3<f64>) -> Vector3<f64> {
         if let Some(domain) = self.scene.domain {
@@ -136,20 +133,23 @@ pub fn all() -> Result<Vec<Assembly>, SceneError> {
 fn head(dimension: u32, kappa: f64) -> String {
     let density = if dimension == 2 { std::f64::consts::FRAC_1_PI } else { 0.75 * std::f64::consts::FRAC_1_PI };
     // The friction coefficient is so high that no contact slips.
-    let friction =
-        if kappa > 0.0 { format!("tangential_stiffness = {kappa:?}\nfriction = 100.0\n") } else { String::new() };
+    let friction = match kappa > 0.0 {
+        true => format!("contacts.m.tangential_stiffness = {kappa:?}\ncontacts.m.friction = 100.0\n"),
+        false => String::new(),
+    };
     format!(
         "title = 'An assembly'\ndimension = {dimension}\nduration_cycles = {STEPS}\nmaterials.m.density = {density:?}\n\
-         contacts.m.between = ['m', 'm']\ncontacts.m.normal_stiffness = 1.0\n"
-    ) + &friction.lines().map(|line| format!("contacts.m.{line}\n")).collect::<String>()
+         contacts.m.between = ['m', 'm']\ncontacts.m.normal_stiffness = 1.0\n{friction}"
+    )
 }
 
-fn grain(text: &mut String, name: usize, place: [f64; 2]) {
-    let _ =
-        write!(text, "[grains.g{name}]\nmaterial = 'm'\nradius = 1.0\nposition = [{:?}, {:?}]\n", place[0], place[1]);
+/// Adds a disc of material `m` to the text of a scene file.
+pub(super) fn grain(text: &mut String, number: usize, radius: f64, [x, y]: [f64; 2]) {
+    let _ = write!(text, "[grains.g{number}]\nmaterial = 'm'\nradius = {radius:?}\nposition = [{x:?}, {y:?}]\n");
 }
 
-fn wall(text: &mut String, name: &str, point: [f64; 2], normal: [f64; 2]) {
+/// Adds a plane of material `m` to the text of a scene file.
+pub(super) fn wall(text: &mut String, name: &str, point: [f64; 2], normal: [f64; 2]) {
     let _ = write!(text, "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = {point:?}, normal = {normal:?} }}\n");
 }
 
@@ -160,8 +160,7 @@ fn finish(
     text: &str,
     judge: Judge,
 ) -> Result<Assembly, SceneError> {
-    let source = SceneSource::from_text(&format!("stability/{name}"), Path::new(""), text);
-    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file)?;
+    let mut scene = scene_from_text(&format!("stability/{name}"), text)?;
     scene.sampling = Sampling::Count(1);
     scene.snapshots = 20;
     let rest = scene.grains.iter().map(|grain| grain.position).collect();
@@ -198,7 +197,7 @@ fn perturb(scene: &mut Scene, turns: bool) {
 
 fn on_a_wall(kappa: f64) -> Result<Assembly, SceneError> {
     let mut text = format!("gravity = [0.0, {:?}]\n", -OVERLAP) + &head(2, kappa);
-    grain(&mut text, 1, [0.0, 1.0 - OVERLAP]);
+    grain(&mut text, 1, 1.0, [0.0, 1.0 - OVERLAP]);
     wall(&mut text, "floor", [0.0, 0.0], [0.0, 1.0]);
     let exact = if kappa > 0.0 { 2.0_f64.min(2.0 / (3.0 * kappa).sqrt()) } else { 2.0 };
     finish("disc on a wall", Some(kappa), exact, &text, Judge::Growth)
@@ -214,8 +213,8 @@ fn sphere_on_a_wall() -> Result<Assembly, SceneError> {
 
 fn pair() -> Result<Assembly, SceneError> {
     let mut text = head(2, 0.0);
-    grain(&mut text, 1, [0.0, 0.0]);
-    grain(&mut text, 2, [2.0 - OVERLAP, 0.0]);
+    grain(&mut text, 1, 1.0, [0.0, 0.0]);
+    grain(&mut text, 2, 1.0, [2.0 - OVERLAP, 0.0]);
     finish("free pair", None, SQRT_2, &text, Judge::Energy)
 }
 
@@ -227,7 +226,7 @@ fn chain() -> Result<Assembly, SceneError> {
     let mut text = format!("domain = {{ low = [0.0, -4.0], high = [{length:?}, 4.0], periodic = [true, false] }}\n")
         + &head(2, 0.0);
     for at in 0..COUNT {
-        grain(&mut text, at + 1, [(at as f64 + 0.5) * spacing, 0.0]);
+        grain(&mut text, at + 1, 1.0, [(at as f64 + 0.5) * spacing, 0.0]);
     }
     finish("long chain", None, 1.0, &text, Judge::Growth)
 }
@@ -240,7 +239,7 @@ fn lattice(kappa: f64) -> Result<Assembly, SceneError> {
         format!("domain = {{ low = [0.0, 0.0], high = [{length:?}, {length:?}], periodic = [true, true] }}\n")
             + &head(2, kappa);
     for at in 0..COUNT * COUNT {
-        grain(&mut text, at + 1, [((at % COUNT) as f64 + 0.5) * spacing, ((at / COUNT) as f64 + 0.5) * spacing]);
+        grain(&mut text, at + 1, 1.0, [((at % COUNT) as f64 + 0.5) * spacing, ((at / COUNT) as f64 + 0.5) * spacing]);
     }
     let exact = 2.0 / (4.0 + 4.0 * kappa).max(16.0 * kappa).sqrt();
     finish("square lattice of discs", Some(kappa), exact, &text, Judge::Growth)
@@ -248,8 +247,8 @@ fn lattice(kappa: f64) -> Result<Assembly, SceneError> {
 
 fn squash() -> Result<Assembly, SceneError> {
     let mut text = head(2, 0.0);
-    grain(&mut text, 1, [1.0 - OVERLAP, 0.0]);
-    grain(&mut text, 2, [3.0 - 2.0 * OVERLAP, 0.0]);
+    grain(&mut text, 1, 1.0, [1.0 - OVERLAP, 0.0]);
+    grain(&mut text, 2, 1.0, [3.0 - 2.0 * OVERLAP, 0.0]);
     wall(&mut text, "left", [0.0, 0.0], [1.0, 0.0]);
     wall(&mut text, "right", [4.0 - 3.0 * OVERLAP, 0.0], [-1.0, 0.0]);
     finish("two discs between walls", None, 2.0 / 3.0_f64.sqrt(), &text, Judge::Growth)
@@ -259,7 +258,7 @@ fn nine_discs(kappa: f64, exact: f64) -> Result<Assembly, SceneError> {
     let mut text = head(2, kappa);
     let place = |at: usize| (at as f64 - 1.0) * (2.0 - OVERLAP);
     for at in 0..9 {
-        grain(&mut text, at + 1, [place(at % 3), place(at / 3)]);
+        grain(&mut text, at + 1, 1.0, [place(at % 3), place(at / 3)]);
     }
     let reach = 3.0 - 2.0 * OVERLAP;
     wall(&mut text, "left", [-reach, 0.0], [1.0, 0.0]);

@@ -5,53 +5,35 @@ use crate::stability::failure::Failure;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Record;
 
-/// Elastic head-on impact of two discs.
-struct Impact {
-    radii: [f64; 2],
-    densities: [f64; 2],
-    length: f64,
-    speed: f64,
-    stiffness: f64,
-}
-
-impl Impact {
-    /// Returns the text of the scene. Its duration is three times the time of approach and contact.
-    fn text(&self) -> String {
-        let &Self { radii: [a, b], densities: [first, second], length, speed, stiffness } = self;
-        let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
-        let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
-        let gap = 0.02 * a.min(b) * length;
-        let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
-        // The moduli are so high that waves cross each grain in a hundredth of the time in which the smaller grain
-        // moves by its radius. Otherwise a grain could leave before the other grain is in equilibrium. Waves would
-        // remain in the other grain, and the velocities would differ from those of point masses.
-        let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
-        let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
-        format!(
-            "title = 'Head-on'\ndimension = 2\nduration = {duration:?}\n\
-             [materials.a]\ndensity = {first:?}\nyoung_modulus = {stiff_first:?}\npoisson_ratio = 0.3\n\
-             [materials.b]\ndensity = {second:?}\nyoung_modulus = {stiff_second:?}\npoisson_ratio = 0.3\n\
-             [contacts.aa]\nbetween = ['a', 'a']\nnormal_stiffness = {stiffness:?}\n\
-             [contacts.ab]\nbetween = ['a', 'b']\nnormal_stiffness = {stiffness:?}\n\
-             [contacts.bb]\nbetween = ['b', 'b']\nnormal_stiffness = {stiffness:?}\n\
-             [grains.a]\nmaterial = 'a'\nradius = {:?}\nposition = [0.0, 0.0]\nvelocity = [{speed:?}, 0.0]\n\
-             [grains.b]\nmaterial = 'b'\nradius = {:?}\nposition = [{:?}, 0.0]\n[output]\nevery = {duration:?}\n\
-             [probes]\nall = {{ system = true }}\n",
-            a * length,
-            b * length,
-            (a + b) * length + gap,
-        )
-    }
-}
-
-/// Returns the scene of an impact. The stiffness makes the largest overlap 1 % of the smaller radius.
-fn impact(radii: [f64; 2], densities: [f64; 2], length: f64) -> String {
+/// Returns the scene of an elastic head-on impact of two discs. The stiffness makes the largest overlap 1 % of the smaller
+/// radius. The duration is three times the time of approach and contact.
+fn impact([a, b]: [f64; 2], [first, second]: [f64; 2], length: f64) -> String {
     let speed = length;
     let mass = |radius: f64, density: f64| density * std::f64::consts::PI * (radius * length).powi(2);
-    let reduced = 1.0 / (1.0 / mass(radii[0], densities[0]) + 1.0 / mass(radii[1], densities[1]));
-    let overlap = 0.01 * radii[0].min(radii[1]) * length;
+    let reduced = 1.0 / (1.0 / mass(a, first) + 1.0 / mass(b, second));
+    let overlap = 0.01 * a.min(b) * length;
     let stiffness = reduced * (speed / overlap).powi(2);
-    Impact { radii, densities, length, speed, stiffness }.text()
+    let gap = 0.02 * a.min(b) * length;
+    let duration = 3.0 * (gap / speed + std::f64::consts::PI * (reduced / stiffness).sqrt());
+    // The moduli are so high that waves cross each grain in a hundredth of the time in which the smaller grain
+    // moves by its radius. Otherwise a grain could leave before the other grain is in equilibrium. Waves would
+    // remain in the other grain, and the velocities would differ from those of point masses.
+    let modulus = |radius: f64, density: f64| 1e4 * density * (speed * radius / a.min(b)).powi(2);
+    let (stiff_first, stiff_second) = (modulus(a, first), modulus(b, second));
+    format!(
+        "title = 'Head-on'\ndimension = 2\nduration = {duration:?}\n\
+         [materials.a]\ndensity = {first:?}\nyoung_modulus = {stiff_first:?}\npoisson_ratio = 0.3\n\
+         [materials.b]\ndensity = {second:?}\nyoung_modulus = {stiff_second:?}\npoisson_ratio = 0.3\n\
+         [contacts.aa]\nbetween = ['a', 'a']\nnormal_stiffness = {stiffness:?}\n\
+         [contacts.ab]\nbetween = ['a', 'b']\nnormal_stiffness = {stiffness:?}\n\
+         [contacts.bb]\nbetween = ['b', 'b']\nnormal_stiffness = {stiffness:?}\n\
+         [grains.a]\nmaterial = 'a'\nradius = {:?}\nposition = [0.0, 0.0]\nvelocity = [{speed:?}, 0.0]\n\
+         [grains.b]\nmaterial = 'b'\nradius = {:?}\nposition = [{:?}, 0.0]\n[output]\nevery = {duration:?}\n\
+         [probes]\nall = {{ system = true }}\n",
+        a * length,
+        b * length,
+        (a + b) * length + gap,
+    )
 }
 
 pub(super) fn cases() -> Vec<HardCase> {

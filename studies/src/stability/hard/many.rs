@@ -1,15 +1,16 @@
-//! A thousand grains: long rest, dense shear, and a restart at half of a run.
+//! Many grains or many steps: long rest, dense shear, and a restart at half of a run.
 
 use super::{HardCase, case, end, kinetic, near};
+use crate::stability::assembly::{grain, wall};
 use crate::stability::failure::Failure;
 use grainbench_scene::scene::Scene;
-use grainbench_solver::record::Record;
+use grainbench_solver::record::{GrainState, Record};
 use std::f64::consts::FRAC_1_PI;
 use std::fmt::Write as _;
 
-/// Number of rows of the heap, which has 990 discs.
+/// Number of rows of the large heap, which has 990 discs.
 const ROWS: usize = 44;
-/// Duration of the run, in units of a tenth of the critical time step.
+/// Duration of a run of a heap, in units of a tenth of the critical time step.
 const STEPS: f64 = 1e6;
 /// Number of discs in each row of the sheared layer.
 const ACROSS: usize = 40;
@@ -21,14 +22,21 @@ const RADIUS: f64 = 0.94;
 pub(super) fn cases() -> Vec<HardCase> {
     let shear = shear();
     vec![
+        case(
+            "heap-at-rest-for-1e6-steps",
+            "six discs in a heap come to rest and stay at rest: after 10⁶ steps of the springs each disc is within R/100 \
+             of its place, and none moves",
+            &heap("A heap", 3, 1.0),
+            |scene, record| at_rest(scene, record, 0.01),
+        ),
         HardCase {
             asked: &["dem"],
             ..case(
                 "heap-of-990-for-1e6-steps",
                 "a heap of 44 rows of discs comes to rest and stays at rest: after 10⁶ steps of the springs each disc \
                  is within R/10 of its place, and none moves",
-                &heap(),
-                at_rest,
+                &heap("A heap of many", ROWS, 10.0),
+                |scene, record| at_rest(scene, record, 0.1),
             )
         },
         case(
@@ -60,38 +68,41 @@ fn head(title: &str, duration: f64, gravity: f64, radius: f64) -> String {
     )
 }
 
-fn grain(text: &mut String, number: usize, radius: f64, [x, y]: [f64; 2]) {
-    let _ = write!(text, "[grains.g{number}]\nmaterial = 'm'\nradius = {radius:?}\nposition = [{x:?}, {y:?}]\n");
-}
-
-fn heap() -> String {
-    let mut text = head("A heap of many", STEPS * 2e-4, -10.0, 1.0);
+/// Returns the scene of a heap between two vertical walls: each row has one disc less than the row below. Samples are `every`
+/// seconds apart.
+fn heap(title: &str, rows: usize, every: f64) -> String {
+    let mut text = head(title, STEPS * 2e-4, -10.0, 1.0);
     let mut number = 0;
-    for row in 0..ROWS {
-        for at in 0..ROWS - row {
-            let x = 2.0 * at as f64 + row as f64 - (ROWS - 1) as f64;
+    for row in 0..rows {
+        for at in 0..rows - row {
+            let x = 2.0 * at as f64 + row as f64 - (rows - 1) as f64;
             grain(&mut text, number, 1.0, [x, 1.0 + 3.0_f64.sqrt() * row as f64]);
             number += 1;
         }
     }
-    let edge = ROWS as f64;
-    for (name, point, normal) in
-        [("floor", [0.0, 0.0], [0.0, 1.0]), ("left", [-edge, 0.0], [1.0, 0.0]), ("right", [edge, 0.0], [-1.0, 0.0])]
-    {
-        let _ = write!(text, "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = {point:?}, normal = {normal:?} }}\n");
-    }
-    text + "[output]\nevery = 10.0\n[probes]\nall = { system = true }\n"
+    let edge = rows as f64;
+    wall(&mut text, "floor", [0.0, 0.0], [0.0, 1.0]);
+    wall(&mut text, "left", [-edge, 0.0], [1.0, 0.0]);
+    wall(&mut text, "right", [edge, 0.0], [-1.0, 0.0]);
+    text + &format!("[output]\nevery = {every:?}\n[probes]\nall = {{ system = true }}\n")
 }
 
-fn at_rest(scene: &Scene, record: &Record) -> Result<(), Failure> {
-    let grains = end(record);
-    if grains.len() != scene.grains.len() {
-        return Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())));
-    }
+/// Checks that each disc is within `allowed` (m) of its place, and at rest.
+fn at_rest(scene: &Scene, record: &Record, allowed: f64) -> Result<(), Failure> {
+    let grains = all_at_the_end(scene, record)?;
     for (grain, start) in grains.iter().zip(&scene.grains) {
-        near(&format!("displacement of grain {}", grain.id), (grain.position - start.position).norm(), 0.0, 0.1)?;
+        near(&format!("displacement of grain {}", grain.id), (grain.position - start.position).norm(), 0.0, allowed)?;
     }
     near("kinetic energy", kinetic(grains, scene), 0.0, 1e-6)
+}
+
+/// Returns the grains at the end of a run.
+fn all_at_the_end<'a>(scene: &Scene, record: &'a Record) -> Result<&'a [GrainState], Failure> {
+    let grains = end(record);
+    if grains.len() == scene.grains.len() {
+        return Ok(grains);
+    }
+    Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())))
 }
 
 /// Returns the height of the sheared layer (m).
@@ -111,20 +122,14 @@ fn shear() -> String {
         }
     }
     for (name, y, up, way) in [("bottom", 0.0, 1.0, -1.0), ("top", height(), -1.0, 1.0)] {
-        let _ = write!(
-            text,
-            "[walls.{name}]\nmaterial = 'm'\nplane = {{ point = [0.0, {y:?}], normal = [0.0, {up:?}] }}\n\
-             motion = [{{ velocity = [{way:?}, 0.0] }}]\n"
-        );
+        wall(&mut text, name, [0.0, y], [0.0, up]);
+        let _ = writeln!(text, "motion = [{{ velocity = [{way:?}, 0.0] }}]");
     }
     text + "[output]\nevery = 0.5\n[probes]\nall = { system = true }\n"
 }
 
 fn sheared(scene: &Scene, record: &Record) -> Result<(), Failure> {
-    let grains = end(record);
-    if grains.len() != scene.grains.len() {
-        return Err(Failure::Wrong(format!("{} grains are left of {}", grains.len(), scene.grains.len())));
-    }
+    let grains = all_at_the_end(scene, record)?;
     for grain in grains {
         let within = (0.9 * RADIUS..=height() - 0.9 * RADIUS).contains(&grain.position.y);
         if !within {

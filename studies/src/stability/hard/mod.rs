@@ -2,24 +2,22 @@
 
 mod contacts;
 mod extremes;
-mod long;
 mod many;
 
 use super::PATIENCE as LIMIT;
 use super::failure::{Failure, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
+use crate::scene_from_text;
+use grainbench_harness::conformance::HalfwayCheckpoint;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::{HardCaseResult, Hardness};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
+use grainbench_scene::scene::{Grain, Scene};
 use grainbench_solver::Solver;
-use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
 use grainbench_solver::failure::RunError;
-use grainbench_solver::observer::{Observer, RunOptions, RunOutline};
+use grainbench_solver::observer::RunOptions;
 use grainbench_solver::record::{GrainState, Record};
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
 
 /// Function that checks the condition at the end of a run.
 type Check = fn(&Scene, &Record) -> Result<(), Failure>;
@@ -58,7 +56,7 @@ const HOPELESS: f64 = 600.0;
 /// Returns all hard cases.
 #[must_use]
 pub fn all() -> Vec<HardCase> {
-    [extremes::cases(), contacts::cases(), long::cases(), many::cases()].into_iter().flatten().collect()
+    [extremes::cases(), contacts::cases(), many::cases()].into_iter().flatten().collect()
 }
 
 /// Returns a case from the text of its scene.
@@ -75,8 +73,7 @@ fn changed(
     check: Check,
 ) -> HardCase {
     let name = name.into();
-    let source = SceneSource::from_text(&format!("hard/{name}"), Path::new(""), text);
-    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file);
+    let mut scene = scene_from_text(&format!("hard/{name}"), text);
     if let Ok(scene) = &mut scene {
         change(scene);
     }
@@ -161,49 +158,23 @@ fn resolution(solver: &str, part: f64) -> Resolution {
 
 fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
     let resolution = resolution(&solver.name(), part);
-    let mut halfway = HalfwayCheckpoint::default();
+    let mut halfway = HalfwayCheckpoint::new(RunOptions::unstable());
     let run = if case.goes_on {
         solver.run(scene, &resolution, &mut halfway)
     } else {
         solver.run(scene, &resolution, &mut RunOptions::unstable())
     };
-    match run {
-        Ok(record) => {
-            if case.goes_on {
-                continues(scene, solver, &resolution, (&record, halfway))?;
-            }
-            record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
-            (case.check)(scene, &record).map_err(Stop::Failed)
-        }
+    let record = run.map_err(|error| match (of_error(&error), error) {
+        (Some(failure), _) => Stop::Failed(failure),
         // A solver that rejects the time step and names a stable one has failed with a typed error.
-        Err(RunError::Resolution { reason, .. }) => Err(Stop::Failed(Failure::Broken(reason))),
-        Err(error) => Err(match of_error(&error) {
-            Some(failure) => Stop::Failed(failure),
-            None => Stop::Cannot(error),
-        }),
+        (None, RunError::Resolution { reason, .. }) => Stop::Failed(Failure::Broken(reason)),
+        (None, error) => Stop::Cannot(error),
+    })?;
+    if case.goes_on {
+        continues(scene, solver, &resolution, (&record, halfway))?;
     }
-}
-
-/// Observer that stores the checkpoint at half of the steps.
-#[derive(Default)]
-struct HalfwayCheckpoint {
-    steps: u64,
-    checkpoint: Option<Checkpoint>,
-}
-
-impl Observer for HalfwayCheckpoint {
-    fn begin(&mut self, ahead: RunOutline) {
-        self.steps = ahead.steps;
-    }
-
-    fn options(&self) -> RunOptions {
-        RunOptions { checkpoint_interval: Some(self.steps.div_ceil(2)), ..RunOptions::unstable() }
-    }
-
-    fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
-        self.checkpoint = Some(checkpoint);
-        Ok(())
-    }
+    record.snapshots.iter().try_for_each(finite).map_err(Stop::Failed)?;
+    (case.check)(scene, &record).map_err(Stop::Failed)
 }
 
 /// Checks that a run that is continued from half of its steps ends in the same bits as the uninterrupted run.
@@ -213,10 +184,7 @@ fn continues(
     resolution: &Resolution,
     (whole, halfway): (&Record, HalfwayCheckpoint),
 ) -> Result<(), Stop> {
-    let Some(checkpoint) = halfway.checkpoint else {
-        let reason = "it writes no checkpoints".to_owned();
-        return Err(Stop::Cannot(RunError::Unsupported { solver: solver.name(), reason }));
-    };
+    let checkpoint = halfway.written_by(solver).map_err(Stop::Cannot)?;
     let continued =
         solver.restart(scene, resolution, &checkpoint, &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
@@ -235,18 +203,19 @@ fn end(record: &Record) -> &[GrainState] {
 
 /// Returns the kinetic energy of grains, including rotation (J).
 fn kinetic(grains: &[GrainState], scene: &Scene) -> f64 {
-    let grain_energy = |(grain, start): (&GrainState, &grainbench_scene::scene::Grain)| {
-        0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * start.inertia * grain.spin.norm_squared()
-    };
-    grains.iter().zip(&scene.grains).map(grain_energy).sum()
+    let pairs = grains.iter().zip(&scene.grains);
+    pairs
+        .map(|(grain, start)| energy(&Grain { mass: grain.mass, velocity: grain.velocity, spin: grain.spin, ..*start }))
+        .sum()
 }
 
 /// Returns the kinetic energy at the start, including rotation (J).
 fn kinetic_at_start(scene: &Scene) -> f64 {
-    let grain_energy = |grain: &grainbench_scene::scene::Grain| {
-        0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
-    };
-    scene.grains.iter().map(grain_energy).sum()
+    scene.grains.iter().map(energy).sum()
+}
+
+fn energy(grain: &Grain) -> f64 {
+    0.5 * grain.mass * grain.velocity.norm_squared() + 0.5 * grain.inertia * grain.spin.norm_squared()
 }
 
 /// Returns an error if a value differs from the expected value by more than `allowed`.
