@@ -2,26 +2,33 @@
 
 use grainbench_solver::failure::{Cause, RunError};
 use grainbench_solver::record::Snapshot;
-use std::fmt;
 
 /// Failure because of which a time step counts as unstable.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
 pub enum Failure {
     /// A position, velocity or spin is infinite or NaN.
+    #[error("not finite")]
     NotFinite,
     /// Energy or perturbation exceeds its limit by this factor.
+    #[error("growth by a factor {0:.3e}")]
     Growth(f64),
     /// A grain has passed through a wall or another grain.
+    #[error("tunnelling: {0}")]
     Tunnelling(String),
     /// Grains do not move or separate although they must.
+    #[error("frozen: {0}")]
     Freeze(String),
     /// A cell has collapsed to zero volume.
+    #[error("a cell collapsed")]
     CellCollapsed,
     /// The overlap of two grains, in radii, exceeds its limit.
+    #[error("overlap of {0:.3} R")]
     Overlap(f64),
     /// Another condition is violated.
+    #[error("{0}")]
     Wrong(String),
     /// The solver stopped with this message.
+    #[error("{0}")]
     Broken(String),
 }
 
@@ -30,21 +37,6 @@ impl Failure {
     #[must_use]
     pub const fn is_typed(&self) -> bool {
         matches!(self, Self::Broken(_) | Self::CellCollapsed)
-    }
-}
-
-impl fmt::Display for Failure {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite => write!(formatter, "not finite"),
-            Self::Growth(factor) => write!(formatter, "growth by a factor {factor:.3e}"),
-            Self::Tunnelling(what) => write!(formatter, "tunnelling: {what}"),
-            Self::Freeze(what) => write!(formatter, "frozen: {what}"),
-            Self::CellCollapsed => write!(formatter, "a cell collapsed"),
-            Self::Overlap(ratio) => write!(formatter, "overlap of {ratio:.3} R"),
-            Self::Wrong(what) => formatter.write_str(what),
-            Self::Broken(why) => formatter.write_str(why),
-        }
     }
 }
 
