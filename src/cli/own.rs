@@ -185,7 +185,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     follower.ledger = ledger;
     // A note tells why a solver has no level. Its stable step would take too long or does not exist.
     let names = measured.measured_solvers();
-    follower.limits = limits((&study, &names), &solvers, &mut |part| measured.remaining(part), &mut follower.bar)?;
+    follower.limits = limits((&study, &names), &mut |part| measured.remaining(part), &mut follower.bar)?;
     measured.repetitions(&mut follower).map_err(Fault::writing)?;
     let mut result = measured.result();
     result.notes.extend(skipped);
@@ -230,28 +230,19 @@ pub(crate) fn stopped() -> Fault {
 /// Finds the largest stable step of each solver.
 fn limits(
     (study, names): (&SceneStudy<'_>, &[String]),
-    solvers: &NamedSolvers,
     remaining: &mut dyn FnMut(f64) -> f64,
     bar: &mut Bar,
 ) -> Result<Vec<Limit>, Fault> {
-    use grainbench::harness::solvers::Solvers as _;
     let mut found = Vec::new();
     for (at, solver) in names.iter().enumerate() {
         bar.now(&format!("{solver}: largest stable step"), study.budget.as_secs_f64() - remaining(1.0));
         let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
         let deadline = Instant::now() + Duration::from_secs_f64(share);
-        let program = study.program.clone() + &solvers.edition(solver);
-        let limit = limit::of_scene(
-            (&study.name, study.scene),
-            (solvers, solver),
-            (deadline, study.stop),
-            (&program, study.cache),
-        );
-        let limit = limit.map_err(Fault::writing)?;
+        let limit = limit::of_scene(study, solver, deadline).map_err(Fault::writing)?;
         if (study.stop)() {
             break;
         }
-        found.push(limit.0);
+        found.push(limit);
     }
     Ok(found)
 }
@@ -269,7 +260,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let mut bar = Bar::new(budget);
     // The bisection may use the whole budget.
     let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
-    let limits = limits((&study, &study.names), &solvers, &mut remaining, &mut bar)?;
+    let limits = limits((&study, &study.names), &mut remaining, &mut bar)?;
     drop(bar);
     if stop() {
         return Err(stopped());

@@ -6,7 +6,7 @@ use grainbench_harness::verdict::Severity;
 use serde::{Deserialize, Serialize};
 
 /// Largest stable time step of an assembly with one solver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Limit {
     /// Assembly, such as `square lattice of discs`.
     pub scene: String,

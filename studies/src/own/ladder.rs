@@ -30,8 +30,6 @@ enum Refined {
 /// Resolution levels of a solver.
 #[derive(Clone, Debug, PartialEq)]
 pub struct Ladder {
-    /// Name of the solver.
-    pub solver: String,
     refined: Refined,
     /// Finenesses to which an external solver is limited; empty if there is no limit.
     pub listed: Vec<f64>,
@@ -44,7 +42,7 @@ const ELASTIC: [&str; 3] = [".elastic_energy", ".elastic", ".springs"];
 impl Ladder {
     /// Returns true if the method does not have the quantity of a column: the contacts of a rigid-body engine have no springs.
     pub(super) fn lacks(&self, column: &str) -> bool {
-        !self.has_cells() && !self.has_steps() && ELASTIC.iter().any(|end| column.ends_with(end))
+        self.is_rigid() && ELASTIC.iter().any(|end| column.ends_with(end))
     }
 
     /// Returns the levels of a solver for a scene. A scene without contacts has no critical time step, so that its levels
@@ -64,7 +62,7 @@ impl Ladder {
             (None, Some(Method::Grid)) => (Refined::Cells(CELLS), Vec::new()),
             (None, _) => (time_step(), Vec::new()),
         };
-        Self { solver: solver.to_owned(), refined, listed, dimensions: scene.dimension.count() }
+        Self { refined, listed, dimensions: scene.dimension.count() }
     }
 
     /// Returns the resolution of a fineness; 1 is the coarsest level.
@@ -90,7 +88,7 @@ impl Ladder {
     /// Returns the order of the method for smooth motion.
     #[must_use]
     pub fn order(&self) -> f64 {
-        if self.refined == Refined::Substeps { 1.0 } else { 2.0 }
+        if self.is_rigid() { 1.0 } else { 2.0 }
     }
 
     /// Returns true if the levels have cells.
@@ -99,17 +97,16 @@ impl Ladder {
         matches!(self.refined, Refined::Cells(_))
     }
 
-    /// Returns true if the levels have time steps and the solver has springs.
-    #[must_use]
-    const fn has_steps(&self) -> bool {
-        matches!(self.refined, Refined::Fraction(_) | Refined::Step(_))
+    /// Returns true if the levels have substeps of a rigid-body engine.
+    pub(super) const fn is_rigid(&self) -> bool {
+        matches!(self.refined, Refined::Substeps)
     }
 
     /// Returns the size of a level: of a time step or a cell, relative to the coarsest level. The number of steps of a run
     /// gives it exactly, because the step is shortened to a whole number of steps.
     #[must_use]
     pub fn size(&self, fineness: f64, steps: u64) -> f64 {
-        if self.has_steps() && steps > 0 { 1.0 / steps as f64 } else { 1.0 / fineness }
+        if !self.has_cells() && !self.is_rigid() && steps > 0 { 1.0 / steps as f64 } else { 1.0 / fineness }
     }
 }
 

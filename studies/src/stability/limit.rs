@@ -36,18 +36,14 @@ pub fn of_assembly(assembly: &Assembly, (solvers, solver): (&dyn Solvers, &str))
         at: assembly.kappa,
         solver: solver.to_owned(),
         unit: "√(m/k)".to_owned(),
-        found: None,
-        unstable: None,
         exact: Some(assembly.exact),
-        error: None,
         default: Some(DEFAULT),
-        margin: None,
-        detail: String::new(),
+        ..Limit::default()
     };
     match solvers.find_within(solver, PATIENCE) {
         None => "there is no such solver".clone_into(&mut limit.detail),
         Some(solver) => {
-            fill(&mut limit, RANGE, 1, |step| {
+            fill(&mut limit, RANGE, (PRECISION, 1), |step| {
                 let record = solver
                     .run(&assembly.scene, &Resolution::TimeStep(step), &mut RunOptions::unstable())
                     .map_err(stop)?;
@@ -69,16 +65,13 @@ pub fn of_bar(bar: &Scene, (solvers, setting): (&dyn Solvers, &str), cells: f64)
         at: Some(cells),
         solver: setting.to_owned(),
         unit: "h/c".to_owned(),
-        found: None,
-        unstable: None,
-        exact: None,
-        error: None,
         default: Some(Resolution::COURANT),
-        margin: None,
-        detail: String::new(),
+        ..Limit::default()
     };
     match solvers.find(setting) {
-        Some(solver) => fill(&mut limit, [0.05, 0.8], 2, |courant| vibrate(&*solver, bar, cells, courant)),
+        Some(solver) => {
+            fill(&mut limit, [0.05, 0.8], (PRECISION, 2), |courant| vibrate(&*solver, bar, cells, courant));
+        }
         None => "there is no such solver".clone_into(&mut limit.detail),
     }
     limit
@@ -101,8 +94,8 @@ fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Resu
 }
 
 /// Reason why a time step does not pass.
-enum Stop {
-    /// The solver cannot run the scene at all.
+pub(crate) enum Stop {
+    /// No conclusion about stability, such as that the solver cannot run the scene at all.
     Cannot(String),
     /// The run is unstable at this time step.
     Unstable(Failure),
@@ -112,24 +105,36 @@ fn stop(error: RunError) -> Stop {
     of_error(&error).map_or_else(|| Stop::Cannot(error.to_string()), Stop::Unstable)
 }
 
-/// Finds a limit by bisection and enters it in the result.
-fn fill(limit: &mut Limit, range: [f64; 2], doublings: u32, test: impl FnMut(f64) -> Result<(), Stop>) {
-    match largest(range, PRECISION, doublings, test) {
-        Err(Stop::Cannot(why)) => limit.detail = why,
-        Err(Stop::Unstable(how)) => limit.detail = format!("unstable already at {:.3}: {how}", range[0]),
+/// Finds a limit by bisection, and enters it in the result. Returns false if a run without a conclusion ended the bisection;
+/// a limit that was found is then a lower bound.
+pub(crate) fn fill(
+    limit: &mut Limit,
+    range: [f64; 2],
+    (precision, doublings): (f64, u32),
+    test: impl FnMut(f64) -> Result<(), Stop>,
+) -> bool {
+    let end = match largest(range, precision, doublings, test) {
+        Err(Stop::Unstable(how)) => {
+            limit.detail = format!("unstable already at {:.3}: {how}", range[0]);
+            return true;
+        }
+        Err(cannot) => Some((range[0], cannot)),
         Ok(bracket) => {
             let found = bracket.stable;
             limit.found = Some(found);
             limit.margin = limit.default.map(|default| found / default);
             limit.error = limit.exact.map(|exact| (found - exact) / exact);
-            limit.detail = match bracket.unstable {
-                None => "stable at each tried step".to_owned(),
-                Some((step, Stop::Unstable(how))) => {
-                    limit.unstable = Some(step);
-                    how.to_string()
-                }
-                Some((_, Stop::Cannot(why))) => why,
-            };
+            bracket.unstable
         }
-    }
+    };
+    let (detail, is_whole) = match end {
+        None => ("stable at each tried step".to_owned(), true),
+        Some((step, Stop::Unstable(how))) => {
+            limit.unstable = Some(step);
+            (how.to_string(), true)
+        }
+        Some((_, Stop::Cannot(why))) => (why, false),
+    };
+    limit.detail = detail;
+    is_whole
 }
