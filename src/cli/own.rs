@@ -19,8 +19,8 @@ use grainbench::scene::scene::{Duration as SceneDuration, Scene};
 use grainbench::solver::recorder::Recorder;
 use grainbench::store::artifact::Directory;
 use grainbench::store::{WriteError, key};
-use grainbench::studies::own::cost::{MATTERS, Measurement, PARTS, SceneStudy, StudyFollower};
-use grainbench::studies::own::effects::Importance;
+use grainbench::studies::own::cost::{Measurement, PARTS, SceneStudy, StudyFollower};
+use grainbench::studies::own::effects;
 use grainbench::studies::own::ladder::DEFAULT;
 use grainbench::studies::own::limit;
 use std::collections::BTreeMap;
@@ -180,8 +180,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let mut measured = Measurement::new(&study);
     measured.levels(&mut follower).map_err(Fault::writing)?;
     measured.variations(&mut follower).map_err(Fault::writing)?;
-    let importance = Importance { study: &study, matters: MATTERS };
-    let (ledger, skipped) = importance.measure(&measured, &mut follower).map_err(Fault::writing)?;
+    let (ledger, skipped) = effects::measure(&study, &measured, &mut follower).map_err(Fault::writing)?;
     follower.ledger = ledger;
     // A note tells why a solver has no level. Its stable step would take too long or does not exist.
     let names = measured.measured_solvers();

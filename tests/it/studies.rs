@@ -78,7 +78,7 @@ const NOT_FELT: &[(&str, Effect)] = &[
 fn an_effect_that_is_needed_is_caught_when_it_is_off() {
     let wrong = |case: &&'static Case| {
         let mut wrong = Vec::new();
-        let mut ledger = Ledger::new(case, Arc::new(Registry));
+        let ledger = Ledger::new(case, Arc::new(Registry));
         let mut effects: Vec<Effect> =
             ledger.pieces().iter().filter(|piece| piece.key.is_some()).map(|piece| piece.effect).collect();
         effects.sort_unstable();

@@ -11,7 +11,6 @@ use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::effects::Entry;
 use grainbench::store::log::State;
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
-use std::sync::{Mutex, PoisonError};
 
 /// Expected duration of a test of an effect (s).
 const SECONDS: f64 = 0.5;
@@ -19,7 +18,7 @@ const SECONDS: f64 = 0.5;
 /// Effects study of cases.
 pub(crate) struct EffectStudy {
     /// Study of each case. Its tasks share runs.
-    ledgers: Vec<Mutex<Ledger>>,
+    ledgers: Vec<Ledger>,
     /// Index of the study, and the effect, of each task.
     pieces: Vec<(usize, SceneEffect)>,
     arguments: Arguments,
@@ -29,7 +28,7 @@ impl EffectStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
         let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
         for (number, (ledger, of_case)) in effects::ledgers(&arguments.cases)?.into_iter().enumerate() {
-            ledgers.push(Mutex::new(ledger));
+            ledgers.push(ledger);
             pieces.extend(of_case.into_iter().map(|piece| (number, piece)));
         }
         Ok(Self { ledgers, pieces, arguments: arguments.clone() })
@@ -43,7 +42,7 @@ impl Tasks for EffectStudy {
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         let task = |(number, piece): &(usize, SceneEffect)| {
-            let case = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner).case();
+            let case = self.ledgers[*number].case();
             let (program, case) = (program.to_owned() + &own::edition(case), case.name);
             Task {
                 scene: format!("{case}/{}", piece.variant),
@@ -63,8 +62,7 @@ impl TaskList for EffectStudy {
     fn perform(&self, place: usize, sink: &ResultSink<'_, Option<Entry>>) -> (State, Option<Entry>) {
         let (number, piece) = &self.pieces[place];
         sink.now(&format!("{} · {}", piece.variant, piece.effect.word()));
-        let mut ledger = self.ledgers[*number].lock().unwrap_or_else(PoisonError::into_inner);
-        (State::Done, ledger.entry(piece))
+        (State::Done, self.ledgers[*number].entry(piece))
     }
 }
 

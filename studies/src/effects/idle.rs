@@ -1,6 +1,7 @@
 //! Test of effects that are off. Each effect is turned on with a neutral value. The final positions, velocities and
 //! forces must not change by a single bit, except for the sign of zero. The additional cost is measured.
 
+use super::{ratio_of_counts, ratio_of_times};
 use grainbench_scene::effect::Effect;
 use grainbench_scene::scene::{self, Scene};
 use grainbench_solver::Solver;
@@ -17,6 +18,8 @@ const PARTICLE_STEPS: u64 = 4_000_000;
 const FEWEST: usize = 3;
 /// Maximum number of pairs of runs with and without the effect.
 const MOST: usize = 15;
+/// Time limit for further pairs of runs.
+const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Result of a trial of an effect with its neutral value.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -31,20 +34,11 @@ pub struct NeutralTrial {
     pub time: Option<f64>,
 }
 
-/// Shortest run whose time is compared (s); the ratio of shorter runs is noise.
-const SHORTEST: f64 = 0.1;
-
-/// Returns the ratio of the times of two runs, or `None` if one of them is too short to time.
-pub(super) fn ratio_of_times(with: &Record, without: &Record) -> Option<f64> {
-    let [with, without] = [with, without].map(|record| record.cost.wall_seconds);
-    (with >= SHORTEST && without >= SHORTEST).then(|| with / without)
-}
-
 /// Compares a scene with and without an effect at its neutral value, in alternating runs. The scene is shortened to a
 /// maximum number of steps.
 ///
-/// After three pairs, further pairs are run until the time limit `patience`, in total at most 15 pairs. Returns `None` if the
-/// effect has no neutral value.
+/// After three pairs, further pairs are run until a time limit, in total at most 15 pairs. Returns `None` if the effect has no
+/// neutral value.
 ///
 /// # Errors
 /// When the solver cannot run the scene.
@@ -53,7 +47,6 @@ pub fn try_idly(
     scene: &Scene,
     resolution: &Resolution,
     effect: Effect,
-    patience: Duration,
 ) -> Result<Option<NeutralTrial>, RunError> {
     let mut plain = scene.clone();
     if let Ok((time_step, steps)) = resolution.steps(scene) {
@@ -74,23 +67,21 @@ pub fn try_idly(
         Ok((time_step, _)) => Resolution::TimeStep(time_step),
         Err(_) => *resolution,
     };
+    let run = |scene: &Scene| solver.run(scene, &resolution, &mut ());
     let mut ratios: Vec<Option<f64>> = Vec::new();
-    let mut records = [None, None];
     let start = Instant::now();
-    while ratios.len() < FEWEST || (ratios.len() < MOST && start.elapsed() < patience) {
-        for (at, scene) in [&plain, &idle].into_iter().enumerate() {
-            records[at] = Some(solver.run(scene, &resolution, &mut ())?);
+    let (without, with) = loop {
+        let (without, with) = (run(&plain)?, run(&idle)?);
+        ratios.push(ratio_of_times(&with, &without));
+        if ratios.len() >= FEWEST && (ratios.len() >= MOST || start.elapsed() >= PATIENCE) {
+            break (without, with);
         }
-        let [Some(without), Some(with)] = &records else { return Ok(None) };
-        ratios.push(ratio_of_times(with, without));
-    }
+    };
     let mut timed: Vec<f64> = ratios.iter().copied().flatten().collect();
     timed.sort_by(f64::total_cmp);
-    let [Some(without), Some(with)] = records else { return Ok(None) };
-    let work = |record: &Record| record.cost.work() as f64;
     Ok(Some(NeutralTrial {
         same: same(&without, &with),
-        counts: work(&with) / work(&without).max(1.0),
+        counts: ratio_of_counts(&with, &without),
         time: timed.get(timed.len() / 2).copied().filter(|_| timed.len() == ratios.len()),
     }))
 }

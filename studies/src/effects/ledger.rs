@@ -1,8 +1,10 @@
 //! Effects study of a case: the influence of each physical effect on its claims.
 
-use super::idle::{NeutralTrial, ratio_of_times, try_idly};
+use super::idle::{NeutralTrial, try_idly};
+use super::{conclude, untested};
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
+use grainbench_harness::control::Control;
 use grainbench_harness::run::{ExpectedOutcome, FinishedRun, Run, Set};
 use grainbench_harness::runner::Runner;
 use grainbench_harness::solvers::Solvers;
@@ -11,13 +13,7 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Duration::Seconds;
 use grainbench_solver::failure::RunError;
-use grainbench_solver::record::Record;
-use std::collections::BTreeMap;
 use std::sync::Arc;
-use std::time::Duration;
-
-/// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.
-const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Maximum number of steps of a grid method when an absent effect is tested.
 const STEPS_OF_A_GRID: u64 = 200;
@@ -39,8 +35,6 @@ pub struct Ledger {
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
-    /// Runs with one effect switched off, by effect and run.
-    without: BTreeMap<(Effect, String), Result<FinishedRun, RunError>>,
 }
 
 impl Ledger {
@@ -54,7 +48,7 @@ impl Ledger {
             let is_short = |run: &Run| run.set < Set::Long && run.reading.is_none();
             claim.standing() == ExpectedOutcome::Passes && claim.runs.iter().all(is_short) && runner.is_available(claim)
         });
-        Self { case, solvers, runner, claims, without: BTreeMap::new() }
+        Self { case, solvers, runner, claims }
     }
 
     /// Returns the case.
@@ -82,7 +76,8 @@ impl Ledger {
     }
 
     /// Returns the entry of an effect, or `None` for an absent effect without a neutral value.
-    pub fn entry(&mut self, piece: &SceneEffect) -> Option<Entry> {
+    #[must_use]
+    pub fn entry(&self, piece: &SceneEffect) -> Option<Entry> {
         if piece.key.is_some() { Some(self.switched_off(piece)) } else { self.idle(piece) }
     }
 
@@ -91,7 +86,7 @@ impl Ledger {
     /// If there is none, returns a claim that has no value without the effect, such as the pressure under an unloaded
     /// wall.
     #[must_use]
-    pub fn catches(&mut self, effect: Effect) -> Option<String> {
+    pub fn catches(&self, effect: Effect) -> Option<String> {
         let mut claims = self.claims.clone();
         claims.retain(|claim| self.calls_for(claim, effect));
         // Claims of the quick tiers come first, so that slow claims run only if needed.
@@ -115,52 +110,27 @@ impl Ledger {
             .any(|run| knows(run, effect) && self.runner.scene(run).is_ok_and(|scene| effect.is_on(&scene)))
     }
 
-    fn blank(&self, piece: &SceneEffect) -> Entry {
-        Entry {
-            case: self.case.name.to_owned(),
-            variant: piece.variant.to_owned(),
-            effect: piece.effect.word().to_owned(),
-            on: piece.key.is_some(),
-            key: piece.key.clone().unwrap_or_default(),
-            worth: EffectResult::Untold,
-            shifts: Vec::new(),
-            counts: None,
-            time: None,
-            tried: Vec::new(),
-        }
+    fn untested(&self, piece: &SceneEffect) -> Entry {
+        untested(self.case.name, piece.variant, piece.effect, piece.key.clone())
     }
 
     /// Evaluates each claim of the variant without the effect.
-    fn switched_off(&mut self, piece: &SceneEffect) -> Entry {
-        let mut entry = self.blank(piece);
-        let claims: Vec<Claim> = self
-            .claims
-            .iter()
-            .filter(|claim| claim.runs[0].variant == piece.variant && self.calls_for(claim, piece.effect))
-            .cloned()
-            .collect();
-        for claim in &claims {
-            entry.shifts.push(self.shift(claim, piece.effect));
-        }
-        let red = entry.shifts.iter().any(|shift| shift.red);
-        entry.worth = match (red, entry.shifts.is_empty()) {
-            (true, _) => EffectResult::Needed,
-            (false, false) => EffectResult::NotWorthSimulating,
-            (false, true) => EffectResult::Untold,
-        };
-        if let Some(run) = claims.iter().flat_map(|claim| &claim.runs).find(|run| self.is_tested(run)) {
-            let with = self.runner.run(run);
-            if let (Ok(with), Ok(without)) = (with, self.run_without(run, piece.effect)) {
-                let work = |record: &Record| record.cost.work() as f64;
-                entry.counts = Some(work(&with.record) / work(&without.record).max(1.0));
-                entry.time = ratio_of_times(&with.record, &without.record);
-            }
-        }
+    fn switched_off(&self, piece: &SceneEffect) -> Entry {
+        let mut entry = self.untested(piece);
+        let mut claims = self.claims.clone();
+        claims.retain(|claim| claim.runs[0].variant == piece.variant && self.calls_for(claim, piece.effect));
+        entry.shifts = claims.iter().map(|claim| self.shift(claim, piece.effect)).collect();
+        let mut runs = claims.iter().flat_map(|claim| claim.runs.iter().map(move |run| (claim, run)));
+        let runs = runs.find(|(_, run)| self.is_tested(run)).and_then(|(claim, run)| {
+            let without = self.runner.run_wrong(&without(claim, piece.effect), run);
+            Some([self.runner.run(run).ok()?.record, without.ok()?.record])
+        });
+        conclude(&mut entry, runs.as_ref().map(|runs| runs.each_ref().map(|record| &**record)));
         entry
     }
 
     /// Evaluates a claim with and without an effect.
-    fn shift(&mut self, claim: &Claim, effect: Effect) -> Shift {
+    fn shift(&self, claim: &Claim, effect: Effect) -> Shift {
         let without = self.error_without(claim, effect);
         let row = self.runner.judge(claim);
         // A claim that cannot be run or measured without the effect does not count, as in negative controls.
@@ -177,39 +147,13 @@ impl Ledger {
 
     /// Returns the error of a claim without an effect and the limit of the error. Returns `None` if the claim cannot be
     /// run or measured.
-    fn error_without(&mut self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
+    fn error_without(&self, claim: &Claim, effect: Effect) -> Option<(f64, f64)> {
+        let wrong = without(claim, effect);
         let done: Result<Vec<FinishedRun>, RunError> =
-            claim.runs.iter().map(|run| self.run_without(run, effect)).collect();
+            claim.runs.iter().map(|run| self.runner.run_wrong(&wrong, run)).collect();
         let done = done.ok()?;
         let error = (claim.measure)(&done).ok().map(|measured| measured.error()).filter(|error| error.is_finite())?;
         Some((error, self.runner.allowed(claim, &done)?.0))
-    }
-
-    /// Runs a scene without an effect. The expected value is still computed from the scene with the effect.
-    ///
-    /// Reference runs and runs of other programs keep the effect.
-    fn run_without(&mut self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
-        if !self.is_tested(run) {
-            return self.runner.run(run);
-        }
-        let key = (effect, run.key());
-        if let Some(done) = self.without.get(&key) {
-            return done.clone();
-        }
-        let done = self.simulate_without(run, effect);
-        self.without.insert(key, done.clone());
-        done
-    }
-
-    fn simulate_without(&self, run: &Run, effect: Effect) -> Result<FinishedRun, RunError> {
-        let scene = self.runner.scene(run)?;
-        let mut given = (*scene).clone();
-        effect.switch_off(&mut given);
-        let unknown =
-            || RunError::Unsupported { solver: run.solver.to_owned(), reason: "there is no such solver".to_owned() };
-        let solver = self.solvers.find(run.solver).ok_or_else(unknown)?;
-        let record = solver.run(&given, &run.resolution, &mut ())?;
-        Ok(FinishedRun::new(scene, Arc::new(record)))
     }
 
     /// Returns true for a run of our solver that is not a reference run.
@@ -223,7 +167,7 @@ impl Ledger {
     /// The effect is inert if it changes no solver's result. Counts are from the first solver, and times from the first
     /// solver with runs that are long enough to time.
     fn idle(&self, piece: &SceneEffect) -> Option<Entry> {
-        let mut entry = Entry { worth: EffectResult::Inert, ..self.blank(piece) };
+        let mut entry = Entry { worth: EffectResult::Inert, ..self.untested(piece) };
         for &method in piece.effect.left_out_by() {
             let Some((solver, idle)) = self.idle_with(piece, method) else { continue };
             if !idle.same {
@@ -248,9 +192,16 @@ impl Ledger {
             scene.duration = Seconds(ran.provenance.time_step * ran.cost.steps.min(STEPS_OF_A_GRID) as f64);
         }
         let solver = self.solvers.find(run.solver)?;
-        let idle = try_idly(&*solver, &scene, &run.resolution, piece.effect, PATIENCE).ok()??;
+        let idle = try_idly(&*solver, &scene, &run.resolution, piece.effect).ok()??;
         Some((run.solver, idle))
     }
+}
+
+/// Returns a claim whose control switches off an effect. Reference runs and runs of other programs keep the effect. The
+/// expected value is still computed from the scene with the effect.
+fn without(claim: &Claim, effect: Effect) -> Claim {
+    let control = Control::ours(effect.absence(), move |scene| effect.switch_off(scene));
+    Claim { control, ..claim.clone() }
 }
 
 /// Returns true if the solver of a run supports an effect.

@@ -1,6 +1,7 @@
 //! Effects study of a scene without claims: changes of the probes if an effect is omitted, and cost of the effect.
 
-use super::idle::{ratio_of_times, try_idly};
+use super::idle::try_idly;
+use super::{conclude, untested};
 use crate::chaos::{change_of_mean, farthest, perturbed_runs};
 use grainbench_reports::study::effects::{EffectResult, Entry, Shift};
 use grainbench_scene::effect::Effect;
@@ -10,10 +11,6 @@ use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use std::time::Duration;
-
-/// Time limit for repeated runs that test an absent effect. The minimum number of runs may exceed it.
-const PATIENCE: Duration = Duration::from_millis(300);
 
 /// Smallest relevant change of a mean in a chaotic scene, divided by the largest change in the perturbed runs. For normally
 /// distributed means and four perturbed runs, an effect without influence exceeds it in 0.11 % of columns.
@@ -63,19 +60,7 @@ impl StudyInput<'_> {
         if Method::from_name(&self.solver.name()).is_some_and(|method| !effect.concerns(method)) {
             return None;
         }
-        let key = effect.key(self.scene);
-        let mut entry = Entry {
-            case: self.name.clone(),
-            variant: String::new(),
-            effect: effect.word().to_owned(),
-            on: key.is_some(),
-            key: key.unwrap_or_default(),
-            worth: EffectResult::Untold,
-            shifts: Vec::new(),
-            counts: None,
-            time: None,
-            tried: Vec::new(),
-        };
+        let mut entry = untested(&self.name, "", effect, effect.key(self.scene));
         if entry.on {
             self.switched_off(whole, effect, &mut entry)
         } else {
@@ -110,15 +95,7 @@ impl StudyInput<'_> {
                 red: !moved.is_finite() || moved > allowed,
             });
         }
-        entry.worth = match (entry.shifts.iter().any(|shift| shift.red), entry.shifts.is_empty()) {
-            (true, _) => EffectResult::Needed,
-            (false, false) => EffectResult::NotWorthSimulating,
-            (false, true) => EffectResult::Untold,
-        };
-        if let Some(record) = record {
-            entry.counts = Some(whole.cost.work() as f64 / (record.cost.work() as f64).max(1.0));
-            entry.time = ratio_of_times(whole, &record);
-        }
+        conclude(entry, record.as_ref().map(|record| [whole, record]));
     }
 
     /// Tests the neutral value of an effect, if the method of the solver leaves the effect out when it is off. A rigid-body
@@ -128,7 +105,7 @@ impl StudyInput<'_> {
         if method.is_some_and(|method| !effect.left_out_by().contains(&method)) {
             return None;
         }
-        let idle = try_idly(self.solver, self.scene, &self.resolution, effect, PATIENCE).ok()??;
+        let idle = try_idly(self.solver, self.scene, &self.resolution, effect).ok()??;
         entry.worth = if idle.same { EffectResult::Inert } else { EffectResult::NotInert };
         (entry.counts, entry.time) = (Some(idle.counts), idle.time);
         entry.tried.push(self.solver.name());
@@ -139,10 +116,9 @@ impl StudyInput<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::scene_from_text;
     use grainbench_dem::convention::Convention;
     use grainbench_dem::solver::Dem;
-    use grainbench_scene::source::SceneSource;
-    use std::path::Path;
 
     const ROLLS: &str = "title = 'A disc rolls'\ndimension = 2\ngravity = [1.0, -9.81]\nduration = 0.5\n\
         materials.m.density = 1000.0\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e7\n\
@@ -155,8 +131,7 @@ mod tests {
     }
 
     fn worth_in(text: &str, effect: Effect, matters: f64) -> EffectResult {
-        let source = SceneSource::from_text("scene", Path::new(""), text);
-        let scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let scene = scene_from_text("scene", text).unwrap();
         let solver = Dem::new(Convention::DEFAULT);
         let resolution = Resolution::CriticalFraction(0.1);
         let asked = StudyInput { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };
