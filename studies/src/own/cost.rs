@@ -33,7 +33,7 @@ const LATEST: f64 = 1.1;
 /// Fraction of the remaining time that the first level of a solver may take.
 const FIRST: f64 = 0.3;
 /// Smallest relevant change of a probe in the test for chaos, relative to its largest value.
-pub const MATTERS: f64 = 0.01;
+pub(super) const MATTERS: f64 = 0.01;
 /// Largest number of timed repetitions of a level.
 const REPETITIONS: usize = 9;
 /// Uncertainty relative to the scale below which no further level is useful.
@@ -97,8 +97,8 @@ enum Purpose {
     Level,
     /// Same cells with half of the time step.
     HalfStep,
-    /// Softer contacts.
-    Softer,
+    /// Contacts whose stiffness is divided by this factor.
+    Softer(f64),
 }
 
 /// Run with its place in the study.
@@ -212,8 +212,8 @@ impl<'a> Measurement<'a> {
         self.perturbed.as_ref().is_some_and(|perturbed| !perturbed.is_empty())
     }
 
-    /// Returns the name of the first solver with measured levels and time steps, its finest resolution for whose run at most
-    /// `seconds` are expected, and the expected time of a run (s). If no level is that fast, the coarsest level is returned.
+    /// Returns the finest resolution of a solver for whose run at most `seconds` are expected, and the expected time of a run
+    /// (s). If no level is that fast, the coarsest level is returned.
     #[must_use]
     pub fn resolution_within(&self, solver: &str, seconds: f64) -> Option<(Resolution, f64)> {
         let at = self.study.names.iter().position(|name| name == solver)?;
@@ -249,10 +249,7 @@ impl<'a> Measurement<'a> {
     /// Runs a level of a solver, and the test for chaos after the first two levels.
     fn level(&mut self, at: usize, fineness: f64, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
         let resolution = self.ladders[at].at(fineness);
-        let scene = self.scene.clone();
-        let Some(run) = self.run(at, (fineness, resolution, Purpose::Level), &scene, String::new(), follower)? else {
-            return Ok(());
-        };
+        let Some(run) = self.run(at, (fineness, resolution, Purpose::Level), follower)? else { return Ok(()) };
         let (status, seconds) = (run.stored.status, run.stored.seconds);
         let last = self.finished[at].levels.last().map_or(0.0, |(last, _)| *last);
         self.finished[at].levels.push((fineness, seconds));
@@ -276,30 +273,27 @@ impl<'a> Measurement<'a> {
     /// When a result cannot be stored.
     pub fn variations(&mut self, follower: &mut dyn StudyFollower) -> Result<(), WriteError> {
         for at in 0..self.ladders.len() {
+            let has_cells = self.ladders[at].has_cells();
+            let limit = 0.5 * self.remaining(PARTS[2]);
+            let fits = |run: &&&Run| match has_cells {
+                true => 2.0 * run.stored.seconds <= limit,
+                false => run.fineness <= 4.0 && run.stored.seconds <= limit,
+            };
             let levels = self.measured(at, Purpose::Level);
-            if self.ladders[at].has_cells() {
-                let limit = 0.5 * self.remaining(PARTS[2]);
-                let fits = levels.iter().rev().find(|run| 2.0 * run.stored.seconds <= limit);
-                let Some((fineness, Resolution::Grid { cells, points, courant })) =
-                    fits.map(|run| (run.fineness, run.resolution))
-                else {
-                    continue;
-                };
-                let half = Resolution::Grid { cells, points, courant: 0.5 * courant };
-                let scene = self.scene.clone();
-                let run = self.run(at, (fineness, half, Purpose::HalfStep), &scene, String::new(), follower)?;
-                self.runs.extend(run);
-            } else if self.study.names[at] == "dem" && self.scene.laws.iter().flatten().any(ContactLaw::has_stiffness) {
-                let limit = 0.5 * self.remaining(PARTS[2]);
-                let fits = levels.iter().rev().find(|run| run.fineness <= 4.0 && run.stored.seconds <= limit);
-                let Some((fineness, resolution)) = fits.map(|run| (run.fineness, run.resolution)) else { continue };
-                for factor in SOFTER {
-                    let mut scene = self.scene.clone();
-                    soften(&mut scene, factor);
-                    let words = format!(", contacts softer by {factor}");
-                    let run = self.run(at, (fineness, resolution, Purpose::Softer), &scene, words, follower)?;
-                    self.runs.extend(run);
+            let found = levels.iter().rev().find(fits).map(|run| (run.fineness, run.resolution));
+            let Some((fineness, resolution)) = found else { continue };
+            let is_soft =
+                self.study.names[at] == "dem" && self.scene.laws.iter().flatten().any(ContactLaw::has_stiffness);
+            let varied = match resolution {
+                Resolution::Grid { cells, points, courant } if has_cells => {
+                    vec![(Resolution::Grid { cells, points, courant: 0.5 * courant }, Purpose::HalfStep)]
                 }
+                _ if is_soft && !has_cells => SOFTER.map(|factor| (resolution, Purpose::Softer(factor))).to_vec(),
+                _ => Vec::new(),
+            };
+            for (resolution, purpose) in varied {
+                let run = self.run(at, (fineness, resolution, purpose), follower)?;
+                self.runs.extend(run);
             }
         }
         Ok(())
@@ -319,7 +313,8 @@ impl<'a> Measurement<'a> {
             let time =
                 |run: &Run| if run.stored.status == LevelStatus::Measured { run.stored.seconds } else { f64::INFINITY };
             // Softer contacts are timed once.
-            let count = |run: &Run| if run.purpose == Purpose::Softer { REPETITIONS } else { run.stored.walls.len() };
+            let is_softer = |run: &Run| matches!(run.purpose, Purpose::Softer(_));
+            let count = |run: &Run| if is_softer(run) { REPETITIONS } else { run.stored.walls.len() };
             let levels: Vec<(f64, usize)> = self.runs.iter().map(|run| (time(run), count(run))).collect();
             let Some(at) = schedule::again(&levels, self.remaining(PARTS[4]), REPETITIONS) else { return Ok(()) };
             let run = &self.runs[at];
@@ -347,24 +342,25 @@ impl<'a> Measurement<'a> {
         self.own(solver).filter(is_measured).collect()
     }
 
-    /// Runs a level, or takes it from the storage. Returns none if the user stops the study. `words` describes a change of the
-    /// scene.
+    /// Runs a level, or takes it from the storage. Returns none if the user stops the study.
     fn run(
         &mut self,
         at: usize,
         (fineness, resolution, purpose): (f64, Resolution, Purpose),
-        scene: &Scene,
-        words: String,
         follower: &mut dyn StudyFollower,
     ) -> Result<Option<Run>, WriteError> {
         if self.is_stopped() {
             return Ok(None);
         }
         let solver_name = &self.study.names[at];
-        let setting = format!("{resolution}{words}");
+        let (mut scene, mut setting) = (self.scene.clone(), resolution.to_string());
+        if let Purpose::Softer(factor) = purpose {
+            soften(&mut scene, factor);
+            setting += &format!(", contacts softer by {factor}");
+        }
         let program = self.study.program.clone() + &self.study.solvers.edition(solver_name);
         let what = self.study.window.map_or(String::new(), |(from, to)| format!(", {from:?}..{to:?}"));
-        let name = key_of_run(&program, solver_name, scene, &resolution, &format!("scene without claims{what}"));
+        let name = key_of_run(&program, solver_name, &scene, &resolution, &format!("scene without claims{what}"));
         follower.now(&format!("{solver_name} {setting}"), self.spent());
         let stored = match self.study.cache.get::<Json<StoredRun>>(&name) {
             Ok(stored) => {
@@ -373,7 +369,7 @@ impl<'a> Measurement<'a> {
                 stored
             }
             Err(_) => {
-                let stored = self.measure(at, scene, &resolution);
+                let stored = self.measure(at, &scene, &resolution);
                 self.is_reused &= stored.status == LevelStatus::OverBudget;
                 // An external program fails when it is stopped.
                 if self.is_stopped() && stored.status != LevelStatus::Measured {
@@ -447,8 +443,7 @@ impl<'a> Measurement<'a> {
         let begin = Instant::now();
         let within = Within::new(&*solver, self.deadline(self.remaining(PARTS[0])), self.study.stop);
         let mut again = |scene: &Scene| within.run(scene, &resolution, &mut NoSnapshots);
-        let whole = again(&self.scene);
-        let found = whole.and_then(|whole| {
+        let found = again(&self.scene).and_then(|whole| {
             let others = perturbed_runs(&self.scene, &whole, MATTERS, &mut again)?;
             Ok((whole, others))
         });
@@ -456,25 +451,22 @@ impl<'a> Measurement<'a> {
             Ok(found) => found,
             Err(_) if self.is_stopped() => return,
             Err(error) => {
-                let reason = if within.0.is_cut() {
-                    "did not end within the budget".to_owned()
-                } else {
-                    format!("failed: {error}")
+                let reason = match within.0.is_cut() {
+                    true => "did not end within the budget".to_owned(),
+                    false => format!("failed: {error}"),
                 };
                 self.notes.push(format!("The test for chaos {reason}."));
                 self.perturbed = Some(Vec::new());
                 return;
             }
         };
-        let mut perturbed = Perturbed::new();
-        if !others.is_empty() {
-            let all: Vec<Vec<StoredColumn>> =
-                [&whole].into_iter().chain(&others).map(|run| columns(run, self.study.window)).collect();
-            for column in &all[0] {
-                let named = all.iter().filter_map(|columns| columns.iter().find(|other| other.name == column.name));
-                perturbed.push((column.name.clone(), named.map(|column| column.mean).collect()));
-            }
-        }
+        let all: Vec<Vec<StoredColumn>> =
+            [&whole].into_iter().chain(&others).map(|run| columns(run, self.study.window)).collect();
+        let means = |column: &StoredColumn| {
+            let named = all.iter().filter_map(|columns| columns.iter().find(|other| other.name == column.name));
+            (column.name.clone(), named.map(|column| column.mean).collect())
+        };
+        let perturbed = if others.is_empty() { Perturbed::new() } else { all[0].iter().map(means).collect() };
         // A result that cannot be stored is computed again.
         let test = (begin.elapsed().as_secs_f64(), perturbed);
         let _ = self.study.cache.put::<Json<_>>(&name, &test);
@@ -483,28 +475,19 @@ impl<'a> Measurement<'a> {
 
     /// Returns true if no further level of a solver can improve the result.
     fn is_converged(&self, at: usize) -> bool {
-        let result = self.result();
         let name = &self.study.names[at];
-        let own = || {
-            result
-                .quantities
-                .iter()
-                .map(|quantity| (quantity, quantity.estimates.iter().find(|row| row.solver == *name)))
+        let is_exact = |quantity: &Quantity| {
+            let estimate = quantity.estimates.iter().find(|row| row.solver == *name);
+            estimate.is_some_and(|row| row.uncertainty <= ENOUGH * quantity.scale)
         };
-        let is_exact = |(quantity, row): (&Quantity, Option<&Estimate>)| {
-            row.is_some_and(|row| row.uncertainty <= ENOUGH * quantity.scale)
-        };
-        self.measured(at, Purpose::Level).len() >= 3 && own().all(is_exact)
+        self.measured(at, Purpose::Level).len() >= 3 && self.result().quantities.iter().all(is_exact)
     }
 
     /// Returns a line about the last run.
     fn line(&self) -> String {
         let Some(run) = self.runs.last() else { return String::new() };
         let solver = &self.study.names[run.solver];
-        let what = match (&run.stored.detail, run.stored.status) {
-            (Some(detail), _) => detail.clone(),
-            (None, _) => number::seconds(median(&run.stored.walls)),
-        };
+        let what = run.stored.detail.clone().unwrap_or_else(|| number::seconds(median(&run.stored.walls)));
         format!("{solver} {}: {what}", run.setting)
     }
 
@@ -576,14 +559,11 @@ impl<'a> Measurement<'a> {
             // Scales are those of the finest run of the first solver.
             let is_level = |run: &&Run| run.purpose == Purpose::Level && !self.ladders[run.solver].lacks(&column.name);
             let levels = self.runs.iter().filter(is_level);
-            let named = |run: &&Run| run.stored.columns.iter().any(|other| other.name == column.name);
-            let first = levels.clone().find(named).map_or(0, |run| run.solver);
-            let own = levels.filter(|run| run.solver == first);
-            let mut own = own.filter_map(|run| run.stored.columns.iter().find(|other| other.name == column.name));
-            let Some(finest) = own.next_back() else { continue };
-            let all = self.runs.iter().flat_map(|run| &run.stored.columns);
-            let largest =
-                all.filter(|other| other.name == column.name).fold(0.0, |most: f64, other| most.max(other.largest));
+            let named = levels.filter_map(|run| Some((run.solver, run.stored.column(&column.name)?)));
+            let Some((first, _)) = named.clone().next() else { continue };
+            let Some((_, finest)) = named.filter(|(solver, _)| *solver == first).next_back() else { continue };
+            let all = self.runs.iter().filter_map(|run| run.stored.column(&column.name));
+            let largest = all.fold(0.0, |most: f64, other| most.max(other.largest));
             if finest.scale <= ZERO * natural(&self.scene, &column.unit) || largest <= ZERO * finest.scale {
                 continue;
             }
@@ -610,7 +590,7 @@ impl<'a> Measurement<'a> {
             return;
         }
         let value = |run: &Run| {
-            let column = run.stored.columns.iter().find(|column| column.name == quantity.name)?;
+            let column = run.stored.column(&quantity.name)?;
             Some(if reduction == Reduction::End { column.end } else { column.mean })
         };
         let ladder = &self.ladders[at];
@@ -652,7 +632,8 @@ impl<'a> Measurement<'a> {
             })
         };
         let points: Vec<EstimatedPoint> = levels.iter().filter_map(|run| point(run, false)).collect();
-        let softer = self.measured(at, Purpose::Softer).into_iter().filter_map(|run| {
+        let softer = SOFTER.into_iter().flat_map(|factor| self.measured(at, Purpose::Softer(factor)));
+        let softer = softer.filter_map(|run| {
             let mut softer = point(run, true)?;
             // The error of the time step is not part of the influence of the stiffness.
             let same = levels.iter().position(|level| level.fineness == run.fineness)?;

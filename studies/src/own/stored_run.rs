@@ -37,6 +37,13 @@ pub(super) struct StoredRun {
     pub(super) columns: Vec<StoredColumn>,
 }
 
+impl StoredRun {
+    /// Returns a column; none if the run has no column with this name.
+    pub(super) fn column(&self, name: &str) -> Option<&StoredColumn> {
+        self.columns.iter().find(|column| column.name == name)
+    }
+}
+
 /// Returns the time of the stepping loop (s), or the time of the whole run if the program does not report it.
 pub(super) fn wall_seconds(record: &Record, whole: f64) -> f64 {
     Some(record.cost.wall_seconds).filter(|wall| wall.is_finite() && *wall > 0.0).unwrap_or(whole)
@@ -90,18 +97,15 @@ pub(super) fn failure(
     let status = match error {
         RunError::Unsupported { .. } => LevelStatus::Unsupported,
         RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
-        RunError::Interrupted { .. } => LevelStatus::OverBudget,
+        RunError::Interrupted { .. } => {
+            let whole = completed.map(|fraction| number::seconds(seconds / fraction));
+            let whole = whole.map_or_else(String::new, |whole| format!(": the whole run takes about {whole}"));
+            let detail = format!("the run at {resolution} was ended after {}{whole}", number::seconds(seconds));
+            return (LevelStatus::OverBudget, Some(detail));
+        }
         _ => LevelStatus::Failed,
     };
-    let whole =
-        completed.map(|fraction| format!(": the whole run takes about {}", number::seconds(seconds / fraction)));
-    let detail = match status {
-        LevelStatus::OverBudget => {
-            format!("the run at {resolution} was ended after {}{}", number::seconds(seconds), whole.unwrap_or_default())
-        }
-        _ => error.to_string(),
-    };
-    (status, Some(detail))
+    (status, Some(error.to_string()))
 }
 
 /// Returns the natural scale of a unit in a scene, from its largest mass, its reference length and its duration; zero for other
