@@ -61,7 +61,7 @@ pub struct SceneThroughput {
 }
 
 /// Result of one solver.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub struct SolverThroughput {
     /// Name of the solver.
     pub solver: String,
@@ -178,12 +178,9 @@ fn run(racer: &BenchmarkedSolver, track: &Track, steps: u64) -> Result<(f64, Opt
 pub fn heat(track: &Track, racers: &[BenchmarkedSolver], rounds: u32, now: &dyn Fn(&str)) -> SceneThroughput {
     let blank = |racer: &BenchmarkedSolver| SolverThroughput {
         solver: racer.solver.name(),
-        version: None,
-        rates: Vec::new(),
-        ratios: Vec::new(),
         against: racer.against.to_owned(),
-        kinetic_energy: None,
         absent: racer.solver.available().err().map(|reason| reason.to_string()),
+        ..SolverThroughput::default()
     };
     let mut results: Vec<SolverThroughput> = racers.iter().map(blank).collect();
     let particle_steps = (track.steps[1] - track.steps[0]) as f64 * track.scene.grains.len() as f64;

@@ -4,12 +4,13 @@ use grainbench_solver::record::Cost;
 use serde::{Deserialize, Serialize};
 
 /// Status of a point.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointStatus {
     /// The point has an error and a computing time.
     Measured,
     /// The run crashed, or its error is not finite. The point is plotted at the time until the failure.
+    #[default]
     Failed,
     /// The solver cannot represent the scene, or the record lacks the quantity.
     Unsupported,
@@ -82,7 +83,7 @@ pub struct Timing {
 }
 
 /// Point of a diagram: a setting of a solver, with error and computing cost.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Point {
     /// Case, such as `backspin`.
     pub case: String,

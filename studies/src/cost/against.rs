@@ -192,21 +192,18 @@ mod tests {
             variant: "plain".to_owned(),
             solver: "dem".to_owned(),
             resolution: resolution.to_owned(),
-            knobs: String::new(),
             quantity: "x".to_owned(),
             unit: "m".to_owned(),
             standing: PointStatus::Measured,
             value: Some(1.0),
             expected: Some(1.0),
             error: Some(0.0),
-            floor: None,
             wall_seconds: Some(1e-3),
-            wall_spread: None,
             cpu_seconds: Some(1e-3),
             start_up_seconds: Some(0.0),
             repetitions,
             counts: Counts { steps: 100, ..Counts::default() },
-            detail: None,
+            ..Point::default()
         }
     }
 

@@ -3,7 +3,7 @@
 use grainbench_harness::solvers::ExternalSolver;
 use grainbench_harness::subject::SolverSetup;
 use grainbench_scene::method::Method;
-use grainbench_scene::scene::{Duration, Scene};
+use grainbench_scene::scene::Scene;
 use grainbench_solver::resolution::Resolution;
 
 /// Sweep point: one setting of a solver's parameters.
@@ -55,30 +55,33 @@ const SETTINGS: [(&str, &str); 8] = [
 /// steps or cell counts, these are used.
 #[must_use]
 pub fn turns(lane: &SolverSetup, strangers: &[ExternalSolver]) -> Vec<SweepPoint> {
-    own(lane).into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
+    let own = match lane.method {
+        Method::Dem => {
+            let programs = ["lammps", "liggghts"].map(|name| steps(lane, name, &PROGRAM_FRACTIONS));
+            [steps(lane, "dem", &FRACTIONS), programs.concat()].concat()
+        }
+        Method::Rigid => rigid(lane),
+        Method::Grid => grid(lane),
+    };
+    own.into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
 }
 
 fn theirs(lane: &SolverSetup, stranger: &ExternalSolver) -> Vec<SweepPoint> {
-    let at = |resolution, sequence| turn(&stranger.name, &stranger.name, resolution, &lane.knobs, Some(sequence));
     match (lane.method, lane.about) {
         (Method::Dem, _) if stranger.has_springs => {
             let fractions = if stranger.fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { &stranger.fractions };
-            fractions.iter().map(|&fraction| at(Resolution::CriticalFraction(fraction), 1.0 / fraction)).collect()
+            steps(lane, &stranger.name, fractions)
         }
         (Method::Grid, Resolution::Grid { cells: about, points, courant }) if stranger.deforms => {
             let usual = PROGRAM_CELLS.map(|factor| factor * about);
             let cells = if stranger.cells.is_empty() { &usual[..] } else { &stranger.cells };
-            cells.iter().map(|&cells| at(Resolution::Grid { cells, points, courant }, cells / about)).collect()
+            let at = |&cells: &f64| {
+                let resolution = Resolution::Grid { cells, points, courant };
+                turn(&stranger.name, &stranger.name, resolution, &lane.knobs, Some(cells / about))
+            };
+            cells.iter().map(at).collect()
         }
         _ => Vec::new(),
-    }
-}
-
-fn own(lane: &SolverSetup) -> Vec<SweepPoint> {
-    match lane.method {
-        Method::Dem => dem(lane),
-        Method::Rigid => rigid(lane),
-        Method::Grid => grid(lane),
     }
 }
 
@@ -86,27 +89,21 @@ fn turn(solver: &str, line: &str, resolution: Resolution, knobs: &str, sequence:
     SweepPoint { solver: solver.to_owned(), line: line.to_owned(), resolution, knobs: knobs.to_owned(), sequence }
 }
 
-fn dem(lane: &SolverSetup) -> Vec<SweepPoint> {
-    let own = FRACTIONS
-        .map(|fraction| turn("dem", "dem", Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction)));
-    let programs = ["lammps", "liggghts"].into_iter().flat_map(|name| {
-        PROGRAM_FRACTIONS
-            .map(|fraction| turn(name, name, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction)))
-    });
-    own.into_iter().chain(programs).collect()
+/// Returns a sequence of time steps, as fractions of the critical time step.
+fn steps(lane: &SolverSetup, solver: &str, fractions: &[f64]) -> Vec<SweepPoint> {
+    let at = |&fraction: &f64| {
+        turn(solver, solver, Resolution::CriticalFraction(fraction), &lane.knobs, Some(1.0 / fraction))
+    };
+    fractions.iter().map(at).collect()
 }
 
 fn rigid(lane: &SolverSetup) -> Vec<SweepPoint> {
-    let substeps =
-        SUBSTEPS.map(|count| turn("rigid", "rigid", Resolution::substeps(count), &lane.knobs, Some(f64::from(count))));
-    let iterations = ITERATIONS.map(|iterations| {
-        let resolution = Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations };
-        turn("rigid", "rigid", resolution, &lane.knobs, None)
-    });
-    let steps = STEPS.map(|step| {
-        let resolution = Resolution::Rigid { step, substeps: 1, iterations: Resolution::RIGID_ITERATIONS };
-        turn("rigid", "rigid", resolution, &lane.knobs, None)
-    });
+    let at = |resolution, sequence| turn("rigid", "rigid", resolution, &lane.knobs, sequence);
+    let substeps = SUBSTEPS.map(|count| at(Resolution::substeps(count), Some(f64::from(count))));
+    let iterations = ITERATIONS
+        .map(|iterations| at(Resolution::Rigid { step: Resolution::RIGID_STEP, substeps: 8, iterations }, None));
+    let steps =
+        STEPS.map(|step| at(Resolution::Rigid { step, substeps: 1, iterations: Resolution::RIGID_ITERATIONS }, None));
     substeps.into_iter().chain(iterations).chain(steps).collect()
 }
 
@@ -137,10 +134,7 @@ fn grid(lane: &SolverSetup) -> Vec<SweepPoint> {
 #[must_use]
 pub fn nominal_seconds(scene: &Scene, resolution: &Resolution) -> f64 {
     let grains = scene.grains.len() as f64;
-    let seconds = match scene.duration {
-        Duration::Seconds(seconds) => Some(seconds),
-        Duration::Cycles(_) => None,
-    };
+    let seconds = scene.duration.seconds();
     match *resolution {
         Resolution::CriticalFraction(_) | Resolution::TimeStep(_) => {
             resolution.steps(scene).map_or(0.0, |(_, steps)| steps as f64 * (60e-9 * grains + 60e-9))

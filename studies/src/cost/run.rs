@@ -278,18 +278,8 @@ fn first(subject: &TargetQuantity, task: &Task) -> Point {
         knobs: task.turn.knobs.clone(),
         quantity: subject.quantity.clone(),
         unit: subject.unit.to_owned(),
-        standing: PointStatus::Failed,
-        value: None,
-        expected: None,
-        error: None,
-        floor: None,
-        wall_seconds: None,
-        wall_spread: None,
-        cpu_seconds: None,
-        start_up_seconds: None,
         repetitions: timing.into_iter().collect(),
-        counts: Counts::default(),
-        detail: None,
+        ..Point::default()
     };
     match record {
         Ok(record) => {
@@ -356,24 +346,18 @@ fn mark_floors(tasks: &[&Task], points: &mut [Point]) {
     }
     for sequence in sequences.values_mut() {
         sequence.sort_by(|a, b| a.0.total_cmp(&b.0));
-        let error = |place: usize| points[sequence[place].1].error.unwrap_or(f64::NAN);
-        let last = sequence.len() - 1;
-        if last < 2 {
-            continue;
-        }
-        let (before, finest) = (error(last - 1), error(last));
+        let &[_, .., before, finest] = sequence.as_slice() else { continue };
+        let [before, finest] = [before, finest].map(|(_, at)| points[at].error.unwrap_or(f64::NAN));
         let meets = finest > ROUNDING && finest >= FLOOR * before && finest <= before / FLOOR;
         if !meets {
             continue;
         }
-        let at_floor: Vec<usize> = sequence
-            .iter()
-            .map(|(_, at)| *at)
-            .filter(|&at| points[at].error.is_some_and(|error| error >= FLOOR * finest && error <= finest / FLOOR))
-            .collect();
-        for at in at_floor {
-            let knobs = if points[at].knobs.is_empty() { String::new() } else { format!(" at {}", points[at].knobs) };
-            points[at].floor = Some(format!("{}{knobs}", tasks[at].floor));
+        for &(_, at) in sequence.iter() {
+            let point = &mut points[at];
+            if point.error.is_some_and(|error| error >= FLOOR * finest && error <= finest / FLOOR) {
+                let knobs = if point.knobs.is_empty() { String::new() } else { format!(" at {}", point.knobs) };
+                point.floor = Some(format!("{}{knobs}", tasks[at].floor));
+            }
         }
     }
 }
