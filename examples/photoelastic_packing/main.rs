@@ -81,21 +81,19 @@ fn data(packing: &Scene) -> String {
 fn scene(variant: &str, packing: &Scene, data: &Path) -> Result<Scene, Box<dyn Error>> {
     let named = ["table", "fifty-elastic"].iter().any(|name| variant.starts_with(name));
     let table = if named { variant.split("-seed").next().unwrap_or(variant) } else { PLAIN };
-    let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
-    let source = if table == PLAIN { case.source() } else { case.source().variant(table) };
-    let mut scene =
-        source.set("grains.disc.file.path", &format!("{:?}", std::path::absolute(data)?)).scene(&read_grains)?;
+    let mut scene = source(table)?
+        .set("grains.disc.file.path", &format!("{:?}", std::path::absolute(data)?))
+        .scene(&read_grains)?;
     for (wall, prepared) in scene.walls.iter_mut().zip(&packing.walls) {
         wall.shape = prepared.shape.clone();
     }
     Ok(scene)
 }
 
-/// Returns the scene of a variant with the packing that the case contains.
-fn as_kept(variant: &str) -> Result<Scene, Box<dyn Error>> {
+/// Returns the source of a variant of the case.
+fn source(variant: &str) -> Result<SceneSource, Box<dyn Error>> {
     let case = registry::by_name("photoelastic-packing").ok_or("the case is gone")?;
-    let source = if variant == PLAIN { case.source() } else { case.source().variant(variant) };
-    Ok(source.scene(&read_grains)?)
+    Ok(if variant == PLAIN { case.source() } else { case.source().variant(variant) })
 }
 
 /// Prints the packing file and the wall motions of a variant in the format of the scene file.
@@ -104,6 +102,8 @@ fn print(variant: &str, data: &str, scene: &Scene) {
     for wall in &scene.walls {
         let [first, second] = &wall.motion.phases[..] else { continue };
         if let WallShape::Plane { point, .. } = wall.shape {
+            // All digits are printed, because a change of the last digit can change the later motion of the discs.
+            let exact = |speed: f64| format!("{:?}", speed + 0.0);
             let speed = |axis: usize| [first.velocity[axis], second.velocity[axis]].map(exact);
             let [x, y] = [speed(0), speed(1)];
             let seconds = |moment: grainbench::scene::motion::Moment| moment.seconds(f64::NAN);
@@ -126,12 +126,6 @@ fn print(variant: &str, data: &str, scene: &Scene) {
     println!();
 }
 
-/// Returns a speed (m/s) as text with all digits, because a change of the last digit can change the later motion of the
-/// discs.
-fn exact(speed: f64) -> String {
-    format!("{:?}", speed + 0.0)
-}
-
 fn main() -> Result<(), Box<dyn Error>> {
     let mut arguments = std::env::args().skip(1);
     let folder = arguments.next().ok_or("a folder, and variants of the case")?;
@@ -146,7 +140,8 @@ fn main() -> Result<(), Box<dyn Error>> {
             std::fs::write(&path, data(&packing))?;
             prepared.insert(name.clone(), packing);
         }
-        let scene = if kept { as_kept(&variant)? } else { scene(&variant, &prepared[&name], &path)? };
+        let scene =
+            if kept { source(&variant)?.scene(&read_grains)? } else { scene(&variant, &prepared[&name], &path)? };
         let search = Search::new(&scene)?;
         let fraction = walls::fraction(&scene);
         match search.impose() {

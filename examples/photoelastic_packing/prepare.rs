@@ -6,7 +6,6 @@ use super::walls::{Course, drive, go_on_from, run, size, stop, watch};
 use grainbench::cases::stage::Stage;
 use grainbench::scene::nalgebra::Vector3;
 use grainbench::scene::scene::Scene;
-use grainbench::solver::record::Snapshot;
 use std::error::Error;
 
 /// Initial speed of the discs (m/s). Before each interval, the velocities are scaled so that the discs have their
@@ -73,7 +72,7 @@ fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
         let rest = run(&scene, 60.0)?;
         go_on_from(&mut scene, &rest);
         let stage = Stage::from_snapshot(&rest);
-        if !pressing(&rest) || stage.overlap < TOUCHING {
+        if rest.told_contacts().is_empty() || stage.overlap < TOUCHING {
             stop(&mut scene);
             return Ok(scene);
         }
@@ -90,10 +89,6 @@ fn open(mut scene: Scene) -> Result<Scene, Box<dyn Error>> {
         go_on_from(&mut scene, &opened);
     }
     Err("the walls never came off the discs".into())
-}
-
-fn pressing(snapshot: &Snapshot) -> bool {
-    !snapshot.told_contacts().is_empty()
 }
 
 fn energy(scene: &Scene) -> f64 {
