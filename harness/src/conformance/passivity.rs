@@ -98,24 +98,22 @@ fn between_planes(name: &'static str, dimension: usize, law: &str) -> Result<Nam
     } else {
         "bulk_modulus = 1e4\nshear_modulus = 6e3".to_owned()
     };
-    let pick = |flat_text: &'static str, deep: &'static str| if flat { flat_text } else { deep };
+    let vector = |[x, y, z]: [f64; 3]| if flat { format!("{:?}", [x, z]) } else { format!("{:?}", [x, y, z]) };
+    let upright = |size: f64| vector([0.0, 0.0, size]);
+    let spin = if flat { "0.4" } else { "[0.3, -0.2, 0.4]" };
     let height = 2.0 + ROOM;
-    let middle = 0.5 * height;
-    let at = |along: &str, height: f64| format!("[{along}, {height:?}]");
-    let (zero, sideways) = (pick("0.0", "0.0, 0.0"), pick("0.5", "0.5, 0.2"));
-    let spin = pick("0.4", "[0.3, -0.2, 0.4]");
     let text = format!(
         "title = 'A grain between two planes'\ndimension = {dimension}\nduration = {BOUNCING:?}\noutput.snapshots = 29\n\
          [materials.m]\ndensity = {density:?}\n{moduli}\n[contacts.m]\nbetween = ['m', 'm']\n{law}\
          [grains.a]\nmaterial = 'm'\nradius = 1.0\nposition = {}\nvelocity = {}\nspin = {spin}\n\
          [walls.low]\nmaterial = 'm'\nplane = {{ point = {}, normal = {} }}\n\
          [walls.high]\nmaterial = 'm'\nplane = {{ point = {}, normal = {} }}\n",
-        at(zero, middle),
-        at(sideways, -ACROSS),
-        at(zero, 0.0),
-        at(zero, 1.0),
-        at(zero, height),
-        at(zero, -1.0)
+        upright(0.5 * height),
+        vector([0.5, 0.2, -ACROSS]),
+        upright(0.0),
+        upright(1.0),
+        upright(height),
+        upright(-1.0)
     );
     scene_of(name, &[&text], true)
 }
