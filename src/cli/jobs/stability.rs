@@ -45,7 +45,7 @@ pub(crate) enum Tested {
 
 impl StabilityStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
-        let (assemblies, hard) = (assembly::all()?, hard::all());
+        let (assemblies, hard) = (assembly::all()?, hard::all()?);
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let items = stability::select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;
         let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;

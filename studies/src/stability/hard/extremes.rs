@@ -2,6 +2,7 @@
 
 use super::{HardCase, case, end, head_on, kinetic, kinetic_at_start, near};
 use crate::stability::failure::Failure;
+use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Record;
 
@@ -36,7 +37,7 @@ fn impact([a, b]: [f64; 2], [first, second]: [f64; 2], length: f64) -> String {
     )
 }
 
-pub(super) fn cases() -> Vec<HardCase> {
+pub(super) fn cases() -> Result<Vec<HardCase>, SceneError> {
     const MOMENTA: &str = "after an elastic head-on impact both velocities agree with those of two point masses, \
          within 3 % of the approach speed";
     let mut cases = Vec::new();
@@ -46,11 +47,11 @@ pub(super) fn cases() -> Vec<HardCase> {
             MOMENTA,
             &impact([1.0, 1.0], [1e3, 1e3 * ratio], 1.0),
             head_on,
-        ));
+        )?);
     }
-    cases.push(case("size-ratio-100", MOMENTA, &impact([1.0, 0.01], [1e3, 1e3], 1.0), head_on));
+    cases.push(case("size-ratio-100", MOMENTA, &impact([1.0, 0.01], [1e3, 1e3], 1.0), head_on)?);
     for (name, length) in [("units-1e-9", 1e-9), ("units-1e9", 1e9)] {
-        cases.push(case(name, MOMENTA, &impact([1.0, 0.8], [1e3, 1e3], length), head_on));
+        cases.push(case(name, MOMENTA, &impact([1.0, 0.8], [1e3, 1e3], length), head_on)?);
     }
     cases.push(case(
         "stiffness-ratio-1e4",
@@ -58,22 +59,22 @@ pub(super) fn cases() -> Vec<HardCase> {
          the factor 1e4",
         STIFFNESS,
         three_in_a_row,
-    ));
+    )?);
     for ratio in [0.9, 1.0, 1.5, 10.0] {
         cases.push(case(
             format!("damping-{ratio}-of-critical"),
             "two discs separate with at most 20 % of their approach speed",
             &damped(ratio),
             damped_impact,
-        ));
+        )?);
     }
     cases.push(case(
         "high-spin",
         "a disc with a surface speed of 1e4 √(gR) is accelerated forwards by friction and gains no energy",
         SPIN,
         spin,
-    ));
-    cases
+    )?);
+    Ok(cases)
 }
 
 const STIFFNESS: &str = "title = 'Three in a row'\ndimension = 2\nduration = 0.5\n\

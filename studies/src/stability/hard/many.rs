@@ -3,6 +3,7 @@
 use super::{HardCase, case, end, kinetic, near};
 use crate::stability::assembly::{grain, wall};
 use crate::stability::failure::Failure;
+use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::{GrainState, Record};
 use std::f64::consts::FRAC_1_PI;
@@ -19,16 +20,16 @@ const LAYERS: usize = 25;
 /// Radius of a sheared disc (m). Centres are 2 m apart, so that the area fraction is 0.80.
 const RADIUS: f64 = 0.94;
 
-pub(super) fn cases() -> Vec<HardCase> {
+pub(super) fn cases() -> Result<Vec<HardCase>, SceneError> {
     let shear = shear();
-    vec![
+    Ok(vec![
         case(
             "heap-at-rest-for-1e6-steps",
             "six discs in a heap come to rest and stay at rest: after 10⁶ steps of the springs each disc is within R/100 \
              of its place, and none moves",
             &heap("A heap", 3, 1.0),
             |scene, record| at_rest(scene, record, 0.01),
-        ),
+        )?,
         HardCase {
             asked: &["dem"],
             ..case(
@@ -37,7 +38,7 @@ pub(super) fn cases() -> Vec<HardCase> {
                  is within R/10 of its place, and none moves",
                 &heap("A heap of many", ROWS, 10.0),
                 |scene, record| at_rest(scene, record, 0.1),
-            )
+            )?
         },
         case(
             "dense-shear-of-1000",
@@ -45,7 +46,7 @@ pub(super) fn cases() -> Vec<HardCase> {
              R/10, and no disc is faster than twice the speed of the wall",
             &shear,
             sheared,
-        ),
+        )?,
         HardCase {
             goes_on: true,
             ..case(
@@ -53,9 +54,9 @@ pub(super) fn cases() -> Vec<HardCase> {
                 "the same layer, interrupted halfway and continued from its checkpoint, ends with the same bits",
                 &shear,
                 sheared,
-            )
+            )?
         },
-    ]
+    ])
 }
 
 /// Returns the first part of a scene with unit masses and k = 1e6. A tenth of the critical time step is then 2e-4 s.

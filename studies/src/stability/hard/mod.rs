@@ -28,8 +28,8 @@ pub struct HardCase {
     pub name: String,
     /// Condition in words.
     pub must: &'static str,
-    /// Scene, or the error of its text.
-    pub scene: Result<Scene, SceneError>,
+    /// Scene.
+    pub scene: Scene,
     /// Function that checks the condition.
     pub check: Check,
     /// True if the run is also continued from a checkpoint at half of the steps. It must then end in the same bits.
@@ -54,36 +54,24 @@ const PATIENCE: f64 = 60.0;
 const HOPELESS: f64 = 600.0;
 
 /// Returns all hard cases.
-#[must_use]
-pub fn all() -> Vec<HardCase> {
-    [extremes::cases(), contacts::cases(), many::cases()].into_iter().flatten().collect()
+///
+/// # Errors
+/// When a scene cannot be read, which occurs only if the scene format has changed.
+pub fn all() -> Result<Vec<HardCase>, SceneError> {
+    Ok([extremes::cases()?, contacts::cases()?, many::cases()?].into_iter().flatten().collect())
 }
 
 /// Returns a case from the text of its scene.
-fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -> HardCase {
-    changed(name, must, text, |_| {}, check)
-}
-
-/// Returns a case whose scene is changed after reading, because the scene reader would reject the changed scene.
-fn changed(
-    name: impl Into<String>,
-    must: &'static str,
-    text: &str,
-    change: impl FnOnce(&mut Scene),
-    check: Check,
-) -> HardCase {
+fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -> Result<HardCase, SceneError> {
     let name = name.into();
-    let mut scene = scene_from_text(&format!("hard/{name}"), text);
-    if let Ok(scene) = &mut scene {
-        change(scene);
-    }
-    HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS }
+    let scene = scene_from_text(&format!("hard/{name}"), text)?;
+    Ok(HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS })
 }
 
 /// Estimates the time of a case with a solver (s); zero if the case is too long to run.
 #[must_use]
 pub fn seconds(case: &HardCase, solver: &str) -> f64 {
-    let expected = case.scene.as_ref().map_or(0.0, |scene| nominal_seconds(scene, &resolution(solver, 1.0)));
+    let expected = nominal_seconds(&case.scene, &resolution(solver, 1.0));
     if expected > HOPELESS { 0.0 } else { expected }
 }
 
@@ -98,14 +86,8 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
         resolution: resolution(name, 1.0).to_string(),
         detail: String::new(),
     };
-    let (scene, solver) = match (&case.scene, solvers.find_within(name, LIMIT)) {
-        (Ok(scene), Some(solver)) => (scene, solver),
-        (Err(error), _) => {
-            row.detail = error.to_string();
-            return row;
-        }
-        (_, None) => return row,
-    };
+    let scene = &case.scene;
+    let Some(solver) = solvers.find_within(name, LIMIT) else { return row };
     let expected = nominal_seconds(scene, &resolution(name, 1.0));
     if expected > HOPELESS {
         row.detail = format!(
@@ -114,7 +96,7 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
         );
         return row;
     }
-    match attempt(case, scene, &*solver, 1.0) {
+    match attempt(case, &*solver, 1.0) {
         Ok(()) => row.standing = Hardness::Holds,
         Err(Stop::Cannot(error)) => {
             row.standing = if matches!(error, RunError::NotAvailable { .. }) {
@@ -128,8 +110,7 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
             row.detail = how.to_string();
             row.standing = if how.is_typed() { Hardness::TypedFailure } else { Hardness::QuietlyWrong };
             let bearable = |part: &f64| nominal_seconds(scene, &resolution(name, *part)) <= PATIENCE;
-            if let Some(part) =
-                SMALLER.into_iter().filter(bearable).find(|&part| attempt(case, scene, &*solver, part).is_ok())
+            if let Some(part) = SMALLER.into_iter().filter(bearable).find(|&part| attempt(case, &*solver, part).is_ok())
             {
                 row.standing = Hardness::HoldsAtASmallerStep;
                 row.resolution = resolution(name, part).to_string();
@@ -156,7 +137,8 @@ fn resolution(solver: &str, part: f64) -> Resolution {
     }
 }
 
-fn attempt(case: &HardCase, scene: &Scene, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
+fn attempt(case: &HardCase, solver: &dyn Solver, part: f64) -> Result<(), Stop> {
+    let scene = &case.scene;
     let resolution = resolution(&solver.name(), part);
     let mut halfway = HalfwayCheckpoint::new(RunOptions::unstable());
     let run = if case.goes_on {
@@ -254,18 +236,11 @@ mod tests {
     use grainbench_dem::convention::Convention;
     use grainbench_dem::solver::Dem;
 
-    #[test]
-    fn every_case_has_a_scene() {
-        for case in all() {
-            case.scene.unwrap_or_else(|error| panic!("{}: {error}", case.name));
-        }
-    }
-
     /// A check that passes for every result would call every time step stable.
     #[test]
     fn every_check_refuses_a_run_of_something_else() {
-        for case in all() {
-            let scene = case.scene.unwrap();
+        for case in all().unwrap() {
+            let scene = case.scene;
             let mut grains: Vec<GrainState> =
                 scene.grains.iter().enumerate().map(|(at, grain)| GrainState::start(at as u32 + 1, grain)).collect();
             // All grains are moved far away and are faster than in any case.
