@@ -36,7 +36,7 @@ const SPACINGS: [f64; 3] = [1.3, 1.05, 0.9999];
 struct Family {
     solver: &'static str,
     /// Operations, and descriptions of the scenes that determine them. The first operation occurs in every scene.
-    pieces: &'static [(&'static str, &'static str)],
+    pieces: Vec<(String, String)>,
     scenes: Vec<(Scene, Resolution)>,
     /// Function that returns the number of each operation per particle-step from the counts of a run.
     counts: fn(&Cost) -> Vec<f64>,
@@ -54,8 +54,8 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result
     for family in &families {
         prices.extend(family.pieces.iter().map(|(piece, found)| TaskCost {
             solver: family.solver.to_owned(),
-            piece: (*piece).to_owned(),
-            found: (*found).to_owned(),
+            piece: piece.clone(),
+            found: found.clone(),
             nanoseconds: Vec::new(),
         }));
     }
@@ -158,39 +158,26 @@ fn families() -> Result<Vec<Family>, SceneError> {
     };
     const OF_POINTS: fn(&Cost) -> Vec<f64> =
         |cost| vec![1.0, cost.node_updates.unwrap_or(0) as f64 / cost.particle_steps as f64];
-    let grains = |dimension: usize| -> Result<Vec<(Scene, Resolution)>, SceneError> {
-        SPACINGS.iter().map(|&spacing| Ok((lattice(dimension, spacing)?, Resolution::CriticalFraction(0.1)))).collect()
+    let grains = |dimension: usize, space: &str, grains: &str| -> Result<Family, SceneError> {
+        let pieces = [
+            ("grain", "out of reach of each other"),
+            ("listed pair", "near each other"),
+            ("contact", "that touch, with friction and a dashpot"),
+        ];
+        let pieces = pieces.map(|(piece, state)| (format!("{piece} in {space}"), format!("{grains} {state}")));
+        let scene = |spacing: f64| Ok((lattice(dimension, spacing)?, Resolution::CriticalFraction(0.1)));
+        let scenes = SPACINGS.into_iter().map(scene).collect::<Result<_, SceneError>>()?;
+        Ok(Family { solver: "dem", pieces: pieces.into(), scenes, counts: OF_GRAINS })
     };
-    let block =
-        |points: u32| -> Result<(Scene, Resolution), SceneError> { Ok((block()?, Resolution::grid(60.0, points))) };
+    let blocks = ["material point in the plane", "node in the plane"]
+        .map(|piece| (piece.to_owned(), "a block with four points in a cell and with sixteen".to_owned()));
     Ok(vec![
-        Family {
-            solver: "dem",
-            pieces: &[
-                ("grain in the plane", "discs out of reach of each other"),
-                ("listed pair in the plane", "discs near each other"),
-                ("contact in the plane", "discs that touch, with friction and a dashpot"),
-            ],
-            scenes: grains(2)?,
-            counts: OF_GRAINS,
-        },
-        Family {
-            solver: "dem",
-            pieces: &[
-                ("grain in space", "spheres out of reach of each other"),
-                ("listed pair in space", "spheres near each other"),
-                ("contact in space", "spheres that touch, with friction and a dashpot"),
-            ],
-            scenes: grains(3)?,
-            counts: OF_GRAINS,
-        },
+        grains(2, "the plane", "discs")?,
+        grains(3, "space", "spheres")?,
         Family {
             solver: "mpm",
-            pieces: &[
-                ("material point in the plane", "a block with four points in a cell and with sixteen"),
-                ("node in the plane", "a block with four points in a cell and with sixteen"),
-            ],
-            scenes: vec![block(2)?, block(4)?],
+            pieces: blocks.into(),
+            scenes: vec![(block()?, Resolution::grid(60.0, 2)), (block()?, Resolution::grid(60.0, 4))],
             counts: OF_POINTS,
         },
     ])
