@@ -12,6 +12,7 @@ use grainbench_cases::registry;
 use grainbench_cases::solvers::{self, Registry};
 use grainbench_harness::conformance;
 use grainbench_harness::mistake;
+use grainbench_harness::runner::RunnerOptions;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::verdict::{ControlResult, Verdict, passes};
 use grainbench_reports::line;
@@ -81,7 +82,8 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
     let mut judgement = Judgement::default();
     for &name in cases {
         let case = registry::by_name(name).ok_or_else(|| JudgementError::NoSuchCase(name.to_owned()))?;
-        let runner = solvers::runner(case).with_solver(Arc::clone(&solver));
+        let stranger = Some(Arc::clone(&solver));
+        let runner = solvers::runner(case).with(RunnerOptions { stranger, ..RunnerOptions::default() });
         let claims = runner.claims();
         if claims.is_empty() {
             return Err(JudgementError::NothingFair(name.to_owned()));

@@ -6,7 +6,7 @@ use grainbench::cases::runner;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::control::Control;
 use grainbench::harness::run::{ExpectedOutcome, Set};
-use grainbench::harness::runner::Runner;
+use grainbench::harness::runner::{Runner, RunnerOptions};
 use grainbench::harness::verdict::Outcome;
 use grainbench::lanes::Processor;
 use libtest_mimic::{Arguments, Failed, Trial};
@@ -22,7 +22,8 @@ fn main() -> std::process::ExitCode {
     let set = if long { Set::Long } else { Set::Tests };
     let mut trials = Vec::new();
     for case in CASES {
-        let runner = Arc::new(runner(case).afresh(set));
+        let options = RunnerOptions { afresh: Some(set), ..RunnerOptions::default() };
+        let runner = Arc::new(runner(case).with(options));
         for claim in (case.claims)().into_iter().filter(|claim| claim.set() <= set) {
             let claim = Arc::new(claim);
             let run = &claim.runs[0];

@@ -19,7 +19,7 @@ use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
 use std::collections::BTreeMap;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::path::{Path, PathBuf};
+use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
@@ -38,25 +38,37 @@ type Slots = BTreeMap<String, Vec<(Arc<Scene>, Slot)>>;
 pub struct Runner {
     case: &'static Case,
     solvers: Arc<dyn Solvers>,
-    stranger: Option<Arc<dyn Solver>>,
-    /// True to run other programs even if their runs are stored.
-    live: bool,
-    /// True if figures may use the finest levels, which take minutes.
-    thorough: bool,
-    /// True if an external solver passes only if it can also run the wrong physics.
-    controlled: bool,
-    /// Number of threads per run.
-    threads: usize,
-    /// Largest tier whose stored runs are repeated; none to repeat no stored run.
-    afresh: Option<Set>,
-    /// Directory of third-party data.
-    data: Option<PathBuf>,
+    options: RunnerOptions,
     /// Runs with the scenes as the case defines them, by [`Run::key`].
     runs: Mutex<Runs>,
     /// Scenes as the case defines them, by [`Run::scene_words`].
     scenes: Mutex<BTreeMap<String, SceneSlot>>,
     /// Outputs of all runs, with right or wrong physics, by solver and resolution. Claims with the same scene share a run.
     done: Mutex<Slots>,
+}
+
+/// Options of a runner.
+pub struct RunnerOptions {
+    /// External solver that replaces every solver named in the claims. It interprets the resolutions of the claims itself.
+    pub stranger: Option<Arc<dyn Solver>>,
+    /// True to run other programs even if their runs are stored.
+    pub live: bool,
+    /// True if figures may use the finest levels, which take minutes.
+    pub thorough: bool,
+    /// True if an external solver passes only if it can also run the wrong physics.
+    pub controlled: bool,
+    /// Number of threads per run.
+    pub threads: usize,
+    /// Largest tier whose stored runs are repeated; none to repeat no stored run.
+    pub afresh: Option<Set>,
+    /// Directory of third-party data.
+    pub data: Option<PathBuf>,
+}
+
+impl Default for RunnerOptions {
+    fn default() -> Self {
+        Self { stranger: None, live: false, thorough: false, controlled: true, threads: 1, afresh: None, data: None }
+    }
 }
 
 /// Solver of a run, optionally with a defect.
@@ -74,76 +86,26 @@ impl Runner {
     #[must_use]
     pub fn new(case: &'static Case, solvers: Arc<dyn Solvers>) -> Self {
         let (runs, scenes, done) = (Mutex::default(), Mutex::default(), Mutex::default());
-        Self {
-            case,
-            solvers,
-            stranger: None,
-            live: false,
-            thorough: false,
-            controlled: true,
-            threads: 1,
-            afresh: None,
-            data: None,
-            runs,
-            scenes,
-            done,
-        }
+        Self { case, solvers, options: RunnerOptions::default(), runs, scenes, done }
     }
 
-    /// Replaces every solver named in the claims by one external solver. The external solver interprets the resolutions of
-    /// the claims itself.
+    /// Sets the options.
     #[must_use]
-    pub fn with_solver(self, solver: Arc<dyn Solver>) -> Self {
-        Self { stranger: Some(solver), ..self }
-    }
-
-    /// Sets whether other programs run even if their runs are stored. Default: false.
-    #[must_use]
-    pub fn live(self, live: bool) -> Self {
-        Self { live, ..self }
-    }
-
-    /// Sets whether figures may use the finest levels, which take minutes. Default: false.
-    #[must_use]
-    pub fn thorough(self, thorough: bool) -> Self {
-        Self { thorough, ..self }
-    }
-
-    /// Sets whether an external solver passes only if it can also run the wrong physics. Default: true.
-    #[must_use]
-    pub fn controlled(self, controlled: bool) -> Self {
-        Self { controlled, ..self }
-    }
-
-    /// Sets the number of threads per run. Default: 1.
-    #[must_use]
-    pub fn threads(self, threads: usize) -> Self {
-        Self { threads, ..self }
-    }
-
-    /// Repeats stored runs of all tiers up to this one.
-    #[must_use]
-    pub fn afresh(self, set: Set) -> Self {
-        Self { afresh: Some(set), ..self }
-    }
-
-    /// Sets the directory of third-party data.
-    #[must_use]
-    pub fn with_data(self, folder: Option<&Path>) -> Self {
-        Self { data: folder.map(Path::to_owned), ..self }
+    pub fn with(self, options: RunnerOptions) -> Self {
+        Self { options, ..self }
     }
 
     /// Returns true if figures may use the finest levels, which take minutes.
     #[must_use]
     pub const fn is_thorough(&self) -> bool {
-        self.thorough
+        self.options.thorough
     }
 
     /// Returns all claims of the case. With an external solver, returns only the claims that apply to it.
     #[must_use]
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
-        if let Some(stranger) = &self.stranger {
+        if let Some(stranger) = &self.options.stranger {
             claims.retain(|claim| claim.scope.is_asked_of(&**stranger));
         }
         claims
@@ -174,7 +136,7 @@ impl Runner {
     /// Returns true if all runs of a claim are available: the data exist, and a result is stored or the solver is installed.
     #[must_use]
     pub fn is_available(&self, claim: &Claim) -> bool {
-        let is_stored = |run: &Run| !self.live && self.solvers.references().is_stored(self.case, run);
+        let is_stored = |run: &Run| !self.options.live && self.solvers.references().is_stored(self.case, run);
         let can_run = |run: &Run| self.solver(run.solver).is_none_or(|solver| solver.available().is_ok());
         let has_data = |run: &Run| run.data.is_none() || !matches!(self.scene(run), Err(RunError::NotAvailable { .. }));
         claim.runs.iter().all(|run| has_data(run) && (self.is_read_back(run, None) || is_stored(run) || can_run(run)))
@@ -210,15 +172,17 @@ impl Runner {
     #[must_use]
     pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<ControlResult>) {
         let row = self.judge(claim);
-        let is_run =
-            || self.stranger.is_none() || row.outcome != Outcome::Unsupported && self.refused_control(claim).is_none();
+        let is_run = || {
+            self.options.stranger.is_none()
+                || row.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
+        };
         let control = (with_control && self.is_available(claim) && is_run()).then(|| self.control(claim));
         (row, control)
     }
 
     /// Returns the reason why an external solver cannot run the wrong physics of a claim; none if it can.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
-        let asked = self.controlled && self.stranger.is_some();
+        let asked = self.options.controlled && self.options.stranger.is_some();
         // A panic does not mean that the scene is unsupported. The control is then run, and its outcome is `broken`.
         let wrong = |run: &Run| match unless_panicked(|| self.run_wrong(claim, run)) {
             Ok(Err(error @ RunError::Unsupported { .. })) => Some(error.to_string()),
@@ -280,9 +244,9 @@ impl Runner {
         let scene = self.scene(run)?;
         let given = changed(&scene, by.control);
         if Arc::ptr_eq(&given, &scene)
-            && self.stranger.is_none()
+            && self.options.stranger.is_none()
             && run.reading.is_none()
-            && !self.live
+            && !self.options.live
             && by.solver == run.solver
             && by.defect.is_none()
             && let Some(record) = self.solvers.references().stored(self.case, run, &scene)
@@ -317,8 +281,11 @@ impl Runner {
     /// now. An external solver never uses stored results.
     fn is_read_back(&self, run: &Run, control: Option<&control::Control>) -> bool {
         let set = control.map_or(run.set, |control| run.set.max(control.set));
-        let is_wanted_now = self.live && self.solvers.is_program(run.solver);
-        run.kept && self.stranger.is_none() && !is_wanted_now && self.afresh.is_none_or(|afresh| set > afresh)
+        let is_wanted_now = self.options.live && self.solvers.is_program(run.solver);
+        run.kept
+            && self.options.stranger.is_none()
+            && !is_wanted_now
+            && self.options.afresh.is_none_or(|afresh| set > afresh)
     }
 
     /// Returns the slot of a run: one for each combination of scene, solver, defect, resolution and evaluation.
@@ -340,7 +307,7 @@ impl Runner {
             Some(defect) => self.solvers.with_defect(by.solver, defect),
         };
         let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
-        let (record, tables) = reading::run(&*solver, scene, by.resolution, self.threads, run.reading)?;
+        let (record, tables) = reading::run(&*solver, scene, by.resolution, self.options.threads, run.reading)?;
         Ok((Arc::new(record), Arc::new(tables), None))
     }
 
@@ -371,7 +338,7 @@ impl Runner {
 
     /// Makes a scene from third-party data.
     fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
-        let folder = self.data.as_deref().ok_or_else(|| data.needs.to_owned());
+        let folder = self.options.data.as_deref().ok_or_else(|| data.needs.to_owned());
         let made = folder.and_then(|folder| (data.scene)(folder).map_err(SceneDataError::into_words));
         made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
@@ -387,12 +354,12 @@ impl Runner {
 
     /// Returns the external solver if there is one, otherwise the solver with this name.
     fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
-        self.stranger.clone().or_else(|| self.solvers.find(name))
+        self.options.stranger.clone().or_else(|| self.solvers.find(name))
     }
 
     /// Returns the name of the solver of a run, as it appears in results.
     fn solver_name(&self, run: &Run) -> String {
-        self.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
+        self.options.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
     }
 
     /// Returns the error of a run of our cases if their data are not installed.
@@ -456,7 +423,7 @@ impl Runner {
     #[must_use]
     pub fn allowed(&self, claim: &Claim, done: &[FinishedRun]) -> Option<(f64, tolerance::ToleranceOrigin)> {
         let stated = (claim.tolerance.allowed(done), claim.tolerance.made_without_estimate());
-        if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.stranger.is_some() {
+        if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.options.stranger.is_some() {
             return Some(stated);
         }
         // If the estimate is not below the stated limit, the limit applies as engineering judgement.
@@ -500,7 +467,9 @@ impl Runner {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
                     // An external solver may report fewer quantities than our solvers.
-                    Err(missing) if self.stranger.is_some() => row.left(Outcome::Unsupported, missing.to_string()),
+                    Err(missing) if self.options.stranger.is_some() => {
+                        row.left(Outcome::Unsupported, missing.to_string())
+                    }
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),
                     Ok(found) => {
                         let row = known(row.judged(&found), claim, &found).unless_as_wide_as_the_scale();

@@ -10,7 +10,7 @@ use super::value::whole;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::{Case, runner, solvers};
 use grainbench::harness::run::{FinishedRun, Set};
-use grainbench::harness::runner::Runner;
+use grainbench::harness::runner::{Runner, RunnerOptions};
 use grainbench::resume::{self, Place};
 use grainbench::scene::scene::Scene;
 use grainbench::solver::failure::RunError;
@@ -71,8 +71,9 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
         return Err(Fault::input(format!("--run: expected part of the name of a stored run, found `{letters}`")));
     }
     for case in known.iter().filter(is_named) {
-        let runner = runner(case).afresh(Set::Paper).threads(usize::from(arguments.threads));
-        let runner = runner.with_data(arguments.data.as_deref());
+        let (afresh, threads) = (Some(Set::Paper), usize::from(arguments.threads));
+        let options = RunnerOptions { afresh, threads, data: arguments.data.clone(), ..RunnerOptions::default() };
+        let runner = runner(case).with(options);
         let wanted: Vec<StorableRun> = kept::all(case).into_iter().filter(is_meant).collect();
         for (place, one) in wanted.iter().enumerate() {
             let given = match runner.given(&one.claim, &one.run, one.wrong) {

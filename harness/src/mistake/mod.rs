@@ -11,7 +11,7 @@ use crate::claim::Claim;
 use crate::control::{Control, WrongPhysics};
 use crate::evidence::Evidence;
 use crate::run::{Run, Set};
-use crate::runner::Runner;
+use crate::runner::{Runner, RunnerOptions};
 use crate::solvers::Solvers;
 use crate::verdict::{Outcome, Verdict};
 use grainbench_scene::contact_law::ContactLaw;
@@ -19,6 +19,7 @@ use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::Solver;
 use grainbench_solver::resolution::Resolution;
 use small_dem::{MethodMistake, SmallDem};
 use std::collections::BTreeSet;
@@ -200,7 +201,9 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
 
 /// Returns a runner of the small solver, with or without a mistake.
 fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<MethodMistake>) -> Runner {
-    Runner::new(case, Arc::clone(solvers)).with_solver(Arc::new(SmallDem { mistake })).controlled(false)
+    let stranger: Arc<dyn Solver> = Arc::new(SmallDem { mistake });
+    let options = RunnerOptions { stranger: Some(stranger), controlled: false, ..RunnerOptions::default() };
+    Runner::new(case, Arc::clone(solvers)).with(options)
 }
 
 /// Returns the error of a claim with a runner of the small solver.

@@ -9,12 +9,12 @@ use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
 use grainbench::harness::mistake;
 use grainbench::harness::run::{FinishedRun, Run, Set};
-use grainbench::harness::runner::Runner;
+use grainbench::harness::runner::{Runner, RunnerOptions};
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict;
 use grainbench::jobs::execute::{ResultSink, TaskList};
-use grainbench::reference::outside::ExternalProgram;
 use grainbench::reports::{RunCost, Section};
+use grainbench::solver::Solver;
 use grainbench::solver::failure::RunError;
 use grainbench::store::log::State;
 use grainbench::studies::run_cache::RunCache;
@@ -147,15 +147,17 @@ impl ClaimTasks {
 
     fn new_runner(&self, case: usize) -> Runner {
         let selected = &self.selected[case];
-        let runner = Runner::new(selected.case, Arc::clone(&self.solvers)).live(self.live).thorough(self.thorough);
-        let runner = runner.controlled(self.controls).with_data(self.data.as_deref());
-        // With all levels, runs with stored results are repeated too.
-        let runner = if self.thorough { runner.afresh(Set::Paper) } else { runner };
-        let runner = match &selected.stranger {
-            Some(stranger) => runner.with_solver(Arc::<ExternalProgram>::clone(stranger)),
-            None => runner,
-        };
-        runner.threads(self.threads)
+        let stranger = selected.stranger.as_ref().map(|stranger| Arc::clone(stranger) as Arc<dyn Solver>);
+        Runner::new(selected.case, Arc::clone(&self.solvers)).with(RunnerOptions {
+            stranger,
+            live: self.live,
+            thorough: self.thorough,
+            controlled: self.controls,
+            threads: self.threads,
+            // With all levels, runs with stored results are repeated too.
+            afresh: self.thorough.then_some(Set::Paper),
+            data: self.data.clone(),
+        })
     }
 
     /// Returns the sections of a report from the results of its tasks. The detail of a failed result names a known mistake
