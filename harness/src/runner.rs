@@ -14,7 +14,6 @@ use crate::verdict::{ControlResult, Outcome, Verdict};
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::RunError;
-use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
 use std::collections::BTreeMap;
@@ -23,10 +22,8 @@ use std::path::PathBuf;
 use std::sync::{Arc, Mutex, OnceLock, PoisonError};
 use std::time::Instant;
 
-/// Record of a run, tables read from the snapshots, and provenance if the result was stored.
-type RunOutput = (Arc<Record>, Arc<Vec<Table>>, Option<ResultOrigin>);
-/// Output of a run; empty until the run has ended.
-type Slot = Arc<OnceLock<Result<RunOutput, RunError>>>;
+/// Finished run, with the scene that the solver got; empty until the run has ended.
+type Slot = Arc<OnceLock<Result<FinishedRun, RunError>>>;
 /// A scene; empty until it is first requested.
 type SceneSlot = Arc<OnceLock<Result<Arc<Scene>, RunError>>>;
 /// Runs with their outputs, by [`Run::key`].
@@ -261,20 +258,17 @@ impl Runner {
                 self.simulate(run, by, &given)
             }
         };
-        let (record, tables, kept) = slot.get_or_init(left).clone()?;
-        Ok(FinishedRun { scene, record, tables, kept })
+        Ok(FinishedRun { scene, ..slot.get_or_init(left).clone()? })
     }
 
     /// Returns the stored result of a run.
-    fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
+    fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Arc<Scene>) -> Result<FinishedRun, RunError> {
         let of_control = by.control.map(|control| control.name);
-        let none = || {
-            let reason = "no result is stored; `grainbench reference keep` makes it".to_owned();
-            self.without_data(run).unwrap_or_else(|| self.unusable(run, reason))
-        };
+        let none = || self.unreadable(run, "no result is stored; `grainbench reference keep` makes it".to_owned());
         let kept = self.solvers.references().kept(self.case, run, scene, of_control).ok_or_else(none)?;
         let StoredResult { record, tables, made } = kept?;
-        Ok((Arc::new(record), Arc::new(tables), Some(made)))
+        let done = FinishedRun::new(Arc::clone(scene), Arc::new(record));
+        Ok(FinishedRun { tables: Arc::new(tables), kept: Some(made), ..done })
     }
 
     /// Returns true if the stored result of a run is used, because its tier is larger than the tiers that are repeated
@@ -301,14 +295,14 @@ impl Runner {
         slot
     }
 
-    fn simulate(&self, run: &Run, by: SolverChoice<'_>, scene: &Scene) -> Result<RunOutput, RunError> {
+    fn simulate(&self, run: &Run, by: SolverChoice<'_>, scene: &Arc<Scene>) -> Result<FinishedRun, RunError> {
         let solver = match by.defect {
             None => self.solver(by.solver),
             Some(defect) => self.solvers.with_defect(by.solver, defect),
         };
         let solver = solver.ok_or_else(|| self.unusable(run, "there is no such solver".to_owned()))?;
         let (record, tables) = reading::run(&*solver, scene, by.resolution, self.options.threads, run.reading)?;
-        Ok((Arc::new(record), Arc::new(tables), None))
+        Ok(FinishedRun { tables: Arc::new(tables), ..FinishedRun::new(Arc::clone(scene), Arc::new(record)) })
     }
 
     /// Returns the scene of a run as the case defines it.
@@ -322,10 +316,7 @@ impl Runner {
         };
         slot.get_or_init(|| {
             let mut scene = match run.data {
-                None => self
-                    .case
-                    .variant(run.variant)
-                    .map_err(|error| self.without_data(run).unwrap_or_else(|| self.unusable(run, error.to_string())))?,
+                None => self.case.variant(run.variant).map_err(|error| self.unreadable(run, error.to_string()))?,
                 Some(data) => self.made_from(data, run)?,
             };
             if let Some((_, change)) = &run.adjustment {
@@ -362,10 +353,13 @@ impl Runner {
         self.options.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
     }
 
-    /// Returns the error of a run of our cases if their data are not installed.
-    fn without_data(&self, run: &Run) -> Option<RunError> {
-        let reason = self.solvers.references().missing_data().filter(|_| self.case.home.made.is_some())?;
-        Some(RunError::NotAvailable { solver: self.solver_name(run), reason })
+    /// Returns the error of a run whose scene or stored result cannot be read. If the data of our cases are not installed, the
+    /// error says so.
+    fn unreadable(&self, run: &Run, reason: String) -> RunError {
+        match self.solvers.references().missing_data().filter(|_| self.case.home.made.is_some()) {
+            Some(reason) => RunError::NotAvailable { solver: self.solver_name(run), reason },
+            None => self.unusable(run, reason),
+        }
     }
 
     fn unusable(&self, run: &Run, reason: String) -> RunError {
