@@ -2,7 +2,6 @@
 
 use super::PATIENCE;
 use super::assembly::Assembly;
-use super::bisection::largest;
 use super::failure::{Failure, of_error};
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::Limit;
@@ -119,12 +118,11 @@ pub(crate) fn fill(
             return true;
         }
         Err(cannot) => Some((range[0], cannot)),
-        Ok(bracket) => {
-            let found = bracket.stable;
+        Ok((found, unstable)) => {
             limit.found = Some(found);
             limit.margin = limit.default.map(|default| found / default);
             limit.error = limit.exact.map(|exact| (found - exact) / exact);
-            bracket.unstable
+            unstable
         }
     };
     let (detail, is_whole) = match end {
@@ -137,4 +135,67 @@ pub(crate) fn fill(
     };
     limit.detail = detail;
     is_whole
+}
+
+/// Largest time step that passed, and the smallest time step that failed with its failure; `None` if no step failed.
+type Bracket<F> = (f64, Option<(f64, F)>);
+
+/// Bisects the range between a time step that passes and one that fails on a logarithmic scale, until they differ by a
+/// relative `precision`.
+///
+/// If the upper end of the range passes, it is doubled up to `doublings` times.
+///
+/// # Errors
+/// The failure at the lower end of the range.
+fn largest<F>(
+    [low, high]: [f64; 2],
+    precision: f64,
+    doublings: u32,
+    mut test: impl FnMut(f64) -> Result<(), F>,
+) -> Result<Bracket<F>, F> {
+    test(low)?;
+    let (mut stable, mut above) = (low, high);
+    let mut failure = None;
+    for _ in 0..=doublings {
+        match test(above) {
+            Err(how) => {
+                failure = Some((above, how));
+                break;
+            }
+            Ok(()) => (stable, above) = (above, 2.0 * above),
+        }
+    }
+    let Some(mut unstable) = failure else { return Ok((stable, None)) };
+    while unstable.0 > stable * (1.0 + precision) {
+        let middle = (stable * unstable.0).sqrt();
+        match test(middle) {
+            Ok(()) => stable = middle,
+            Err(how) => unstable = (middle, how),
+        }
+    }
+    Ok((stable, Some(unstable)))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn finds_a_threshold_and_says_how_it_fails() {
+        let mut tried = 0;
+        let found = largest([0.1, 3.0], 1e-3, 0, |step| {
+            tried += 1;
+            if step <= 2.0_f64.sqrt() { Ok(()) } else { Err("too large") }
+        });
+        let (stable, unstable) = found.unwrap();
+        assert!((stable / 2.0_f64.sqrt() - 1.0).abs() < 1e-3 && tried < 20, "{stable}, {unstable:?}");
+        assert_eq!(unstable.unwrap().1, "too large");
+    }
+
+    #[test]
+    fn what_always_passes_or_never_does_is_said() {
+        let always = largest([1.0, 2.0], 0.01, 3, |_| Ok::<(), ()>(())).unwrap();
+        assert_eq!(always, (16.0, None));
+        assert_eq!(largest([1.0, 2.0], 0.01, 3, |_| Err("no")), Err("no"));
+    }
 }

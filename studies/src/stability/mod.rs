@@ -1,7 +1,6 @@
 //! Stability study. It finds the largest stable time steps by bisection, and runs hard cases.
 
 pub mod assembly;
-pub mod bisection;
 pub mod failure;
 pub mod hard;
 pub mod limit;
