@@ -172,8 +172,8 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
         });
         let (_, measured, expected) = &mut graphs[at];
         let stroke = if traced.slope.is_some() { Stroke::MarkedLine } else { Stroke::Line };
-        measured.push(Curve::new(label.clone(), stroke, thinned(traced.measured)));
-        let curve = thinned(traced.expected);
+        measured.push(Curve::new(label.clone(), stroke, thinned(traced.measured, DRAWN)));
+        let curve = thinned(traced.expected, DRAWN);
         if !curve.is_empty() && !expected.iter().any(|drawn| looks_alike(&drawn.points, &curve)) {
             let rounded = |power: f64| format!("slope {}", (power * 1e3).round() / 1e3);
             let label = traced.slope.map_or_else(|| format!("{label}, {}", expected_word(claim.source)), rounded);
@@ -224,10 +224,11 @@ fn looks_alike(a: &[(f64, f64)], b: &[(f64, f64)]) -> bool {
     })
 }
 
-/// Returns at most [`DRAWN`] points, evenly spaced in the list.
-fn thinned(points: Points) -> Points {
-    let every = points.len().div_ceil(DRAWN).max(1);
-    points.into_iter().step_by(every).collect()
+/// Returns at most `most` values, evenly spaced in the list.
+#[must_use]
+pub fn thinned<T>(values: Vec<T>, most: usize) -> Vec<T> {
+    let every = values.len().div_ceil(most).max(1);
+    values.into_iter().step_by(every).collect()
 }
 
 /// Returns no figures. Cases whose figures all come from claims use this function.

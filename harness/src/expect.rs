@@ -1,5 +1,6 @@
 //! Expectations of a quantity: a value, a bound, a band or an order of convergence.
 
+use crate::run::{FinishedRun, MissingData};
 use serde::{Deserialize, Serialize};
 use std::fmt;
 
@@ -158,6 +159,24 @@ impl Measurement {
         let first = values.first().copied().unwrap_or(f64::NAN);
         let changes: Vec<f64> = values.iter().map(|value| value - first).collect();
         Self::worst(time, &changes, |_| 0.0, scale)
+    }
+
+    /// Returns the largest change of a column of a run since its first sample, in units of the first value.
+    ///
+    /// # Errors
+    /// When the record lacks the column, or the column is empty.
+    pub fn drift_of(done: &FinishedRun, column: &str) -> Result<Self, MissingData> {
+        let values = done.column(column)?;
+        Ok(Self::drift(&done.series().time, values, values[0]))
+    }
+
+    /// Returns the measurement with the largest |error|.
+    ///
+    /// # Errors
+    /// When a measurement lacks data, or there is none.
+    pub fn worst_read(all: impl IntoIterator<Item = Result<Self, MissingData>>) -> Result<Self, MissingData> {
+        let all = all.into_iter().collect::<Result<Vec<_>, _>>()?;
+        Self::worst_among(all).ok_or_else(|| "values to compare".into())
     }
 
     /// Returns the measurement with the largest |error|; none for an empty list.

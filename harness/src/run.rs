@@ -206,6 +206,18 @@ pub struct FinishedRun {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct MissingData(pub String);
 
+impl From<&str> for MissingData {
+    fn from(name: &str) -> Self {
+        Self(name.to_owned())
+    }
+}
+
+impl From<String> for MissingData {
+    fn from(name: String) -> Self {
+        Self(name)
+    }
+}
+
 impl fmt::Display for MissingData {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "the record has no {}", self.0)
@@ -225,6 +237,15 @@ impl FinishedRun {
     /// When no table has this name.
     pub fn table(&self, name: &str) -> Result<&Table, MissingData> {
         self.tables.iter().find(|table| table.name == name).ok_or_else(|| MissingData(format!("table `{name}`")))
+    }
+
+    /// Returns a column of a table that was read from the snapshots.
+    ///
+    /// # Errors
+    /// When no table or no column has this name.
+    pub fn column_of(&self, table: &str, name: &str) -> Result<&[f64], MissingData> {
+        let column = self.table(table)?.column(name);
+        Ok(column.ok_or_else(|| format!("column `{name}` of `{table}`"))?)
     }
 
     /// Returns the time series.

@@ -7,6 +7,12 @@ pub const BLOCKS: usize = 8;
 /// Confidence level of the intervals.
 pub const CONFIDENCE: f64 = 0.99;
 
+/// Returns the arithmetic mean; NaN for an empty list.
+#[must_use]
+pub fn mean(values: &[f64]) -> f64 {
+    values.iter().sum::<f64>() / values.len() as f64
+}
+
 /// Means of two series, and the confidence interval of the difference of the means.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct Estimate {
@@ -32,7 +38,6 @@ pub fn difference(first: &[f64], second: &[f64], blocks: usize) -> Option<Estima
         return None;
     }
     let (first, second) = (block_means(first, blocks)?, block_means(second, blocks)?);
-    let mean = |values: &[f64]| values.iter().sum::<f64>() / blocks as f64;
     let differences: Vec<f64> = first.iter().zip(&second).map(|(a, b)| b - a).collect();
     let (_, half_width) = interval(&differences)?;
     Some(Estimate { first: mean(&first), second: mean(&second), half_width })
@@ -75,9 +80,8 @@ pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
 /// Returns the mean and the variance s² of independent values; the variance of a single value is NaN.
 #[must_use]
 pub fn mean_and_variance(values: &[f64]) -> (f64, f64) {
-    let count = values.len() as f64;
-    let mean = values.iter().sum::<f64>() / count;
-    (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (count - 1.0))
+    let mean = mean(values);
+    (mean, values.iter().map(|value| (value - mean).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0))
 }
 
 /// Returns the mean of n independent values and the half-width t s √(1 + 1/n) of the prediction interval for one further value.
@@ -86,7 +90,7 @@ pub fn mean_and_variance(values: &[f64]) -> (f64, f64) {
 pub fn next_value(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
     let half_width = spread(values)? * (0.5 * (1.0 + 1.0 / count)).sqrt();
-    Some((values.iter().sum::<f64>() / count, half_width))
+    Some((mean(values), half_width))
 }
 
 /// Returns the mean over time of several runs of one scene, and the half-width of the prediction interval for the mean of one

@@ -21,14 +21,10 @@ pub fn together(first: &FinishedRun, second: &FinishedRun, column: &str) -> Resu
 /// When a run lacks a column, or our run lacks a step of the other program's run.
 pub fn worst(done: &[FinishedRun], columns: &[&str], scale: f64) -> Result<Measurement, MissingData> {
     let [ours, theirs, ..] = done else { return Err(MissingData("second run to compare with".to_owned())) };
-    let found: Result<Vec<Measurement>, MissingData> = columns
-        .iter()
-        .map(|column| {
-            let (values, expected) = together(ours, theirs, column)?;
-            Ok(Measurement::worst_of(&theirs.series().time, &values, &expected, scale))
-        })
-        .collect();
-    Measurement::worst_among(found?).ok_or_else(|| MissingData("columns to compare".to_owned()))
+    Measurement::worst_read(columns.iter().map(|column| {
+        let (values, expected) = together(ours, theirs, column)?;
+        Ok(Measurement::worst_of(&theirs.series().time, &values, &expected, scale))
+    }))
 }
 
 /// Returns the difference of a column between two runs: time (s) and |difference| divided by the largest value of the
