@@ -6,7 +6,6 @@ use crate::silo::ensemble::Flow;
 use crate::silo::paper::PaperSize;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 
 pub(crate) static CASE: Case = Case {
     weakness: WEAKNESS,
@@ -29,14 +28,7 @@ fn silo() -> Silo {
 }
 
 fn full_size() -> PaperSize {
-    PaperSize {
-        variant: "deep",
-        flow: Flow::Pushed,
-        label: "tall silo, pushed",
-        step: LEVELS[0],
-        bins: BINS,
-        drained: None,
-    }
+    PaperSize { variant: "deep", label: "tall silo, pushed", bins: BINS, drained: None }
 }
 
 fn claims() -> Vec<Claim> {
@@ -44,7 +36,7 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Pushed, BINS);
+    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, BINS);
     all.extend(full_size().figures(runner));
     Ok(all)
 }

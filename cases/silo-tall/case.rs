@@ -1,9 +1,9 @@
 //! A tall silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, WEAKNESS, gone, no_springs};
-use crate::silo::ensemble::Flow;
-use crate::silo::paper::{self, PaperSize};
+use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, WEAKNESS, no_springs};
+use crate::silo::ensemble::{Flow, gone};
+use crate::silo::paper::{DrainExpectations, PaperSize};
 use crate::silo::{collapse, flows};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
@@ -44,20 +44,16 @@ fn silo() -> Silo {
 }
 
 fn full_size() -> PaperSize {
-    let drained = paper::DrainExpectations {
-        plateau: DRAINED.plateau,
-        onset: DRAINED.onset,
-        bins: DRAINED.bins.len(),
-        beside: Some(&collapse::PAPER[0]),
-        others: &collapse::PAPER,
-    };
     PaperSize {
         variant: "paper",
-        flow: Flow::Drained,
         label: "tall silo, drained",
-        step: LEVELS[0],
         bins: DRAINED.bins,
-        drained: Some(drained),
+        drained: Some(DrainExpectations {
+            numbers: &DRAINED,
+            bins: DRAINED.bins.len(),
+            beside: Some(&collapse::PAPER[0]),
+            others: &collapse::PAPER,
+        }),
     }
 }
 
@@ -80,7 +76,7 @@ fn claims() -> Vec<Claim> {
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&silo().run)?;
-    let mut all = crate::silo::figures::all(&done, Flow::Drained, DRAINED.bins);
+    let mut all = crate::silo::figures::all(&done, DRAINED.bins);
     all.extend(flows::figures(&done, "tall silo, drained", &collapse::TENTH));
     all.extend(full_size().figures(runner));
     Ok(all)

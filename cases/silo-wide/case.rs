@@ -4,7 +4,7 @@ use crate::silo::ELEMENTS;
 use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, WEAKNESS};
 use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
-use crate::silo::paper::{self, PaperSize};
+use crate::silo::paper::{DrainExpectations, PaperSize};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
@@ -46,13 +46,10 @@ fn silo() -> Silo {
 fn full_size() -> PaperSize {
     PaperSize {
         variant: "paper",
-        flow: Flow::Drained,
         label: "wide silo, drained",
-        step: LEVELS[0],
         bins: DRAINED.bins,
-        drained: Some(paper::DrainExpectations {
-            plateau: DRAINED.plateau,
-            onset: DRAINED.onset,
+        drained: Some(DrainExpectations {
+            numbers: &DRAINED,
             // Up to 14 τ, 33 elements have been in the last bin, so its mean is uncertain by at least 0.003.
             bins: 9,
             // The case `silo-tall` compares the curves of this silo with other flows.
@@ -72,7 +69,7 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, Flow::Drained, DRAINED.bins);
+    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, DRAINED.bins);
     all.extend(full_size().figures(runner));
     Ok(all)
 }

@@ -14,19 +14,18 @@ const STRESS: f64 = 2.4;
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
 
 /// Returns the figures for which a run has the tables: figure 4 needs `axes`, figure 5 also `forces`.
-pub(super) fn all(done: &FinishedRun, flow: Flow) -> Vec<Figure> {
+pub(super) fn all(done: &FinishedRun) -> Vec<Figure> {
     let Some(kinds) = kinds(done) else { return Vec::new() };
-    let time = done.table("whole").ok().and_then(|whole| whole.column("time")?.last().copied()).unwrap_or(f64::NAN);
-    [whole(done, flow, time, &kinds), detail(done, flow, time, kinds)].into_iter().flatten().collect()
+    let seen = part(Flow::from_scene(&done.scene));
+    let time = done.column_of("whole", "time").ok().and_then(|times| times.last().copied()).unwrap_or(f64::NAN);
+    [whole(done, seen, time, &kinds), detail(done, seen, time, kinds)].into_iter().flatten().collect()
 }
 
 /// Returns the principal axes of each block as lines; `None` if the run has no table of axes.
 fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
-    let table = done.table("axes").ok()?;
-    let of_stress = |x: &'static str, z: &'static str| rows(table, ["x", "z", x, z]);
+    let along = |x: &'static str, z: &'static str| rows(done, "axes", ["x", "z", x, z]).ok();
     let [smallest, middle, largest] =
-        [("smallest_x", "smallest_z"), ("middle_x", "middle_z"), ("largest_x", "largest_z")]
-            .map(|(x, z)| of_stress(x, z));
+        [along("smallest_x", "smallest_z")?, along("middle_x", "middle_z")?, along("largest_x", "largest_z")?];
     let mut lengths: Vec<f64> = smallest.iter().chain(&largest).map(|row| row[2].hypot(row[3])).collect();
     lengths.sort_by(f64::total_cmp);
     let longest = *lengths.get(lengths.len().checked_sub(1)? * 9 / 10)?;
@@ -35,8 +34,7 @@ fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
         let end = |&[x, z, a, b]: &[f64; 4], side: f64| [x + side * scale * a, z + side * scale * b];
         rows.iter().map(|row| (end(row, -1.0), end(row, 1.0), width)).collect()
     };
-    let rates =
-        [rows(table, ["x", "z", "shortens_x", "shortens_z"]), rows(table, ["x", "z", "lengthens_x", "lengthens_z"])];
+    let rates = [along("shortens_x", "shortens_z")?, along("lengthens_x", "lengthens_z")?];
     Some(vec![
         Lines {
             label: "stress T: minor and intermediate principal axes; length ∝ √|deviator|".to_owned(),
@@ -55,15 +53,15 @@ fn labels() -> [String; 2] {
 }
 
 /// Returns the figure of all blocks (figure 4).
-fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<Figure> {
+fn whole(done: &FinishedRun, part: [[f64; 2]; 2], time: f64, kinds: &[Lines]) -> Option<Figure> {
     let domain = done.scene.domain.as_ref()?;
-    let places = rows(done.table("axes").ok()?, ["x", "z"]);
+    let places = rows(done, "axes", ["x", "z"]).ok()?;
     let top = places.iter().map(|row| row[1]).fold(0.0, f64::max) + 2.5;
     let seen = [[domain.low.x, 0.0], [domain.high.x, top]];
-    let apart = ensemble::angles(done, flow, false, "largest").map(|angles| ensemble::mean(&angles));
+    let apart = ensemble::angle(done, false);
     let apart = apart.map_or_else(|_| String::new(), |mean| format!("; major axes {mean:.1}° apart after 6 τ"));
     let title = format!("t = {time} τ, blocks of 5 d{apart}");
-    let sheet = Sheet { title, seen, marked: Some(part(flow)), kinds: kinds.to_vec() };
+    let sheet = Sheet { title, seen, marked: Some(part), kinds: kinds.to_vec() };
     let caption = "Principal axes of the stress in blocks of 5 d by 8 d by 5 d at one time, projected on the plane, \
                    and of the rate of deformation in blocks that flow (figure 4 of the paper). The paper finds an \
                    angle of at most about 12° between them where the deformation is appreciable, smooth stresses, \
@@ -78,8 +76,8 @@ fn whole(done: &FinishedRun, flow: Flow, time: f64, kinds: &[Lines]) -> Option<F
 }
 
 /// Returns the figure of a part of the silo: the axes of its blocks, and its contact forces (figure 5).
-fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Option<Figure> {
-    let forces = rows(done.table("forces").ok()?, ["from_x", "from_z", "to_x", "to_z", "force"]);
+fn detail(done: &FinishedRun, seen: [[f64; 2]; 2], time: f64, kinds: Vec<Lines>) -> Option<Figure> {
+    let forces = rows(done, "forces", ["from_x", "from_z", "to_x", "to_z", "force"]).ok()?;
     let largest = forces.iter().map(|row| row[4]).fold(0.0, f64::max);
     if largest <= 0.0 {
         return None;
@@ -90,7 +88,6 @@ fn detail(done: &FinishedRun, flow: Flow, time: f64, kinds: Vec<Lines>) -> Optio
         "contact force, width ∝ force; {} contacts, mean {mean:.1} m g, largest {largest:.0} m g",
         forces.len()
     );
-    let seen = part(flow);
     let empty = |kind: &Lines| Lines { label: String::new(), lines: kind.lines[..0].to_vec() };
     let of_forces: Vec<Lines> = kinds.iter().map(empty).collect();
     let of_forces = [of_forces, vec![Lines { label, lines: forces.iter().map(line).collect() }]].concat();

@@ -1,15 +1,14 @@
 //! Claims of the silo cases, on elements, blocks and tracers.
 
-use super::ensemble::{self, Flow, mean, share, steady};
+use super::ensemble::{self, Flow, onset, plateau, share, steady};
 use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
-use grainbench_harness::source::CitedNumber;
 
 /// Function that returns a quantity of a silo from its run.
-pub(crate) type Quantity = fn(&FinishedRun, Flow) -> Result<f64, MissingData>;
+pub(crate) type Quantity = fn(&FinishedRun) -> Result<f64, MissingData>;
 
 /// Values of the prototype for every silo: mean sin φ and mean packing fraction of the flow.
 pub(crate) struct Numbers {
@@ -86,38 +85,13 @@ fn turned_gravity() -> Control {
 }
 
 /// Returns the mean sin φ of the elements in steady flow.
-fn sine(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
-    Ok(mean(&steady(done, flow, "sine_of_friction")?))
+fn sine(done: &FinishedRun) -> Result<f64, MissingData> {
+    Ok(mean(&steady(done, "sine_of_friction")?))
 }
 
 /// Returns the mean packing fraction of the elements in steady flow.
-fn packing(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
-    Ok(mean(&steady(done, flow, "packing_fraction")?))
-}
-
-/// Returns the number of grains that have left the silo.
-pub(crate) fn gone(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
-    ensemble::gone(done)
-}
-
-/// Returns the packing fraction of tracers strained by more than 0.4.
-fn plateau(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
-    ensemble::plateau(done)
-}
-
-/// Returns the median over tracers of the largest sin φ before dilation.
-fn onset(done: &FinishedRun, _: Flow) -> Result<f64, MissingData> {
-    ensemble::onset(done)
-}
-
-/// Returns the mean angle between the major principal axes of stress T and strain rate D, in single frames (degrees).
-fn angle(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
-    Ok(mean(&ensemble::angles(done, flow, false, "largest")?))
-}
-
-/// Returns the mean angle between the major principal axes of T and D, each averaged over a window of frames (degrees).
-fn angle_of_windows(done: &FinishedRun, flow: Flow) -> Result<f64, MissingData> {
-    Ok(mean(&ensemble::angles(done, flow, true, "largest")?))
+fn packing(done: &FinishedRun) -> Result<f64, MissingData> {
+    Ok(mean(&steady(done, "packing_fraction")?))
 }
 
 impl Silo {
@@ -135,8 +109,7 @@ impl Silo {
             self.range_of_friction(),
             self.beginning(),
         ];
-        let beside: [([&str; 2], Quantity); 2] = [(SINE, sine), (PACKING, packing)];
-        all.extend(beside.map(|(name, quantity)| self.beside_lammps(name, quantity)));
+        all.extend([self.beside_lammps(SINE, sine), self.beside_lammps(PACKING, packing)]);
         all
     }
 
@@ -150,8 +123,7 @@ impl Silo {
         all.extend(self.over_inertia(numbers.bins));
         all.extend(self.correlations(numbers.correlations));
         all.extend(self.coaxiality(numbers.angles));
-        let beside: [([&str; 2], Quantity); 2] = [(PLATEAU, plateau), (ONSET, onset)];
-        all.extend(beside.map(|(name, quantity)| self.beside_lammps(name, quantity)));
+        all.extend([self.beside_lammps(PLATEAU, plateau), self.beside_lammps(ONSET, onset)]);
         all
     }
 
@@ -170,23 +142,23 @@ impl Silo {
         control: Control,
         read: Quantity,
     ) -> Claim {
-        let flow = self.flow;
         let (scale, in_units) = if unit == "deg" { (45.0, "of 45°") } else { (cited.value.abs(), "of the value") };
         let allowed = (self.spread(quantity) + cited.uncertainty) / scale;
         let because = format!("{PACKINGS}, plus the uncertainty of the prototype's mean; in units {in_units}");
         claim(quantity, unit)
             .run(self.run.clone())
-            .equals_cited(cited, scale, move |done| read(&done[0], flow))
+            .equals_cited(cited, scale, move |done| read(&done[0]))
             .within(computed(allowed, because))
             .refuses(control)
     }
 
     /// Returns the claim on the fraction of elements whose sin φ is in the range of the paper.
     fn range_of_friction(&self) -> Claim {
-        let (flow, source) = (self.flow, self.numbers.sine.source());
-        claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
+        claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow.words()), "1")
             .run(self.run.clone())
-            .at_least(0.95, source, move |done| Ok(share(&steady(&done[0], flow, "sine_of_friction")?, [0.2, 0.6])))
+            .at_least(0.95, self.numbers.sine.source(), |done| {
+                Ok(share(&steady(&done[0], "sine_of_friction")?, [0.2, 0.6]))
+            })
             .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
             .refuses(Control::misread("tan φ taken for sin φ", ensemble::tangent))
     }
@@ -194,44 +166,38 @@ impl Silo {
     /// Returns the claims on two correlations over elements: of two measures of friction, and of two strain rates. The
     /// negative controls shuffle the elements, so that the correlations vanish.
     fn correlations(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
-        let asked = cited.map(|cited| format!("required in advance; the prototype has {}", cited.value));
-        let [for_criteria, for_rates] = asked;
+        let [for_criteria, for_rates] =
+            cited.map(|cited| format!("required in advance; the prototype has {}", cited.value));
         let [criteria, rates] = cited.map(|cited| cited.source());
-        let shuffled = "each element beside the friction of another";
-        let elsewhere = "each element beside the rate of another";
         vec![
             claim("correlation of sin φ with Drucker and Prager's ratio", "1")
                 .run(self.run.clone())
                 .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
                 .within(exactly(for_criteria))
-                .refuses(Control::misread(shuffled, ensemble::friction_elsewhere)),
+                .refuses(ensemble::friction_elsewhere()),
             claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
                 .run(self.run.clone())
                 .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
                 .within(exactly(for_rates))
-                .refuses(Control::misread(elsewhere, ensemble::rate_elsewhere)),
+                .refuses(ensemble::rate_elsewhere()),
         ]
     }
 
     /// Returns the claims on the angle between the major principal axes of stress and strain rate.
     fn coaxiality(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
-        let elsewhere = || Control::misread("each block beside the stress of another", ensemble::stress_elsewhere);
+        let of_frames = ["angle between the axes of largest T and D in blocks of 5 d", "deg"];
+        let of_windows = ["the same angle of means over 20 frames", "deg"];
         vec![
-            self.equals(
-                ["angle between the axes of largest T and D in blocks of 5 d", "deg"],
-                cited[0],
-                elsewhere(),
-                angle,
-            ),
-            self.equals(["the same angle of means over 20 frames", "deg"], cited[1], elsewhere(), angle_of_windows),
+            self.equals(of_frames, cited[0], ensemble::stress_elsewhere(), |done| ensemble::angle(done, false)),
+            self.equals(of_windows, cited[1], ensemble::stress_elsewhere(), |done| ensemble::angle(done, true)),
         ]
     }
 
     /// Returns the claim on the mean rotation from the major axis of stress to that of strain rate. Outward rotation is
     /// positive in both halves. The mean is small for a symmetric flow.
     pub(crate) fn turn(&self, cited: CitedNumber) -> Claim {
-        let control = Control::misread("D turned by 10°", ensemble::rate_turned);
-        self.equals(["turn from T to D in the plane, with the sign of x", "deg"], cited, control, ensemble::turn)
+        let words = "turn from T to D in the plane, with the sign of x";
+        self.equals([words, "deg"], cited, ensemble::rate_turned(), ensemble::turn)
     }
 
     /// Returns the claim that the mean shear stress of a symmetric silo is zero.
@@ -243,8 +209,7 @@ impl Silo {
             })
             .within(judged(
                 0.03,
-                "the deposit is not mirror-symmetric; gravity tilted by 10° gives .07 in the \
-                                  prototype",
+                "the deposit is not mirror-symmetric; gravity tilted by 10° gives .07 in the prototype",
             ))
             .refuses(turned_gravity())
     }
@@ -259,9 +224,8 @@ impl Silo {
                 .run(self.run.clone())
                 .equals(bins[0].source(), move |done| {
                     let full = cited().take(ensemble::FULL);
-                    let pairs = ensemble::in_bins_of(&ensemble::over_inertia(&done[0])?, full)?;
-                    let [found, expected] = ensemble::worst(&pairs);
-                    Ok(Measurement::new(found, expected, 1.0))
+                    let found = ensemble::over_inertia(&done[0], f64::INFINITY)?;
+                    Ok(ensemble::worst(&ensemble::in_bins_of(&found, full)?))
                 })
                 .within(required(
                     0.008,
@@ -279,19 +243,18 @@ impl Silo {
                     Ok(Measurement::new(mean(&off), 0.0, 1.0))
                 })
                 .within(computed(self.spread(mean_off), format!("{PACKINGS}; in units of φ")))
-                .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one)),
+                .refuses(ensemble::density_of_one()),
         ]
     }
 
     /// Returns the claim on the packing fraction of the deposit.
     pub(crate) fn deposit(&self, cited: CitedNumber) -> Claim {
-        let control = Control::misread("radii a hundredth too large", ensemble::larger_radii);
-        self.equals(["packing fraction of the deposit", "1"], cited, control, |done, _| ensemble::deposit(done))
+        let quantity = ["packing fraction of the deposit", "1"];
+        self.equals(quantity, cited, ensemble::larger_radii(), ensemble::deposit)
     }
 
     /// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
-        let flow = self.flow;
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
         let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {
             law.scale_tangential(1e-6)
@@ -300,7 +263,7 @@ impl Silo {
         let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
         let allowed = computed(apart / mean, format!("{because}; in units of the mean of ten packings"));
         row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
-            Ok(Measurement::new(read(&done[0], flow)?, read(&done[1], flow)?, mean))
+            Ok(Measurement::new(read(&done[0])?, read(&done[1])?, mean))
         })
     }
 

@@ -69,15 +69,13 @@ pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [
         .run(run)
         .agrees(Source::Ourselves("stored result of the run of that silo"), move |done| {
             let other = other.done()?;
-            let theirs = ensemble::over_inertia(&other)?;
-            let theirs = theirs.into_iter().enumerate().filter_map(|(bin, packing)| Some((bin, packing?)));
+            let theirs = ensemble::over_inertia(&other, f64::INFINITY)?.into_iter().enumerate();
+            let theirs = theirs.filter_map(|(bin, packing)| Some((bin, packing?)));
             let until = other.scene.duration.seconds().unwrap_or(f64::INFINITY);
-            let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, theirs)?;
-            let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measurement::new(found, expected, 1.0))
+            Ok(ensemble::worst(&ensemble::in_bins_of(&ensemble::over_inertia(&done[0], until)?, theirs)?))
         })
         .within(required(0.008, "required in advance: two runs of the prototype differ by .005 to .008; in units of φ"))
-        .refuses(Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one))
+        .refuses(ensemble::density_of_one())
 }
 
 /// Number of bins of strain below |E| = 0.1. These bins are not compared, because flows from different deposits differ
@@ -90,19 +88,17 @@ pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str)
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .run(run)
         .agrees(Source::Ourselves("stored results of the runs of the other silos"), move |done| {
-            let ours = ensemble::over_strain(&done[0], &STRAIN)?;
+            let ours = ensemble::over_strain(&done[0])?;
             let mut pairs = Vec::new();
             for other in others {
-                let theirs = ensemble::over_strain(&other.done()?, &STRAIN)?;
+                let theirs = ensemble::over_strain(&other.done()?)?;
                 for bin in FEW_STRAINS..FEW_STRAINS + other.strained {
-                    let lacking =
-                        || MissingData(format!("tracers with |E| of {:?}; {} has none", STRAIN[bin], other.label));
+                    let lacking = || format!("tracers with |E| of {:?}; {} has none", STRAIN[bin], other.label);
                     pairs.push([ours[bin].ok_or_else(lacking)?, theirs[bin].ok_or_else(lacking)?]);
                 }
             }
-            let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measurement::new(found, expected, 1.0))
+            Ok(ensemble::worst(&pairs))
         })
         .within(required(0.013, "required in advance: runs of the prototype agree within .013 there; in units of φ"))
-        .refuses(Control::misread("radii a hundredth too large", ensemble::larger_radii))
+        .refuses(ensemble::larger_radii())
 }

@@ -1,13 +1,11 @@
 //! Figures of a silo, like those of the paper, from the tables of its run.
 
 use super::axes;
-use super::ensemble::{STRAIN, over_inertia, over_strain, strained};
-use super::flow::{ELEMENT, Flow, INERTIA, STEADY, rows};
+use super::ensemble::{STRAIN, courses, over_inertia, over_strain, strained};
+use super::flow::{ELEMENT, INERTIA, STEADY, rows};
 use grainbench_fields::element_picture::{Sheet, Units};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
-use nalgebra::Vector3;
 
 /// Largest number of frames of the animation.
 const FRAMES: usize = 24;
@@ -20,27 +18,19 @@ const STILL: f64 = 1e-5;
 
 /// Returns all figures of a silo: the animation, axes of stress and strain rate, contact forces, φ against |I₀| with
 /// the prototype's bins, sin φ against φ along tracers, φ against strain.
-pub(crate) fn all(done: &FinishedRun, flow: Flow, bins: &[CitedNumber]) -> Vec<Figure> {
-    let axes = axes::all(done, flow).into_iter();
+pub(crate) fn all(done: &FinishedRun, bins: &[CitedNumber]) -> Vec<Figure> {
+    let axes = axes::all(done).into_iter();
     let graphs = [over_rate(done, bins), along_tracers(done), over_hencky(done)].into_iter().flatten();
     film(done).into_iter().chain(axes).chain(graphs).collect()
 }
 
-/// Returns at most `most` of the points, at equal intervals.
-pub(super) fn thinned(points: Vec<(f64, f64)>, most: usize) -> Vec<(f64, f64)> {
-    let every = points.len().div_ceil(most).max(1);
-    points.into_iter().step_by(every).collect()
-}
-
 /// Returns an animation of speed, sin φ, φ and |D₀| (figures 2 and 3 of the paper).
 fn film(done: &FinishedRun) -> Option<Figure> {
-    let table = done.table("elements").ok()?;
     let domain = done.scene.domain.as_ref()?;
-    let mut times: Vec<f64> = table.column("time")?.to_vec();
+    let mut times: Vec<f64> = done.column_of("elements", "time").ok()?.to_vec();
     times.dedup();
-    let every = times.len().div_ceil(FRAMES).max(1);
-    let times: Vec<f64> = times.into_iter().step_by(every).collect();
-    let top = table.column("z")?.iter().copied().fold(0.0, f64::max) + 0.5 * ELEMENT;
+    let times = thinned(times, FRAMES);
+    let top = done.column_of("elements", "z").ok()?.iter().copied().fold(0.0, f64::max) + 0.5 * ELEMENT;
     let corners = (Vector3::new(domain.low.x, 0.0, 0.0), Vector3::new(domain.high.x, ELEMENT, top));
     let grid = Grid::filling(corners, Vector3::repeat(ELEMENT));
     let names = ["sine_of_friction", "packing_fraction", "shear_rate"];
@@ -52,13 +42,14 @@ fn film(done: &FinishedRun) -> Option<Figure> {
         let frame = times.iter().position(|known| *known == time)?;
         Some((frame, grid.find(Vector3::new(x, 0.5 * ELEMENT, z))?))
     };
-    for row in rows(table, ["time", "x", "velocity_x", "velocity_z", "z", "surface"]) {
-        if let Some((frame, cell)) = place(row[0], row[1], row[4]).filter(|_| row[5] == 0.0) {
-            shown[0].1[frame][cell] = row[2].hypot(row[3]);
+    let velocities = rows(done, "elements", ["time", "x", "z", "surface", "velocity_x", "velocity_z"]).ok()?;
+    for [time, x, z, surface, along, up] in velocities {
+        if let Some((frame, cell)) = place(time, x, z).filter(|_| surface == 0.0) {
+            shown[0].1[frame][cell] = along.hypot(up);
         }
     }
     for (number, name) in (1..).zip(names) {
-        for [time, x, z, surface, value] in rows(table, ["time", "x", "z", "surface", name]) {
+        for [time, x, z, surface, value] in rows(done, "elements", ["time", "x", "z", "surface", name]).ok()? {
             if let Some((frame, cell)) = place(time, x, z).filter(|_| surface == 0.0) {
                 shown[number].1[frame][cell] = value;
             }
@@ -75,17 +66,16 @@ fn film(done: &FinishedRun) -> Option<Figure> {
 
 /// Returns |I₀| and φ of elements in steady flow, away from sides and surface and without fixed grains.
 pub(super) fn flowing(done: &FinishedRun) -> Vec<(f64, f64)> {
-    let Ok(table) = done.table("elements") else { return Vec::new() };
-    let all = rows(table, ["time", "side", "surface", "inertial_number", "packing_fraction"]).into_iter();
+    let all = rows(done, "elements", ["time", "side", "surface", "inertial_number", "packing_fraction"]);
     let flows = |row: &[f64; 5]| row[0] >= STEADY - 1e-9 && row[1] + row[2] == 0.0 && row[3] >= STILL;
-    all.filter(flows).map(|row| (row[3], row[4])).collect()
+    all.unwrap_or_default().into_iter().filter(flows).map(|row| (row[3], row[4])).collect()
 }
 
 /// Returns the figure of φ against |I₀| (figure 6).
 fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
     let cloud = flowing(done);
     let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
-    let ours = over_inertia(done).ok()?;
+    let ours = over_inertia(done, f64::INFINITY).ok()?;
     let ours = ours.iter().enumerate().filter_map(|(bin, packing)| Some((middle(bin), (*packing)?))).collect();
     let theirs = bins.iter().enumerate().map(|(bin, cited)| (middle(bin), cited.value)).collect();
     // The fit is a straight line on linear axes, and a curve against the logarithm of |I₀|.
@@ -109,21 +99,11 @@ fn over_rate(done: &FinishedRun, bins: &[CitedNumber]) -> Option<Figure> {
 
 /// Returns the figure of sin φ against φ along tracers (figure 7).
 fn along_tracers(done: &FinishedRun) -> Option<Figure> {
-    let table = done.table("tracers").ok()?;
-    let all = rows(table, ["tracer", "z", "packing_fraction", "sine_of_friction"]);
-    let lowest = super::ensemble::lowest(done);
-    let mut starts: Vec<(f64, f64)> = Vec::new();
-    let (mut cloud, mut last) = (Vec::new(), Vec::new());
-    let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
-    tracers.sort_by(f64::total_cmp);
-    tracers.dedup();
-    for tracer in tracers {
-        let course: Vec<(f64, f64)> =
-            all.iter().filter(|row| row[0] == tracer && row[1] > lowest).map(|row| (row[2], row[3])).collect();
-        starts.extend(course.first());
-        last.extend(course.last());
-        cloud.extend(course);
-    }
+    let courses = courses(done, ["packing_fraction", "sine_of_friction"]).ok()?;
+    let points = |some: &mut dyn Iterator<Item = &[f64; 2]>| some.map(|&[packing, sine]| (packing, sine)).collect();
+    let starts = points(&mut courses.iter().filter_map(|course| course.first()));
+    let last = points(&mut courses.iter().filter_map(|course| course.last()));
+    let cloud = points(&mut courses.iter().flatten());
     let caption = "Tracers start at a large packing fraction. Their sine of the friction angle is largest before they \
                    dilate and move to the left. The paper finds a largest sine of 0.6 before dilation. At a tenth of its \
                    size it is 0.5 to 0.6.";
@@ -143,7 +123,7 @@ fn along_tracers(done: &FinishedRun) -> Option<Figure> {
 /// Returns the figure of φ against |E| (figure 8).
 fn over_hencky(done: &FinishedRun) -> Option<Figure> {
     let cloud = strained(done).ok()?.into_iter().map(|[strain, packing]| (strain, packing)).collect();
-    let means = over_strain(done, &STRAIN).ok()?;
+    let means = over_strain(done).ok()?;
     let means =
         STRAIN.iter().zip(means).filter_map(|(bin, packing)| Some((0.5 * (bin[0] + bin[1]), packing?))).collect();
     let caption = "Packing fraction of tracer elements of 5 d over their Hencky strain |E|. In the paper, the \

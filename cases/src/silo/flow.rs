@@ -1,6 +1,6 @@
 //! Cause of the flow of a silo, with the sizes and bins of its evaluation.
 
-use grainbench_harness::reading::Table;
+use grainbench_harness::prelude::*;
 
 /// Cause of the flow.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,6 +15,11 @@ pub(crate) enum Flow {
 pub(crate) const FLOWING: f64 = 0.02;
 
 impl Flow {
+    /// Returns the cause of the flow in a scene: grains with prescribed motion push the others.
+    pub(super) fn from_scene(scene: &Scene) -> Self {
+        if scene.driven.is_empty() { Self::Drained } else { Self::Pushed }
+    }
+
     /// Returns true if an element of edge 2.5 d is far from the cause of the flow: at least 7.5 d from the slit of a
     /// draining silo, or above 12.5 d in a pushed silo.
     pub(super) fn is_far(self, x: f64, z: f64) -> bool {
@@ -60,12 +65,17 @@ pub(crate) const INERTIA: [[f64; 2]; 10] = [
 pub(super) const ELEMENT: f64 = 2.5;
 /// Time from which the flow counts as steady (τ). The first window of frames begins at this time.
 pub(super) const STEADY: f64 = 6.0;
-/// Returns columns of a table as rows, without rows that contain NaN.
-pub(super) fn rows<const N: usize>(table: &Table, names: [&str; N]) -> Vec<[f64; N]> {
-    let columns: Vec<&[f64]> = names.iter().filter_map(|name| table.column(name)).collect();
-    if columns.len() < N {
-        return Vec::new();
+/// Returns columns of a table as rows, without rows that contain NaN or infinite numbers.
+pub(super) fn rows<const N: usize>(
+    done: &FinishedRun,
+    table: &str,
+    names: [&str; N],
+) -> Result<Vec<[f64; N]>, MissingData> {
+    let mut columns: [&[f64]; N] = [&[]; N];
+    for (column, name) in columns.iter_mut().zip(names) {
+        *column = done.column_of(table, name)?;
     }
-    let row = |at: usize| std::array::from_fn(|column| columns[column][at]);
-    (0..table.rows()).map(row).filter(|row: &[f64; N]| row.iter().all(|number| number.is_finite())).collect()
+    let row = |at: usize| columns.map(|column| column[at]);
+    let all = (0..done.table(table)?.rows()).map(row);
+    Ok(all.filter(|row| row.iter().all(|number| number.is_finite())).collect())
 }

@@ -2,8 +2,8 @@
 
 use super::collapse::ComparedFlow;
 use super::ensemble::{self, STRAIN};
-use super::figures::{flowing, thinned};
-use super::flow::{INERTIA, rows};
+use super::figures::flowing;
+use super::flow::INERTIA;
 use grainbench_harness::prelude::*;
 
 /// Largest inertial number in figure 6. Elements above the slit have larger inertial numbers and are not plotted.
@@ -28,7 +28,7 @@ fn over_rate(flows: &Flows) -> Figure {
     let mut curves = Vec::new();
     for (label, done) in flows {
         let middle = |bin: usize| (INERTIA[bin][0] * INERTIA[bin][1]).sqrt();
-        let means = ensemble::over_inertia(done).unwrap_or_default().into_iter().enumerate();
+        let means = ensemble::over_inertia(done, f64::INFINITY).unwrap_or_default().into_iter().enumerate();
         let means = means.filter_map(|(bin, packing)| Some((middle(bin), packing?)));
         let means = means.filter(|(rate, _)| *rate <= FASTEST).collect();
         curves.push(Curve::new(*label, Stroke::MarkedLine, means));
@@ -47,17 +47,9 @@ fn over_rate(flows: &Flows) -> Figure {
 
 /// Returns the paths of a flow's tracers in the plane of two quantities, as lines between means over [`SMOOTH`] frames.
 fn courses(done: &FinishedRun, names: [&str; 2]) -> Vec<([f64; 2], [f64; 2], f64)> {
-    let Ok(table) = done.table("tracers") else { return Vec::new() };
-    let all = rows(table, ["tracer", "z", names[0], names[1]]);
-    let mut tracers: Vec<f64> = all.iter().map(|row| row[0]).collect();
-    tracers.sort_by(f64::total_cmp);
-    tracers.dedup();
-    let (mut lines, lowest) = (Vec::new(), ensemble::lowest(done));
-    for tracer in tracers {
-        let is_strained = |row: &&[f64; 4]| row[0] == tracer && row[1] > lowest;
-        let course: Vec<[f64; 2]> = all.iter().filter(is_strained).map(|row| [row[2], row[3]]).collect();
-        let mean =
-            |some: &[[f64; 2]]| [0, 1].map(|axis| some.iter().map(|at| at[axis]).sum::<f64>() / some.len() as f64);
+    let mean = |some: &[[f64; 2]]| [0, 1].map(|axis| some.iter().map(|at| at[axis]).sum::<f64>() / some.len() as f64);
+    let mut lines = Vec::new();
+    for course in ensemble::courses(done, names).unwrap_or_default() {
         let smooth: Vec<[f64; 2]> = course.chunks(SMOOTH).map(mean).collect();
         lines.extend(smooth.windows(2).map(|pair| (pair[0], pair[1], WIDTH)));
     }
@@ -103,7 +95,7 @@ fn over_strain(flows: &Flows) -> Figure {
         flows.iter().filter_map(|(label, done)| Some(format!("{:.3} ({label})", ensemble::plateau(done).ok()?)));
     let plateau: Vec<String> = plateau.collect();
     // Only the first flow has a curve of means, as a visual guide.
-    let means = flows.first().and_then(|(label, done)| Some((label, ensemble::over_strain(done, &STRAIN).ok()?)));
+    let means = flows.first().and_then(|(label, done)| Some((label, ensemble::over_strain(done).ok()?)));
     let means = means.map(|(label, all)| {
         let middle = |bin: &[f64; 2]| 0.5 * (bin[0] + bin[1]);
         let points: Vec<[f64; 2]> =

@@ -6,21 +6,19 @@
 //! this sin φ therefore uses the value of the prototype and the tolerance for a tenth of the size (derivation).
 
 use super::ELEMENTS;
+use super::claims::{DrainNumbers, LEVELS};
 use super::collapse::{self, ComparedFlow};
-use super::ensemble::{self, Flow, mean, share, steady};
+use super::ensemble::{self, Flow, share, steady};
 use super::flows;
 use crate::sources::literature::rycroft_2009 as paper;
 use grainbench_harness::claim::Quantity;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 
 /// A silo at the paper's size.
 pub(crate) struct PaperSize {
     pub(crate) variant: &'static str,
-    pub(crate) flow: Flow,
     /// Label of this flow in figures.
     pub(crate) label: &'static str,
-    pub(crate) step: Level,
     /// Packing fractions of the prototype in the first bins of |I₀|.
     pub(crate) bins: &'static [CitedNumber],
     /// Expected values of a draining silo; `None` for a pushed silo. In a pushed silo, too few elements deform for
@@ -30,11 +28,9 @@ pub(crate) struct PaperSize {
 
 /// Expected values of a draining silo at the paper's size.
 pub(crate) struct DrainExpectations {
-    /// Packing fraction of tracers strained by more than 0.4, in the prototype.
-    pub(crate) plateau: CitedNumber,
-    /// Largest sin φ before tracers dilate, in the prototype. The paper prints 0.6, which our runs do not reach
+    /// Values of the prototype. The paper prints 0.6 for the largest sin φ before tracers dilate, which our runs do not reach
     /// (derivation).
-    pub(crate) onset: CitedNumber,
+    pub(crate) numbers: &'static DrainNumbers,
     /// Number of bins of |I₀| whose worst error is tested. A further bin in `bins` of [`PaperSize`] is tested by its
     /// mean over the whole steady flow, because it contains few elements, all above the slit.
     pub(crate) bins: usize,
@@ -45,17 +41,8 @@ pub(crate) struct DrainExpectations {
     pub(crate) others: &'static [ComparedFlow],
 }
 
-/// Returns a negative control that reads tan φ instead of sin φ, as the paper's wording for μ suggests.
 fn tangent() -> Control {
     Control::misread("tan φ for sin φ", ensemble::tangent)
-}
-
-fn larger() -> Control {
-    Control::misread("radii a hundredth too large", ensemble::larger_radii)
-}
-
-fn elsewhere() -> Control {
-    Control::misread("each block beside the stress of another", ensemble::stress_elsewhere)
 }
 
 /// Suffix that distinguishes quantities at the paper's size from those at a tenth of this size.
@@ -75,9 +62,7 @@ fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, co
     quantity
         .equals(bins[0].source(), move |done| {
             let cited = bins.iter().map(|cited| cited.value).enumerate();
-            let pairs = ensemble::in_bins_of(&ensemble::over_inertia_until(&done[0], until)?, cited)?;
-            let [found, expected] = ensemble::worst(&pairs);
-            Ok(Measurement::new(found, expected, 1.0))
+            Ok(ensemble::worst(&ensemble::in_bins_of(&ensemble::over_inertia(&done[0], until)?, cited)?))
         })
         .within(asked(0.008, "two runs of the prototype differ by .005 to .008; in units of φ"))
         .refuses(control)
@@ -91,7 +76,7 @@ fn asked(allowed: f64, what: &str) -> Tolerance {
 impl PaperSize {
     /// Returns the run of this silo. It takes a few minutes on two cores.
     pub(crate) fn run(&self) -> Run {
-        Run::new(self.variant, "dem", self.step.resolution).read_by(ELEMENTS).kept().paper_size()
+        Run::new(self.variant, "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().paper_size()
     }
 
     fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
@@ -104,24 +89,21 @@ impl PaperSize {
     }
 
     pub(crate) fn claims(&self) -> Vec<Claim> {
-        let flow = self.flow;
+        let flow = if self.drained.is_some() { Flow::Drained } else { Flow::Pushed };
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
             self.claim(quantity, "deg")
-                .equals_cited(cited, cited.value, move |done| {
-                    Ok(mean(&ensemble::angles(&done[0], flow, averaged, "largest")?))
-                })
+                .equals_cited(cited, cited.value, move |done| ensemble::angle(&done[0], averaged))
                 .within(asked(allowed / cited.value, TENTH))
-                .refuses(elsewhere())
+                .refuses(ensemble::stress_elsewhere())
         };
         let mut all = vec![
             self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
-                .at_least(0.95, paper::LOWEST_SINE.source(), move |done| {
+                .at_least(0.95, paper::LOWEST_SINE.source(), |done| {
                     let range = [paper::LOWEST_SINE.value, paper::HIGHEST_SINE.value];
-                    Ok(share(&steady(&done[0], flow, "sine_of_friction")?, range))
+                    Ok(share(&steady(&done[0], "sine_of_friction")?, range))
                 })
                 .within(exactly(
-                    "required in advance: the source states the range but not the fraction of elements in \
-                                 it",
+                    "required in advance: the source states the range but not the fraction of elements in it",
                 ))
                 .refuses(tangent()),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
@@ -129,39 +111,38 @@ impl PaperSize {
         // In a pushed silo, only few blocks flow in all twenty frames of a window.
         let drained = self.drained.iter();
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
-        all.extend(drained.flat_map(|numbers| self.of_drains(numbers)));
+        all.extend(drained.flat_map(|drained| self.of_drains(drained)));
         all
     }
 
     /// Returns the claims on a draining silo.
-    fn of_drains(&self, numbers: &DrainExpectations) -> Vec<Claim> {
-        let (bins, over_the_slit) = self.bins.split_at(numbers.bins);
+    fn of_drains(&self, drained: &DrainExpectations) -> Vec<Claim> {
+        let (bins, over_the_slit) = self.bins.split_at(drained.bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
         let one = |quantity: &str| self.claim(quantity, "1");
-        let density = Control::misread("the density of the grains 1 for 6/π", ensemble::density_of_one);
         let mut all = vec![
             one("packing fraction of the deposit")
                 .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
                 .within(asked(0.005, "63.5 % ± .5; in units of φ"))
-                .refuses(larger()),
+                .refuses(ensemble::larger_radii()),
             over_inertia(
                 one(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 14 τ, worst")),
                 bins,
                 PROTOTYPE,
-                density,
+                ensemble::density_of_one(),
             ),
             over_inertia(
                 self.known(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst"), "1", STRAINED),
                 bins,
                 f64::INFINITY,
-                Control::misread("what comes after 14 τ left out", ensemble::without_the_end),
+                ensemble::without_the_end(),
             ),
             one("packing fraction of tracers strained by more than .4")
-                .equals_cited(numbers.plateau, 1.0, |done| ensemble::plateau(&done[0]))
+                .equals_cited(drained.numbers.plateau, 1.0, |done| ensemble::plateau(&done[0]))
                 .within(asked(0.008, TENTH))
-                .refuses(larger()),
+                .refuses(ensemble::larger_radii()),
             one("largest sin φ of tracers before they dilate, median")
-                .equals_cited(numbers.onset, 1.0, |done| ensemble::onset(&done[0]))
+                .equals_cited(drained.numbers.onset, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
                 .refuses(tangent()),
         ];
@@ -169,18 +150,16 @@ impl PaperSize {
             all.push(
                 one("packing fraction of elements with |I₀| of .4 to .6, 6 to 25 τ")
                     .equals(last.source(), move |done| {
-                        let all = ensemble::over_inertia(&done[0])?;
-                        let found =
-                            all.last().copied().flatten().ok_or_else(|| MissingData("elements so fast".to_owned()))?;
-                        Ok(Measurement::new(found, last.value, 1.0))
+                        let [.., fastest] = ensemble::over_inertia(&done[0], f64::INFINITY)?;
+                        Ok(Measurement::new(fastest.ok_or("elements so fast")?, last.value, 1.0))
                     })
                     .within(asked(0.008, "two runs of the prototype differ by .005 to .008; in units of φ"))
-                    .refuses(larger()),
+                    .refuses(ensemble::larger_radii()),
             );
         }
-        if let Some(other) = numbers.beside {
+        if let Some(other) = drained.beside {
             all.push(collapse::of_drains(self.run(), other, ["the wide silo", SUFFIX]));
-            all.push(collapse::of_strained(self.run(), numbers.others, SUFFIX));
+            all.push(collapse::of_strained(self.run(), drained.others, SUFFIX));
         }
         all
     }
@@ -188,9 +167,9 @@ impl PaperSize {
     /// Returns the figures; none if the run is neither stored nor possible.
     pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
         let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
-        let mut all = super::figures::all(&done, self.flow, self.bins);
-        if let Some(numbers) = &self.drained {
-            all.extend(flows::figures(&done, self.label, numbers.others));
+        let mut all = super::figures::all(&done, self.bins);
+        if let Some(drained) = &self.drained {
+            all.extend(flows::figures(&done, self.label, drained.others));
         }
         let named = |figure: Figure| Figure {
             name: format!("{}-paper", figure.name),

@@ -55,7 +55,7 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
         course,
         every_blocks: (blocks.cells() * frames).div_ceil(MOST_ROWS).max(1),
         blocks,
-        flow: if scene.driven.is_empty() { Flow::Drained } else { Flow::Pushed },
+        flow: Flow::from_scene(scene),
         before: None,
         rates: Vec::new(),
         window: Vec::new(),
