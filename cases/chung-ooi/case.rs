@@ -1,20 +1,16 @@
 //! Impacts of Hertz spheres in the eight benchmark tests of Chung & Ooi (2011), compared with closed forms.
 
-#[path = "fair.rs"]
 mod fair;
-#[path = "forms.rs"]
 mod forms;
-#[path = "turning.rs"]
 mod turning;
 
 use crate::exact::dashpot::{no_tension_lag, no_tension_ratio};
-use crate::rows::program_forces::forces;
-use crate::rows::programs::hertz_impact;
+use crate::rows::programs::{PAIRS, forces, row, same_cycle};
 use crate::rows::rigid;
 use forms::ImpactParameters;
+use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::ContactLaw;
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.01", 0.01), fraction("dt=.003", 0.003), fraction("dt=.001", 0.001)];
 const STEP: Level = LEVELS[2];
@@ -34,16 +30,35 @@ pub(crate) static CASE: Case =
 fn claims() -> Vec<Claim> {
     let mut claims = [elastic(), restitution(), oblique(), rigid(), turning::claims(), fair::claims()].concat();
     for variant in [ELASTIC[0], ELASTIC[2], DAMPED[0], OBLIQUE[0]] {
-        claims.extend(hertz_impact(variant, STEP.resolution, variant == OBLIQUE[0]));
+        claims.extend(PAIRS.into_iter().flat_map(|pair| beside_program(variant, pair)));
     }
     for variant in [ELASTIC[0], ELASTIC[2]] {
         let run = |solver| Run::new(variant, solver, STEP.resolution);
-        claims.extend(forces(run, &["contact.normal_force"], |scene, _| hertz(scene).1));
+        claims.extend(forces(run, &["contact.normal_force"], |scene| hertz(scene).1));
     }
     claims.push(force_that_moves());
     // At a wall, LAMMPS and LIGGGHTS output the force that moved the grain.
     let damped = |solver| Run::new(DAMPED[0], solver, STEP.resolution);
-    claims.extend(forces(damped, &["contact.normal_force"], |scene, _| hertz(scene).1));
+    claims.extend(forces(damped, &["contact.normal_force"], |scene| hertz(scene).1));
+    claims
+}
+
+/// Returns the claims that velocity and, in an oblique impact, spin agree with LAMMPS or LIGGGHTS.
+fn beside_program(variant: &'static str, pair: [&'static str; 2]) -> Vec<Claim> {
+    let runs = || pair.map(|solver| Run::new(variant, solver, STEP.resolution));
+    let allowed = same_cycle("relative to the velocity before");
+    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
+    let mut claims = vec![row("velocity over the impact, worst", "m/s", allowed, runs(), control, |done| {
+        worst(done, &["a.vx", "a.vz"], done[0].scene.grains[0].velocity.norm())
+    })];
+    if variant == OBLIQUE[0] {
+        let allowed = same_cycle("relative to the velocity before over the radius");
+        let control = Control::our_contact_law("G* × 1.00001 in ours", |law| law.scale_tangential(1.00001));
+        claims.push(row("spin over the impact, worst", "rad/s", allowed, runs(), control, |done| {
+            let grain = &done[0].scene.grains[0];
+            worst(done, &["a.omega_y"], grain.velocity.norm() / grain.radius)
+        }));
+    }
     claims
 }
 
@@ -87,42 +102,28 @@ fn peak(values: &[f64]) -> f64 {
 fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
     let overlap = done.column("contact.overlap")?;
     let time = &done.series().time;
-    let last = overlap.iter().rposition(|&overlap| overlap > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
+    let last = overlap.iter().rposition(|&overlap| overlap > 0.0).ok_or("contact")?;
     let rate = (overlap[last - 1] - overlap[last]) / (time[last] - time[last - 1]);
     Ok(time[last] + overlap[last] / rate)
 }
 
 fn elastic() -> Vec<Claim> {
-    let elastic_claims = |variant: &'static str,
-                          quantity: &str,
-                          unit,
-                          exact: fn(&Scene) -> f64,
-                          read: fn(&FinishedRun) -> Result<f64, MissingData>| {
-        claim(quantity, unit)
-            .run(Run::new(variant, "dem", STEP.resolution))
-            .equals(HERTZ, move |done| Ok(Measurement::relative(read(&done[0])?, exact(&done[0].scene))))
-            .within(estimated(1e-6, "discretisation of the impact by about a thousand steps"))
-            .refuses(Control::contact_law("E* 1 % too large", |law| law.scale_normal(1.01)))
+    type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
+    const QUANTITIES: [(&str, &str, fn(&Scene) -> f64, RunReader); 3] = [
+        ("deepest overlap", "m", |scene| hertz(scene).0, |done| Ok(peak(done.column("contact.overlap")?))),
+        ("largest force", "N", |scene| hertz(scene).1, |done| Ok(peak(done.column("contact.normal_force")?))),
+        ("duration of contact", "s", |scene| hertz(scene).2, duration),
+    ];
+    let elastic_claims = |variant| {
+        QUANTITIES.map(|(quantity, unit, exact, read)| {
+            claim(quantity, unit)
+                .run(Run::new(variant, "dem", STEP.resolution))
+                .equals(HERTZ, move |done| Ok(Measurement::relative(read(&done[0])?, exact(&done[0].scene))))
+                .within(estimated(1e-6, "discretisation of the impact by about a thousand steps"))
+                .refuses(Control::contact_law("E* 1 % too large", |law| law.scale_normal(1.01)))
+        })
     };
-    let mut claims = Vec::new();
-    for variant in ELASTIC {
-        claims.push(elastic_claims(
-            variant,
-            "deepest overlap",
-            "m",
-            |scene| hertz(scene).0,
-            |done| Ok(peak(done.column("contact.overlap")?)),
-        ));
-        claims.push(elastic_claims(
-            variant,
-            "largest force",
-            "N",
-            |scene| hertz(scene).1,
-            |done| Ok(peak(done.column("contact.normal_force")?)),
-        ));
-        claims.push(elastic_claims(variant, "duration of contact", "s", |scene| hertz(scene).2, duration));
-    }
-    claims
+    ELASTIC.into_iter().flat_map(elastic_claims).collect()
 }
 
 /// Returns the damping ratio ζ that gives a coefficient of restitution.
@@ -239,28 +240,24 @@ fn sliding(scene: &Scene) -> (f64, f64) {
 fn oblique() -> Vec<Claim> {
     const ENDS: &str =
         "the spring sticks for an instant at both ends of the impact, where Mindlin's stiffness vanishes";
-    let mut claims = Vec::new();
-    for variant in OBLIQUE {
-        for degrees in ANGLES {
-            claims.push(
-                claim(format!("tangential restitution at {degrees}°"), "1")
-                    .run(at_angle(variant, degrees))
-                    .equals(SLIDING, |done| Ok(Measurement::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
-                    .within(estimated(5e-5, ENDS))
-                    .refuses(more_friction()),
-            );
-            claims.push(
-                claim(format!("spin after impact at {degrees}°"), "rad/s")
-                    .run(at_angle(variant, degrees))
-                    .equals(SLIDING, |done| {
-                        Ok(Measurement::relative(done[0].last("a.omega_y")?, sliding(&done[0].scene).1))
-                    })
-                    .within(estimated(5e-5, ENDS))
-                    .refuses(Control::grains("a disc's inertia in a sphere", |grain| grain.inertia *= 0.5 / 0.4)),
-            );
-        }
-    }
-    claims
+    let oblique_claims = |variant, degrees| {
+        [
+            claim(format!("tangential restitution at {degrees}°"), "1")
+                .run(at_angle(variant, degrees))
+                .equals(SLIDING, |done| Ok(Measurement::new(tangential(&done[0])?, sliding(&done[0].scene).0, 1.0)))
+                .within(estimated(5e-5, ENDS))
+                .refuses(more_friction()),
+            claim(format!("spin after impact at {degrees}°"), "rad/s")
+                .run(at_angle(variant, degrees))
+                .equals(SLIDING, |done| {
+                    Ok(Measurement::relative(done[0].last("a.omega_y")?, sliding(&done[0].scene).1))
+                })
+                .within(estimated(5e-5, ENDS))
+                .refuses(Control::grains("a disc's inertia in a sphere", |grain| grain.inertia *= 0.5 / 0.4)),
+        ]
+    };
+    let of_variant = |variant| ANGLES.into_iter().flat_map(move |degrees| oblique_claims(variant, degrees));
+    OBLIQUE.into_iter().flat_map(of_variant).collect()
 }
 
 fn more_friction() -> Control {
@@ -319,9 +316,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut impacts = Vec::new();
     for variant in ["1-glass", "1-limestone"] {
         let done = runner.run(&Run::new(variant, "dem", STEP.resolution))?;
-        let (force, time) = (done.series().column("contact.normal_force").unwrap_or_default(), &done.series().time);
-        let every = force.len().div_ceil(300).max(1);
-        let points = time.iter().zip(force).step_by(every).map(|(t, force)| (t * 1e6, force / 1e3)).collect();
+        let force = thinned(samples(&done, "contact.normal_force").unwrap_or_default(), 300);
+        let points = force.into_iter().map(|(t, force)| (t * 1e6, force / 1e3)).collect();
         impacts.push(Curve::new(test(variant), Stroke::Line, points));
     }
     let (mut restitution, mut spin) = (Vec::new(), Vec::new());

@@ -2,10 +2,10 @@
 //! in any contact convention. The claims use only sampled positions, velocities and spins, because an external solver
 //! need not output contact forces.
 
-use super::forms::{ImpactParameters, restitution};
+use super::forms::{ALONG_AND_SPIN, ImpactParameters, change, restitution};
 use super::turning::{BALLS, PLANE, STICKING, elastic, sliding_along, spinning};
 use super::{CASE, DAMPED, ELASTIC, HERTZ, LEVELS, OBLIQUE, RESTITUTION, SLIDING, STEP};
-use super::{at_angle, hertz, peak, rebound, with_restitution};
+use super::{at_angle, hertz, more_friction, peak, rebound, with_restitution};
 use crate::exact::dashpot::no_tension_restitution;
 use grainbench_harness::prelude::*;
 
@@ -146,41 +146,29 @@ fn normal_impulse(done: &FinishedRun) -> Result<f64, MissingData> {
 /// Returns the claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from
 /// the measured normal impulse. The claim on the rebound tests the normal impulse itself.
 fn sliding(run: &Run) -> [Claim; 2] {
-    let sliding_claim =
-        |quantity: &str, unit, column: &'static str, at: usize, allowed: Tolerance, control: Control| {
-            let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
-            claim(format!("{quantity} after sliding, {words}"), unit)
-                .run(run.clone())
-                .equals(SLIDING, move |done| {
-                    let scene = &done[0].scene;
-                    let meeting = ImpactParameters::from_scene(scene);
-                    let after = meeting.after(scene, normal_impulse(&done[0])? / meeting.stopping)[at];
-                    let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
-                    Ok(Measurement::new(done[0].last(column)?, after, (after - before).abs()))
-                })
-                .within(allowed)
-                .refuses(control)
-        };
+    let words = run.adjustment.as_ref().map_or("", |(name, _)| name);
+    let sliding_claim = |at: usize, allowed: Tolerance, control: Control| {
+        let (quantity, unit, _) = ALONG_AND_SPIN[at];
+        claim(format!("{quantity} after sliding, {words}"), unit)
+            .run(run.clone())
+            .equals(SLIDING, move |done| {
+                let stopping = ImpactParameters::from_scene(&done[0].scene).stopping;
+                change(&done[0], at, normal_impulse(&done[0])? / stopping)
+            })
+            .within(allowed)
+            .refuses(control)
+    };
+    let along = computed(
+        FIRST_ORDER,
+        "first order in Δt: the contact may stick in one of the thousand steps of the impact; relative to the change due \
+         to friction",
+    );
     let arm = computed(
         depth(run) + FIRST_ORDER,
         "the lever arm of friction is between R and R − overlap; the rest is first order in Δt; relative to the spin \
          due to friction",
     );
-    [
-        sliding_claim(
-            "velocity along the contact",
-            "m/s",
-            "a.vx",
-            0,
-            computed(
-                FIRST_ORDER,
-                "first order in Δt: the contact may stick in one of the thousand steps of the impact; relative to the \
-                 change due to friction",
-            ),
-            Control::contact_law("friction × 1.2", |law| law.friction *= 1.2),
-        ),
-        sliding_claim("spin", "rad/s", "a.omega_y", 1, arm, wrong_inertia()),
-    ]
+    [sliding_claim(0, along, more_friction()), sliding_claim(1, arm, wrong_inertia())]
 }
 
 fn wrong_inertia() -> Control {
@@ -210,7 +198,7 @@ fn coulomb(run: Run) -> Claim {
             2.0 * FIRST_ORDER / (high - low),
             "two of a thousand steps of the impact; relative to the width of the band",
         ))
-        .refuses(Control::contact_law("friction × 1.2", |law| law.friction *= 1.2))
+        .refuses(more_friction())
 }
 
 /// Returns the claim that angular momentum about the contact is conserved, for sticking and for sliding: I Δω = −a m Δv
@@ -246,7 +234,8 @@ fn momentum(run: &Run) -> [Claim; 2] {
             .run(run.clone())
             .holds("Newton's third law", move |done| {
                 let grains = &done[0].scene.grains;
-                let gained = |at: usize| Ok(grains[at].mass * (done[0].last(columns[at])? - grains[at].velocity[axis]));
+                let before = |at: usize| grains[at].velocity[axis];
+                let gained = |at: usize| done[0].last(columns[at]).map(|now| grains[at].mass * (now - before(at)));
                 let [first, second] = [gained(0)?, gained(1)?];
                 Ok(Measurement::new(first + second, 0.0, first.abs()))
             })

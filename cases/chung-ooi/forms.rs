@@ -2,8 +2,7 @@
 
 use super::{impact, law};
 use crate::exact::dashpot::{no_tension_ratio, no_tension_restitution};
-use grainbench_scene::scene::Scene;
-use std::f64::consts::PI;
+use grainbench_harness::prelude::*;
 
 /// Impact parameters of the first grain of a scene against the second grain or the plane.
 #[derive(Clone, Copy, Debug)]
@@ -70,4 +69,17 @@ impl ImpactParameters {
         let (grain, impulse) = (&scene.grains[0], self.impulse(factor));
         [grain.velocity.x + impulse / grain.mass, grain.spin.y - impulse * grain.radius / grain.inertia]
     }
+}
+
+/// Velocity along x and spin of the first grain, each with its name, unit and column.
+pub(super) const ALONG_AND_SPIN: [(&str, &str, &str); 2] =
+    [("velocity along the contact", "m/s", "a.vx"), ("spin", "rad/s", "a.omega_y")];
+
+/// Compares one of the quantities of [`ALONG_AND_SPIN`] after the impact with [`ImpactParameters::after`], in units of its
+/// change.
+pub(super) fn change(done: &FinishedRun, at: usize, factor: f64) -> Result<Measurement, MissingData> {
+    let scene = &done.scene;
+    let after = ImpactParameters::from_scene(scene).after(scene, factor)[at];
+    let before = [scene.grains[0].velocity.x, scene.grains[0].spin.y][at];
+    Ok(Measurement::new(done.last(ALONG_AND_SPIN[at].2)?, after, (after - before).abs()))
 }

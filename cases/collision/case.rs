@@ -3,9 +3,9 @@
 use crate::exact::dashpot::{lag, no_tension_restitution};
 use crate::rows::programs;
 use crate::rows::rigid;
+use grainbench_harness::claim::Quantity;
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] =
     &[fraction("dt=.02", 0.02), fraction("dt=.006", 0.006), fraction("dt=.002", 0.002), fraction("dt=.0006", 0.0006)];
@@ -24,13 +24,62 @@ fn claims() -> Vec<Claim> {
     }
     claims.extend(momentum());
     claims.extend(angular_momentum());
-    claims.extend(DAMPED.map(|variant| rigid::restitution(variant, measured_restitution)));
-    claims.extend(AXES.map(|axis| rigid::momentum("oblique", along(axis), move |done| worst_momentum(done, axis))));
-    claims.push(rigid::angular_momentum("oblique", worst_angular_momentum));
-    claims.extend(programs::restitution(&DAMPED, LEVELS[1].resolution));
+    claims.extend(by_impulses());
+    claims.extend(DAMPED.into_iter().flat_map(|variant| programs::PAIRS.map(|pair| beside_program(variant, pair))));
     claims.push(force_that_moves());
     claims.extend(programs::PAIRS.map(force_that_is_printed));
     claims
+}
+
+/// Returns the claims on the solver `rigid`.
+fn by_impulses() -> Vec<Claim> {
+    let run = |variant| Run::new(variant, "rigid", rigid::DEFAULT);
+    let restitution = |variant| {
+        claim("coefficient of restitution", "1")
+            .run(run(variant))
+            .equals(Source::Derived("damped oscillator whose dashpot may pull (derivation)"), |done| {
+                measured_restitution(&done[0])
+            })
+            .within(rounding(
+                1.0,
+                "rapier applies −e times the approach velocity once, at the end of the step of the impact",
+            ))
+            .refuses(Control::contact_law("damping ×1.05", |law| {
+                law.stiffness_damping *= 1.05;
+                law.normal_damping *= 1.05;
+            }))
+    };
+    let momentum = |axis| {
+        claim(along(axis), "kg m/s")
+            .run(run("oblique"))
+            .holds("equal and opposite impulses", move |done| worst_momentum(&done[0], axis))
+            .within(rounding(1.0, "in units of the momentum of one grain"))
+            .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
+    };
+    let angular_momentum = claim("angular momentum, worst", "kg m²/s")
+        .run(run("oblique"))
+        .holds("equal and opposite impulses at one point", |done| worst_angular_momentum(&done[0]))
+        .within(estimated(
+            3e-3,
+            "normal and lever arms are taken at the start of the step, and the grains have moved when the impulse \
+             acts: ∝ v Δt, in units of m v R",
+        ))
+        .refuses(Control::grains("the inertia of spheres", |grain| grain.inertia *= 0.8));
+    DAMPED.map(restitution).into_iter().chain(AXES.map(momentum)).chain([angular_momentum]).collect()
+}
+
+/// Returns the claim that the coefficient of restitution agrees with LAMMPS or LIGGGHTS.
+fn beside_program(variant: &'static str, pair: [&'static str; 2]) -> Claim {
+    let runs = pair.map(|solver| Run::new(variant, solver, LEVELS[1].resolution));
+    let control = Control::our_contact_law("damping ×1.001 in ours", |law| {
+        law.normal_damping *= 1.001;
+        law.stiffness_damping *= 1.001;
+    });
+    let allowed = programs::same_cycle("in units of the approach velocity");
+    programs::row("coefficient of restitution", "1", allowed, runs, control, |done| {
+        let [ours, program] = [&done[0], &done[1]].map(measured_restitution);
+        Ok(Measurement::new(ours?.value, program?.value, 1.0))
+    })
 }
 
 /// Columns of the momentum, each with the number of its axis.
@@ -126,7 +175,7 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
                    without damping";
     let runs = pair.map(|solver| Run::new(FELT, solver, LEVELS[1].resolution));
     let quantity = "force of a damped contact with the velocity of the sample, worst";
-    programs::row(quantity, "N", rounding(1.0, because), runs, control, |done| {
+    programs::row(quantity, "N", oblique_rounding(1.0, because), runs, control, |done| {
         let compared_column = |column| together(&done[0], &done[1], column).map(|(ours, _)| ours);
         let (x, v) =
             ([compared_column("a.x")?, compared_column("b.x")?], [compared_column("a.vx")?, compared_column("b.vx")?]);
@@ -181,30 +230,35 @@ fn steps(variant: &'static str, solver: &'static str) -> Claim {
     claim("restitution's error over what is of first order in Δt, worst of 16 steps", "1")
         .runs((0..16).map(|at| Run::new(variant, solver, step(at))))
         .equals(Source::Derived("start, release and dashpot within a step (derivation)"), move |done| {
-            let found = done.iter().zip(0..).map(|(done, at)| {
+            Measurement::worst_read(done.iter().zip(0..).map(|(done, at)| {
                 let exact = exact_restitution(pair(&done.scene).2, solver != "dem");
                 let error = measured_restitution(done)?.value - exact;
                 Ok(Measurement::new(error / first_order(variant, step(at)), 0.0, 1.0))
-            });
-            let found = found.collect::<Result<Vec<Measurement>, MissingData>>()?;
-            Measurement::worst_among(found).ok_or_else(|| MissingData("runs".to_owned()))
+            }))
         })
         .within(computed(1.0, FIRST_ORDER))
         .refuses(other(solver))
 }
 
 /// Returns the tolerance for rounding errors in the oblique impact: `count` times ε in each step.
-fn rounding(count: f64, because: &str) -> Tolerance {
+fn oblique_rounding(count: f64, because: &str) -> Tolerance {
     let steps = CASE.variant("oblique").ok().and_then(|scene| LEVELS[1].resolution.steps(&scene).ok());
     computed(count * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64), because)
 }
 
+/// Starts a claim about the oblique impact.
+fn oblique(quantity: impl Into<String>, unit: &'static str, solver: &'static str) -> Quantity {
+    claim(quantity, unit).run(Run::new("oblique", solver, LEVELS[1].resolution))
+}
+
 fn momentum() -> Vec<Claim> {
     let momentum_claim = |axis: (&'static str, usize)| {
-        claim(along(axis), "kg m/s")
-            .run(Run::new("oblique", "dem", LEVELS[1].resolution))
+        oblique(along(axis), "kg m/s", "dem")
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
-            .within(rounding(2.0, "rounding of two velocities by ε per step; in units of the momentum of one grain"))
+            .within(oblique_rounding(
+                2.0,
+                "rounding of two velocities by ε per step; in units of the momentum of one grain",
+            ))
             // The control applies to all solvers, because all support gravity.
             .refuses(Control::scene("a gravity of 1e-9 m/s² along x and y", |scene| {
                 (scene.gravity.x, scene.gravity.y) = (1e-9, 1e-9);
@@ -215,22 +269,19 @@ fn momentum() -> Vec<Claim> {
 }
 
 fn initial_angular_momentum(scene: &Scene) -> f64 {
-    let grain_momentum = |grain: &grainbench_scene::scene::Grain| {
-        grain.mass * grain.position.xy().perp(&grain.velocity.xy()) + grain.inertia * grain.spin.z
-    };
+    let grain_momentum =
+        |grain: &Grain| grain.mass * grain.position.xy().perp(&grain.velocity.xy()) + grain.inertia * grain.spin.z;
     scene.grains.iter().map(grain_momentum).sum()
 }
 
 fn angular_momentum() -> Vec<Claim> {
     const ROUNDING: &str = "rounding of two positions, two velocities and two spins by ε per step; in units of m v R";
-    let momentum_claim =
-        |quantity: &str, solver| claim(quantity, "kg m²/s").run(Run::new("oblique", solver, LEVELS[1].resolution));
-    vec![
-        momentum_claim("angular momentum, arm R − overlap/2, worst", "dem:liggghts")
+    let mut claims = vec![
+        oblique("angular momentum, arm R − overlap/2, worst", "kg m²/s", "dem:liggghts")
             .holds("tangential forces act at one point (derivation)", |done| worst_angular_momentum(&done[0]))
-            .within(rounding(6.0, ROUNDING))
+            .within(oblique_rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R", "dem")),
-        momentum_claim("change of angular momentum, arm R, against Σ overlap × F_t Δt", "dem")
+        oblique("change of angular momentum, arm R, against Σ overlap × F_t Δt", "kg m²/s", "dem")
             .equals(Source::Derived("lever arms R with a distance of centres R₁ + R₂ − δ (derivation)"), |done| {
                 let scene = &done[0].scene;
                 let (overlap, shear) = (done[0].column("contact.overlap")?, done[0].column("contact.shear_force")?);
@@ -241,40 +292,43 @@ fn angular_momentum() -> Vec<Claim> {
                 let expected = -impulse * done[0].record.provenance.time_step;
                 Ok(Measurement::new(change, expected, lever(scene)))
             })
-            .within(rounding(6.0, ROUNDING))
+            .within(oblique_rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R − overlap/2", "dem:liggghts")),
         at_the_limit(),
-    ]
-    .into_iter()
-    .chain(coulomb())
-    .collect()
+    ];
+    claims.extend(coulomb());
+    claims
+}
+
+/// Reason for the tolerance of the spin.
+const OF_SPIN: &str = "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step";
+
+/// Compares the change of the first disc's spin with R/I times an impulse of friction (N s), in units of this value. Friction
+/// turns both discs clockwise.
+fn spin_of_friction(done: &FinishedRun, impulse: f64) -> Result<Measurement, MissingData> {
+    let grain = &done.scene.grains[0];
+    Ok(Measurement::relative(done.last("a.omega")? - grain.spin.z, -impulse * grain.radius / grain.inertia))
 }
 
 /// Returns the claim on the spin of the first disc in the oblique impact, in which friction is at the Coulomb limit in
 /// each step. In Cundall & Strack (1979), the limit applies to the spring force alone.
 fn at_the_limit() -> Claim {
-    claim("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s")
-        .run(Run::new("oblique", "dem:1979", LEVELS[1].resolution))
+    oblique("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s", "dem:1979")
         .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
-            let grain = &done[0].scene.grains[0];
             let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
             let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
             let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
-            // Friction turns both discs clockwise.
-            let expected = -limit * grain.radius / grain.inertia;
-            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
+            spin_of_friction(&done[0], limit)
         })
-        .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
+        .within(oblique_rounding(3.0, OF_SPIN))
         .refuses(Control::without(Effect::Friction))
 }
 
 /// Returns the claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction
 /// while F_n pulls.
 fn coulomb() -> Vec<Claim> {
-    let oblique_claim =
-        |quantity: &str, unit, solver| claim(quantity, unit).run(Run::new("oblique", solver, LEVELS[1].resolution));
-    let within = |solver: &'static str| {
-        oblique_claim("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", solver)
+    vec![
+        oblique("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", "dem")
             .at_most(0.0, Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0) (derivation)"), |done| {
                 let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
                 let (normal, shear) = (done[0].column("contact.normal_force")?, done[0].column("contact.shear_force")?);
@@ -284,27 +338,20 @@ fn coulomb() -> Vec<Claim> {
                 Ok(beyond.fold(f64::NEG_INFINITY, f64::max) / largest)
             })
             .within(computed(4.0 * f64::EPSILON, "rounding of a root, a quotient and two products by ε"))
-            .refuses(Control::solver("the limit of the spring alone", "dem:1979"))
-    };
-    let spin = oblique_claim(
-        "spin that friction gives the first disc, against R μ Σ F_n Δt/I where it pushes",
-        "rad/s",
-        "dem",
-    )
-    .holds(
-        "the contact slides throughout: the recorded friction is μ times the recorded normal force and turns the disc",
-        |done| {
-            let grain = &done[0].scene.grains[0];
-            let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
-            let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
-            let impulse = law.friction * pushes * done[0].record.provenance.time_step;
-            let expected = -impulse * grain.radius / grain.inertia;
-            Ok(Measurement::relative(done[0].last("a.omega")? - grain.spin.z, expected))
-        },
-    )
-    .within(rounding(3.0, "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step"))
-    .refuses(Control::solver("the limit of the spring alone", "dem:1979"));
-    vec![within("dem"), spin]
+            .refuses(Control::solver("the limit of the spring alone", "dem:1979")),
+        oblique("spin that friction gives the first disc, against R μ Σ F_n Δt/I where it pushes", "rad/s", "dem")
+            .holds(
+                "the contact slides throughout: the recorded friction is μ times the recorded normal force and turns the disc",
+                |done| {
+                    let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+                    let pushes: f64 = done[0].column("contact.normal_force")?.iter().map(|force| force.max(0.0)).sum();
+                    let impulse = law.friction * pushes * done[0].record.provenance.time_step;
+                    spin_of_friction(&done[0], impulse)
+                },
+            )
+            .within(oblique_rounding(3.0, OF_SPIN))
+            .refuses(Control::solver("the limit of the spring alone", "dem:1979")),
+    ]
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -2,7 +2,6 @@
 
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
 
@@ -22,8 +21,7 @@ fn run(fraction: f64) -> Run {
 }
 
 fn energy(done: &FinishedRun) -> Result<Measurement, MissingData> {
-    let energy = done.column("all.total_energy")?;
-    Ok(Measurement::drift(&done.series().time, energy, energy[0]))
+    Measurement::drift_of(done, "all.total_energy")
 }
 
 fn claims() -> Vec<Claim> {
@@ -34,16 +32,12 @@ fn claims() -> Vec<Claim> {
             1e-4,
             "the kink of the force where contacts begin and end, at a hundredth of the critical step",
         ))
-        .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| {
-            let law = scene.laws[0].unwrap_or_default();
-            let rate = 2e-3 * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
-            scene.change_laws(|law| law.normal_damping = rate);
-        }))
+        .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| damp(scene, 2e-3)))
         .fair_to_any();
     let kept_in = claim("number of discs in the box in the end", "1")
         .run(run(FINEST))
         .holds("walls keep the discs in", |done| {
-            let snapshot = done[0].record.snapshots.last().ok_or_else(|| MissingData("snapshot".to_owned()))?;
+            let snapshot = done[0].record.snapshots.last().ok_or("snapshot")?;
             let inside = |x: f64| (0.0..=40.0).contains(&x);
             let count =
                 snapshot.grains.iter().filter(|grain| inside(grain.position.x) && inside(grain.position.y)).count();
@@ -54,17 +48,42 @@ fn claims() -> Vec<Claim> {
             scene.walls.pop();
         }))
         .fair_to_any();
-    vec![conserved, kept_in, rigid::refuses_cycles(PLAIN), rigid::gas_energy(PLAIN, 9.0, energy)]
+    vec![conserved, kept_in, rigid::refuses_cycles(PLAIN), by_impulses()]
+}
+
+/// Returns the claim on the energy with the solver `rigid`. The duration of the scene is a number of cycles, which `rigid`
+/// does not support.
+fn by_impulses() -> Claim {
+    let run = Run::new(PLAIN, "rigid", rigid::DEFAULT).adjusted("9 s", |scene| scene.duration = Duration::Seconds(9.0));
+    claim("total energy over 9 s, worst", "J")
+        .run(run)
+        .holds("conservation of energy", |done| energy(&done[0]))
+        .within(judged(
+            1.5e-2,
+            "single impacts conserve the energy to rounding. If a disc hits two discs in one step, the two approach \
+             velocities are reversed one after the other, and the second reversal undoes a part of the first one. This \
+             happens once in this run; smaller steps make the error rarer, not smaller",
+        ))
+        .refuses(Control::scene("dashpots of a hundredth of critical", |scene| {
+            damp(scene, 2e-2);
+            scene.duration = Duration::Seconds(0.2 * 9.0);
+        }))
+}
+
+/// Sets the dashpots to a rate of `part` times √(k_n/m).
+fn damp(scene: &mut Scene, part: f64) {
+    let law = scene.laws[0].unwrap_or_default();
+    let rate = part * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
+    scene.change_laws(|law| law.normal_damping = rate);
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for fraction in FRACTIONS {
         let done = runner.run(&run(fraction))?;
-        let energy = done.series().column("all.total_energy").unwrap_or_default();
-        let samples = energy.len().div_ceil(400).max(1);
-        let points = done.series().time.iter().zip(energy).step_by(samples);
-        let points = points.map(|(t, e)| (*t, (e / energy[0] - 1.0) * 1e3)).collect();
+        let energy = samples(&done, "all.total_energy").unwrap_or_default();
+        let off = |&(t, value): &(f64, f64)| (t, (value / energy[0].1 - 1.0) * 1e3);
+        let points = thinned(energy.iter().map(off).collect(), 400);
         curves.push(Curve::new(format!("Δt = {fraction} of critical"), Stroke::Line, points));
     }
     Ok(vec![Figure::graph(

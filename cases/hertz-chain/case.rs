@@ -1,10 +1,8 @@
 //! A solitary wave in a chain of Hertz spheres.
 
-use crate::rows::program_forces::forces;
+use crate::rows::programs::forces;
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::{Duration, Sampling};
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.04", 0.04), fraction("dt=.02", 0.02)];
 /// Coefficient of the wave speed in the discrete chain. The test at the end of this file computes it.
@@ -96,7 +94,7 @@ fn claims() -> Vec<Claim> {
             }
         })
     };
-    let programs = forces(sampled, &["near.normal_force", "far.normal_force"], |scene, _| {
+    let programs = forces(sampled, &["near.normal_force", "far.normal_force"], |scene| {
         // Typical force of a contact in the wave: k δ^{3/2} at the largest overlap of two beads that collide at the
         // striker's speed.
         let (law, grain) = (scene.laws.iter().flatten().next().copied().unwrap_or_default(), &scene.grains[0]);

@@ -1,22 +1,16 @@
 //! Nine discs in a box (Cundall & Strack 1979, Figs 5-9).
 
-#[path = "elastic.rs"]
 mod elastic;
-#[path = "figures.rs"]
 mod figures;
-#[path = "modal.rs"]
 mod modal;
+mod programs;
 
-use crate::rows::program_forces;
-use crate::rows::programs;
 use crate::rows::rigid;
 use crate::sources::literature::cundall_strack_1979;
 use grainbench_harness::measure::{dominant_frequency, slope};
 use grainbench_harness::prelude::*;
-use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::Duration;
 use modal::{InwardDisplacements, Modal, RAMP_TIME, law};
-use std::f64::consts::{PI, SQRT_2, TAU};
+use std::f64::consts::{SQRT_2, TAU};
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025)];
 /// Levels of resolution over which the order of convergence is fitted.
@@ -38,7 +32,6 @@ pub(crate) static CASE: Case = Case {
 };
 
 fn claims() -> Vec<Claim> {
-    let step = LEVELS[0].resolution;
     [
         static_forces(),
         discrete(),
@@ -49,9 +42,7 @@ fn claims() -> Vec<Claim> {
         slip_in_compression(),
         distortion(),
         vec![rigid::refuses_cycles("kappa-0")],
-        programs::nine_discs(&MODAL, step, travel, rounded),
-        programs::turning_walls(DISTORTION[1], step, travel, 3.0 / over_radius(DISTORTION[1])),
-        program_forces::nine_discs("kappa-1", step, &rounded("kappa-1")),
+        programs::claims(),
         elastic::DISCS.claims(&CASE, Run::slow),
     ]
     .concat()
@@ -156,14 +147,11 @@ fn worst(
     values: &[InwardDisplacements],
     exact: &[InwardDisplacements],
 ) -> Result<Measurement, MissingData> {
-    let pick = |list: &[InwardDisplacements], component: fn(&InwardDisplacements) -> f64| {
-        list.iter().map(component).collect::<Vec<f64>>()
-    };
     let judge = |component: fn(&InwardDisplacements) -> f64| {
-        Measurement::worst_of(time, &pick(values, component), &pick(exact, component), 1.0)
+        let pick = |list: &[InwardDisplacements]| list.iter().map(component).collect::<Vec<f64>>();
+        Ok(Measurement::worst_of(time, &pick(values), &pick(exact), 1.0))
     };
-    let both = [judge(|inward| inward.edge), judge(|inward| inward.corner)];
-    Measurement::worst_among(both).ok_or_else(|| MissingData("discs".to_owned()))
+    Measurement::worst_read([judge(|inward| inward.edge), judge(|inward| inward.corner)])
 }
 
 fn exact_cycles(done: &FinishedRun) -> Vec<InwardDisplacements> {
@@ -284,21 +272,21 @@ fn continuous() -> Vec<Claim> {
             // error of central differences, which other schemes do not have.
             claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
         }
-        claims.push(
-            claim("order in Δt of that deviation, δ → 0", "1")
-                .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
-                .converges(2.0, Source::Derived("central differences are of second order"), |done| {
-                    let error =
-                        |done: &[FinishedRun]| Ok((done[0].record.provenance.time_step, modal_error(done)?.error()));
-                    Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
-                })
-                .within(computed(
-                    2.0 * 9.0 / 80.0 * 0.2_f64.powi(2),
-                    "next power of ωΔt: a step advances the phase of a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 \
-                     + 9 (ωΔt)²/80)), which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
-                ))
-                .refuses(lighter()),
-        );
+        let order = claim("order in Δt of that deviation, δ → 0", "1")
+            .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))
+            .converges(2.0, Source::Derived("central differences are of second order"), |done| {
+                let error = |done: &[FinishedRun]| {
+                    modal_error(done).map(|worst| (done[0].record.provenance.time_step, worst.error()))
+                };
+                Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
+            })
+            .within(computed(
+                2.0 * 9.0 / 80.0 * 0.2_f64.powi(2),
+                "next power of ωΔt: a step advances the phase of a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 \
+                 (ωΔt)²/80)), which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
+            ))
+            .refuses(lighter());
+        claims.push(order);
     }
     claims
 }
@@ -315,7 +303,7 @@ fn residual(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData>
         Moment::Seconds(_) | Moment::Never => 0,
     };
     let values = &done.column(column)?[stop..];
-    let mean = values.iter().sum::<f64>() / values.len() as f64;
+    let mean = mean(values);
     Ok((mean, largest(values.iter().map(|value| value - mean))))
 }
 
@@ -337,9 +325,8 @@ fn speed_of_loading() -> Vec<Claim> {
             "one of 4000 steps of the spectrum, from half the slow frequency to 1.2 times the fast one, at κ = 1",
         )
     };
-    let mut claims = Vec::new();
-    for (fast, slow, figure) in [("fast", "slow", "Fig. 7(a)"), ("soft-fast", "soft-slow", "Fig. 7(b)")] {
-        claims.push(
+    let of_pair = |fast, slow, figure: &str| {
+        [
             claim(format!("residual amplitude, slow over fast loading, {figure}"), "1")
                 .runs(pair(fast, slow))
                 .at_most(
@@ -361,8 +348,6 @@ fn speed_of_loading() -> Vec<Claim> {
                         }
                     }
                 })),
-        );
-        claims.push(
             claim(format!("frequency, slow over fast loading, {figure}"), "1")
                 .runs(pair(fast, slow))
                 .equals(printed("Fig. 7 and the text: the frequencies are about the same"), |done| {
@@ -374,8 +359,6 @@ fn speed_of_loading() -> Vec<Claim> {
                         scene.change_laws(|law| law.scale_normal(1.05));
                     }
                 })),
-        );
-        claims.push(
             claim(format!("frequency of the slow mode, {figure}"), "rad/s")
                 .run(Run::new(fast, "dem", FIGURE_STEP))
                 .equals(MODES, |done| {
@@ -386,20 +369,20 @@ fn speed_of_loading() -> Vec<Claim> {
                 })
                 .within(spectrum())
                 .refuses(Control::forgets_history()),
-        );
-    }
-    claims
+        ]
+    };
+    [of_pair("fast", "slow", "Fig. 7(a)"), of_pair("soft-fast", "soft-slow", "Fig. 7(b)")].concat()
 }
 
 fn damping() -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for (undamped, damped) in [
+    let pairs = [
         ("fast", "damped-fast"),
         ("slow", "damped-slow"),
         ("soft-fast", "damped-soft-fast"),
         ("soft-slow", "damped-soft-slow"),
-    ] {
-        claims.push(
+    ];
+    let of_pair = |(undamped, damped)| {
+        [
             claim("force between centre and edge: mean undamped over final damped", "1")
                 .runs(pair(undamped, damped))
                 .equals(
@@ -419,20 +402,17 @@ fn damping() -> Vec<Claim> {
                         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 0.99);
                     }
                 })),
-        );
-        claims.push(
             claim("rate at which the slow mode dies away", "1/s")
                 .run(Run::new(damped, "dem", FIGURE_STEP))
                 .equals(Source::Derived("product of the eigenvalues of the damped cycle (derivation)"), |done| {
-                    let expected =
-                        Modal::from_scene(&done[0].scene).decay(&done[0].scene, done[0].record.provenance.time_step);
-                    Ok(Measurement::relative(decay(&done[0])?, expected))
+                    let (scene, step) = (&done[0].scene, done[0].record.provenance.time_step);
+                    Ok(Measurement::relative(decay(&done[0])?, Modal::from_scene(scene).decay(scene, step)))
                 })
                 .within(judged(5e-5, "geometry, first order in δ/R: 1.3e-3 for stiff discs and 1.1e-2 for soft discs"))
                 .refuses(Control::without(Effect::ContactDamping)),
-        );
-    }
-    claims
+        ]
+    };
+    pairs.into_iter().flat_map(of_pair).collect()
 }
 
 /// Returns the decay rate (1/s) of the slow mode p = a + √2 b after the walls have stopped. The distance x of p from
@@ -443,7 +423,7 @@ fn decay(done: &FinishedRun) -> Result<f64, MissingData> {
     let first = (scene.walls[0].motion.phases[0].stop.seconds(time_step) / time_step).round() as usize + 1;
     let cycles = (2.0 * TAU / (Modal::from_scene(scene).frequencies()[0] * time_step)) as usize;
     let slow: Vec<f64> = inward(done)?.iter().map(|inward| inward.edge + SQRT_2 * inward.corner).collect();
-    let end = *slow.last().ok_or_else(|| MissingData("samples".to_owned()))?;
+    let end = *slow.last().ok_or("samples")?;
     let (mut a, mut b, mut c, mut p, mut q) = (0.0, 0.0, 0.0, 0.0, 0.0);
     for window in slow[first..first + cycles].windows(3) {
         let [before, now, after] = [0, 1, 2].map(|at: usize| window[at] - end);

@@ -32,21 +32,13 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         }
     }
     all.push(damping(runner)?);
-    all.push(speed(
-        runner,
-        "speed-stiff",
-        "Effect of the loading speed, k_n = k_s = 1.35×10⁹ \
-                                           N/m",
-        ["fast", "slow"],
-        [0.12, 0.04],
-    )?);
-    all.push(speed(
-        runner,
-        "speed-soft",
-        "Effect of the loading speed, k_n = k_s = 1.5×10⁸ N/m",
-        ["soft-fast", "soft-slow"],
-        [0.36, 0.12],
-    )?);
+    for (name, stiffness, variants, speeds) in [
+        ("speed-stiff", "1.35×10⁹", ["fast", "slow"], [0.12, 0.04]),
+        ("speed-soft", "1.5×10⁸", ["soft-fast", "soft-slow"], [0.36, 0.12]),
+    ] {
+        let title = format!("Effect of the loading speed, k_n = k_s = {stiffness} N/m");
+        all.push(speed(runner, name, &title, variants, speeds)?);
+    }
     all.push(residual_over_step(runner)?);
     for (name, angle, variants) in [
         ("distortion-15deg", "15°", [DISTORTION[0], DISTORTION[1]]),

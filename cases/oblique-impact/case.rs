@@ -2,7 +2,8 @@
 
 use crate::exact::dashpot::lag;
 use crate::rows::on_plane::stronger_friction;
-use crate::rows::programs;
+use crate::rows::programs::{PAIRS, row, same_cycle};
+use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
@@ -29,7 +30,7 @@ fn exact(scene: &Scene) -> Exit {
     let (along, across) = (grain.velocity.x, -grain.velocity.y);
     let decay = 0.5 * law.normal_damping;
     let omega = (law.normal_stiffness() / grain.mass - decay * decay).sqrt();
-    let interval = std::f64::consts::PI / omega / f64::from(PARTS);
+    let interval = PI / omega / f64::from(PARTS);
     let turning = grain.mass * grain.radius * grain.radius / grain.inertia;
     // Slip velocity, tangential spring displacement, and impulse along the wall divided by the mass.
     let (mut slip, mut stretch, mut impulse) = (along - grain.spin.z * grain.radius, 0.0, 0.0);
@@ -47,7 +48,7 @@ fn exact(scene: &Scene) -> Exit {
     }
     Exit {
         along: along - impulse,
-        across: (-decay * std::f64::consts::PI / omega).exp() * across,
+        across: (-decay * PI / omega).exp() * across,
         spin: grain.spin.z - impulse * turning / grain.radius,
     }
 }
@@ -150,18 +151,37 @@ fn claims() -> Vec<Claim> {
             }
         }
     }
-    claims.extend(programs::impact(&VARIANTS, LEVELS[1].resolution));
     claims
+        .extend(VARIANTS.into_iter().flat_map(|variant| PAIRS.into_iter().flat_map(move |pair| beside(variant, pair))));
+    claims
+}
+
+/// Returns the claims that velocity and wall force agree with LAMMPS or LIGGGHTS. Velocities are in units of the initial
+/// speed, and forces in units of the largest spring force.
+fn beside(variant: &'static str, pair: [&'static str; 2]) -> [Claim; 2] {
+    let runs = || pair.map(|solver| Run::new(variant, solver, LEVELS[1].resolution));
+    let control = || Control::our_contact_law("friction ×1.001 in ours", |law| law.friction *= 1.001);
+    let of_velocity = same_cycle("relative to the velocity before");
+    let of_force = same_cycle("relative to the largest force of the spring, v√(km)");
+    [
+        row("velocity over the impact, worst", "m/s", of_velocity, runs(), control(), |done| {
+            worst(done, &["grain.vx", "grain.vy"], done[0].scene.grains[0].velocity.norm())
+        }),
+        row("force on the wall, worst", "N", of_force, runs(), control(), |done| {
+            let (grain, law) = (&done[0].scene.grains[0], done[0].scene.laws[0].unwrap_or_default());
+            let largest = grain.velocity.y.abs() * (law.normal_stiffness() * grain.mass).sqrt();
+            worst(done, &["wall.force_x", "wall.force_y"], largest)
+        }),
+    ]
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for variant in VARIANTS {
         let done = runner.run(&Run::new(variant, "dem:lammps", LEVELS[2].resolution))?;
-        let (time, speed) = (&done.series().time, done.series().column("grain.vx").unwrap_or_default());
-        let end = time.last().copied().unwrap_or_default();
+        let end = done.series().time.last().copied().unwrap_or_default();
         let after = exact(&done.scene).along;
-        let points = time.iter().copied().zip(speed.iter().copied()).collect();
+        let points = samples(&done, "grain.vx").unwrap_or_default();
         curves.push(Curve::new(format!("{variant}, dem:lammps"), Stroke::Line, points));
         let rest = vec![(0.55 * end, after), (end, after)];
         curves.push(Curve::new(format!("{variant}, exact after the impact"), Stroke::Dashed, rest));

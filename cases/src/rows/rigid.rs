@@ -16,16 +16,15 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::on_plane::{other_inertia, stronger_friction, touching};
+use crate::rows::on_plane::{end, other_inertia, stronger_friction, touching};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
-use grainbench_scene::scene::Duration;
 use std::f64::consts::TAU;
 
 /// Name of the solver.
 const RIGID: &str = "rigid";
 /// Default resolution of the claims.
-pub const DEFAULT: Resolution = Resolution::substeps(8);
+pub(crate) const DEFAULT: Resolution = Resolution::substeps(8);
 /// Numbers of substeps in 1/60 s that the figure shows.
 const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// Numbers of substeps in 1/60 s at which rotating grains no longer lift off.
@@ -37,15 +36,15 @@ const ORDER_SOURCE: Source = Source::Derived("symplectic Euler is of first order
 
 /// Variant of a claim on the solver `rigid`, with its expected errors.
 #[derive(Clone, Copy, Debug)]
-pub struct Row {
+pub(crate) struct Row {
     /// Variant of the scene.
-    pub variant: &'static str,
+    pub(crate) variant: &'static str,
     /// True if the grain finally rolls without slip. The negative control then has a wrong inertia, otherwise a wrong
     /// friction.
-    pub rolls: bool,
+    pub(crate) rolls: bool,
     /// Largest relative effects of lift-off on velocity and spin at the default resolution; `None` unless rotation
     /// lifts the contact point off the plane at 1 s.
-    pub lifts: Option<[f64; 2]>,
+    pub(crate) lifts: Option<[f64; 2]>,
 }
 
 /// Returns a run of the grain in contact without overlap, because a rigid contact has no static overlap.
@@ -67,11 +66,7 @@ fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, all
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
             .run(run(row.variant, DEFAULT))
-            .equals(RIGID_SOURCE, move |done| {
-                let (t, state) = last(&done[0])?;
-                let expected = pick(exact(&OneGrain::from_scene(&done[0].scene), t));
-                Ok(Measurement::relative(pick(state), expected))
-            })
+            .equals(RIGID_SOURCE, move |done| end(&done[0], exact, pick))
             .within(tolerance)
             .refuses(control)
     };
@@ -92,10 +87,9 @@ fn fine(row: Row) -> impl Iterator<Item = Run> {
 fn order(row: Row) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .runs(fine(row))
-        .sweep(move |done| {
-            let (t, state) = last(done)?;
-            let exact = OneGrain::from_scene(&done.scene).rigid_incline(t).x;
-            Ok((done.record.provenance.time_step, (state.x - exact) / exact))
+        .sweep(|done| {
+            let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
+            Ok((done.record.provenance.time_step, error))
         })
         .converges(1.0, ORDER_SOURCE)
         .within(asymptotic(1.0))
@@ -126,7 +120,7 @@ fn between_arms(case: &Case, row: Row) -> Claim {
                 });
                 let places = places.collect::<Result<Vec<f64>, MissingData>>()?;
                 let farthest = places.into_iter().max_by(|a, b| (a - 0.5).abs().total_cmp(&(b - 0.5).abs()));
-                farthest.ok_or_else(|| MissingData("runs".to_owned()))
+                Ok(farthest.ok_or("runs")?)
             },
         )
         .within(computed(
@@ -137,8 +131,7 @@ fn between_arms(case: &Case, row: Row) -> Claim {
 }
 
 /// Returns the claims on a grain released on a slope.
-#[must_use]
-pub fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
+pub(crate) fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| incline(case, row)).collect()
 }
 
@@ -160,8 +153,7 @@ fn incline(case: &Case, row: Row) -> Vec<Claim> {
         None if row.rolls => [
             of_arm(
                 2.0 * i / (1.0 + i),
-                "lever arm between R and R − δ in v(1 + i(R/a)²) = g_t t: 2i/(1 + i) times \
-                                         δ/R",
+                "lever arm between R and R − δ in v(1 + i(R/a)²) = g_t t: 2i/(1 + i) times δ/R",
             ),
             of_arm((1.0 - i) / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: (1 − i)/(1 + i) times δ/R"),
         ],
@@ -211,8 +203,7 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
 }
 
 /// Returns the claims on a grain set down with spin.
-#[must_use]
-pub fn backspins(case: &Case, rows: &[Row]) -> Vec<Claim> {
+pub(crate) fn backspins(case: &Case, rows: &[Row]) -> Vec<Claim> {
     rows.iter().flat_map(|&row| backspin(case, row)).collect()
 }
 
@@ -225,8 +216,7 @@ fn backspin(case: &Case, row: Row) -> Vec<Claim> {
         estimated(2e-3, X),
         of_arm(
             (1.0 - i) / (1.0 + i),
-            "lever arm between R and R − δ in v = iR²Ω₀a/(a² + iR²): (1 − i)/(1 + i) times \
-                                       δ/R",
+            "lever arm between R and R − δ in v = iR²Ω₀a/(a² + iR²): (1 − i)/(1 + i) times δ/R",
         ),
         of_arm(2.0 / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: 2/(1 + i) times δ/R"),
     ];
@@ -237,7 +227,7 @@ fn backspin(case: &Case, row: Row) -> Vec<Claim> {
 ///
 /// # Errors
 /// When a run fails for another reason than a crash of the solver.
-pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
+pub(crate) fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for row in rows {
         let mut points = Vec::new();
@@ -247,20 +237,16 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
                 Err(RunError::Broken(_)) => continue,
                 done => done?,
             };
-            if let Ok((t, state)) = last(&done) {
-                let x = exact(&OneGrain::from_scene(&done.scene), t).x;
-                points.push((f64::from(substeps), ((state.x - x) / x).abs()));
+            if let Ok(displacement) = end(&done, exact, |state| state.x) {
+                points.push((f64::from(substeps), displacement.error().abs()));
             }
         }
-        curves.push(Curve { label: super::label(row.variant), stroke: Stroke::MarkedLine, points });
+        curves.push(Curve::new(super::label(row.variant), Stroke::MarkedLine, points));
     }
     let ends = [LEVELS[0], LEVELS[LEVELS.len() - 1]].map(f64::from);
     let small = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS);
-    curves.push(Curve {
-        label: "h/t".to_owned(),
-        stroke: Stroke::Dashed,
-        points: ends.iter().map(|&substeps| (substeps, small / substeps)).collect(),
-    });
+    let ahead = ends.iter().map(|&substeps| (substeps, small / substeps)).collect();
+    curves.push(Curve::new("h/t", Stroke::Dashed, ahead));
     Ok(Figure::graph(
         "rigid-substeps",
         "rigid: error over the number of substeps",
@@ -272,105 +258,14 @@ pub fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State)
     ))
 }
 
-/// Returns the claim on the restitution of a head-on impact.
-#[must_use]
-pub fn restitution(variant: &'static str, measured: fn(&FinishedRun) -> Result<Measurement, MissingData>) -> Claim {
-    claim("coefficient of restitution", "1")
-        .run(Run::new(variant, RIGID, DEFAULT))
-        .equals(Source::Derived("damped oscillator whose dashpot may pull (derivation)"), move |done| {
-            measured(&done[0])
-        })
-        .within(rounding(
-            1.0,
-            "rapier applies −e times the approach velocity once, at the end of the step of the impact",
-        ))
-        .refuses(Control::contact_law("damping ×1.05", |law| {
-            law.stiffness_damping *= 1.05;
-            law.normal_damping *= 1.05;
-        }))
-}
-
-/// Returns the claim that one component of the momentum is conserved to rounding.
-#[must_use]
-pub fn momentum(
-    variant: &'static str,
-    quantity: String,
-    worst: impl Fn(&FinishedRun) -> Result<Measurement, MissingData> + Send + Sync + 'static,
-) -> Claim {
-    claim(quantity, "kg m/s")
-        .run(Run::new(variant, RIGID, DEFAULT))
-        .holds("equal and opposite impulses", move |done| worst(&done[0]))
-        .within(rounding(1.0, "in units of the momentum of one grain"))
-        .refuses(Control::scene("a drag of 1e-9/s on every grain", |scene| scene.global_damping = 1e-9))
-}
-
-/// Returns the claim that the angular momentum is conserved in an off-centre impact.
-#[must_use]
-pub fn angular_momentum(
-    variant: &'static str,
-    worst: impl Fn(&FinishedRun) -> Result<Measurement, MissingData> + Send + Sync + 'static,
-) -> Claim {
-    claim("angular momentum, worst", "kg m²/s")
-        .run(Run::new(variant, RIGID, DEFAULT))
-        .holds("equal and opposite impulses at one point", move |done| worst(&done[0]))
-        .within(estimated(
-            3e-3,
-            "normal and lever arms are taken at the start of the step, and the grains have moved when the impulse \
-             acts: ∝ v Δt, in units of m v R",
-        ))
-        .refuses(Control::grains("the inertia of spheres", |grain| grain.inertia *= 0.8))
-}
-
-/// Returns the claim on the energy of a gas of elastic grains over `seconds` (s). The duration of the scene is a number of
-/// cycles, which `rigid` does not support.
-#[must_use]
-pub fn gas_energy(
-    variant: &'static str,
-    seconds: f64,
-    worst: fn(&FinishedRun) -> Result<Measurement, MissingData>,
-) -> Claim {
-    let run = Run::new(variant, RIGID, DEFAULT).adjusted(&format!("{seconds} s"), move |scene| {
-        scene.duration = Duration::Seconds(seconds);
-    });
-    claim(format!("total energy over {seconds} s, worst"), "J")
-        .run(run)
-        .holds("conservation of energy", move |done| worst(&done[0]))
-        .within(judged(
-            1.5e-2,
-            "single impacts conserve the energy to rounding. If a disc hits two discs in one step, the two approach \
-             velocities are reversed one after the other, and the second reversal undoes a part of the first one. This \
-             happens once in this run; smaller steps make the error rarer, not smaller",
-        ))
-        .refuses(Control::scene("dashpots of a hundredth of critical", move |scene| {
-            let law = scene.laws[0].unwrap_or_default();
-            let rate = 2e-2 * (law.normal_stiffness() / scene.grains[0].mass).sqrt();
-            scene.change_laws(|law| law.normal_damping = rate);
-            scene.duration = Duration::Seconds(0.2 * seconds);
-        }))
-}
-
 /// Returns the claim that `rigid` reports a duration in cycles as unsupported.
-#[must_use]
-pub fn refuses_cycles(variant: &'static str) -> Claim {
+pub(crate) fn refuses_cycles(variant: &'static str) -> Claim {
     claim("refusal of a length in calculation cycles", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
         "a cycle is a fraction of the period of the contact springs, and rigid contacts have no springs",
         Control::scene("a length in seconds, walls at rest, no recorded forces", |scene| {
             scene.duration = Duration::Seconds(0.1);
             scene.walls.iter_mut().for_each(|wall| wall.motion.phases.clear());
             scene.probes.clear();
-        }),
-    )
-}
-
-/// Returns the claim that `rigid` reports periodic axes as unsupported.
-#[must_use]
-pub fn refuses_periodic_axes(variant: &'static str) -> Claim {
-    claim("refusal of periodic axes", "1").run(Run::new(variant, RIGID, DEFAULT)).refused(
-        "rapier has no periodic axes",
-        Control::scene("no box, one grain, ten microseconds", |scene| {
-            scene.domain = None;
-            scene.grains.truncate(1);
-            scene.duration = Duration::Seconds(1e-5);
         }),
     )
 }
