@@ -1,6 +1,5 @@
 //! A sphere (Bardenhagen et al. 2001) or a disc that is set down with spin and without velocity.
 
-#[path = "elastic.rs"]
 mod elastic;
 
 use crate::exact::one_grain::{OneGrain, State, course, nearest, rest_at_overlap};
@@ -30,7 +29,7 @@ fn claims() -> Vec<Claim> {
 
 /// Compares a quantity of the last state with the rigid solution, in units of the rigid solution.
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
-    incline::end(done, OneGrain::rigid_backspin, pick)
+    on_plane::end(done, OneGrain::rigid_backspin, pick)
 }
 
 /// Returns the grain at a static overlap of 1e-3 R, and the time step (s).
@@ -96,8 +95,7 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
     let slides = |allowed| {
         estimated(
             allowed,
-            "the contact is elastic before it slides and vibrates when it rolls: ∝ √(overlap/R), here \
-                            1e-5",
+            "the contact is elastic before it slides and vibrates when it rolls: ∝ √(overlap/R), here 1e-5",
         )
         .up_to(2.0 * allowed)
     };

@@ -9,8 +9,6 @@ use crate::exact::one_grain::course;
 use crate::rows::elastic::{PressedDisc, Rest, settle, stiffen};
 use crate::rows::elastic_backspin::{excess, rolling, slippery, sphere};
 use grainbench_harness::prelude::*;
-use grainbench_scene::material::{Constitutive, Deformable};
-use std::f64::consts::PI;
 
 const SPHERE: Rest = Rest { duration: 0.6, damping: 20.0 };
 const DISC: Rest = Rest { duration: 0.3, damping: 100.0 };
@@ -55,7 +53,7 @@ pub(super) fn claims() -> Vec<Claim> {
         claims.extend(sphere(&format!("R/{cells}"), asked, if cells > 4.0 { run.long() } else { run.slow() }));
     }
     claims.extend(stiff_discs());
-    claims.push(
+    claims.extend([
         claim("mean ΩR over mean v of rolling, R/8", "1")
             .run(run("disc", "mpm", 8.0))
             .equals(Source::Derived("rolling without slip"), |done| {
@@ -71,34 +69,35 @@ pub(super) fn claims() -> Vec<Claim> {
                 Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000")
                     .coarser(Resolution::grid(4.0, 3)),
             ),
-    );
-    claims.push(
-        claim("displacement at .8 s over the rigid one, less 1, R/16", "1")
-            .run(run("disc", "mpm", 16.0).slow().known(
+        beside_rigid(
+            run("disc", "mpm", 16.0).slow().known(
                 "a disc that slides fast on springs becomes noisy at twelve and more cells per radius: its centre rises from \
                  0.494 to 0.504 m, and its displacement is too small. A disc that rotates without contact has no noise",
-            )
-            .up_to(0.5))
-            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
-            .within(judged(0.02, "elasticity; it amounts to .015 for the sphere of the prototype"))
-            .refuses(Control::without_the_error(
-                "nodal contact of surfaces that met",
-                "mpm:gap",
-                Resolution::grid(16.0, 3),
-            )),
-    );
-    claims.push(
-        claim("displacement at .8 s over the rigid one, less 1, R/4", "1")
-            .run(run("disc", "mpm:2000", 4.0).known(
+            ).up_to(0.5),
+            "R/16",
+            judged(0.02, "elasticity; it amounts to .015 for the sphere of the prototype"),
+            Control::without_the_error("nodal contact of surfaces that met", "mpm:gap", Resolution::grid(16.0, 3)),
+        ),
+        beside_rigid(
+            run("disc", "mpm:2000", 4.0).known(
                 "nodal contact supports the disc over a region of about √(2Rh): as the disc rotates, it presses new material \
                  into the region, and normal force and friction are several times those of the weight",
-            )
-            .up_to(0.2))
-            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
-            .within(judged(0.05, "accuracy of a contact that acts at the surface, at this resolution"))
-            .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3))),
-    );
+            ).up_to(0.2),
+            "R/4",
+            judged(0.05, "accuracy of a contact that acts at the surface, at this resolution"),
+            Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, 3)),
+        ),
+    ]);
     claims
+}
+
+/// Returns the claim that the displacement is that of a rigid disc.
+fn beside_rigid(run: Run, words: &str, allowed: Tolerance, control: Control) -> Claim {
+    claim(format!("displacement at .8 s over the rigid one, less 1, {words}"), "1")
+        .run(run)
+        .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
+        .within(allowed)
+        .refuses(control)
 }
 
 /// Returns the claims with moduli ten and a hundred times as large. The disc is then closer to the rigid solution, so
@@ -106,15 +105,10 @@ pub(super) fn claims() -> Vec<Claim> {
 fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);
-        claim(format!("displacement at .8 s over the rigid one, less 1, moduli × {factor}, R/8"), "1")
-            .run(if factor > 10.0 { run.long() } else { run.slow() })
-            .equals(RIGID, |done| Ok(Measurement::new(excess(&done[0])?, 0.0, 1.0)))
-            .within(judged(
-                allowed,
-                "as for the stiffened discs on the slopes: the effect of elasticity decreases with the modulus or its \
-                 square root; the discretisation of the contact remains",
-            ))
-            .refuses(slippery())
+        let because = "as for the stiffened discs on the slopes: the effect of elasticity decreases with the modulus or its \
+                       square root; the discretisation of the contact remains";
+        let run = if factor > 10.0 { run.long() } else { run.slow() };
+        beside_rigid(run, &format!("moduli × {factor}, R/8"), judged(allowed, because), slippery())
     })
 }
 

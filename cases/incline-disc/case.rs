@@ -1,18 +1,14 @@
 //! A disc released from rest on an inclined plane (Bardenhagen, Brackbill & Sulsky 2000).
 
-#[path = "elastic.rs"]
 mod elastic;
 
-use crate::rows::incline::{self, Incline, Slope};
+use crate::rows::incline::{Incline, LEVELS, Slope};
 use crate::rows::rigid::Row;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = incline::case(
-    ["incline-disc", "A disc on an inclined plane", include_str!("scene.toml"), include_str!("derivation.md")],
-    &claims,
-    figures,
-);
+pub(crate) static CASE: Case =
+    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::INCLINE_DISC };
 
 static INCLINE: Incline = Incline {
     case: &CASE,

@@ -12,7 +12,6 @@ use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::{elastic_disc, nodal_contact_2000 as nodal};
 use grainbench_harness::measure::slope as fitted;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 
 /// One slope with the expected values of the elastic disc on it.
 #[derive(Clone, Copy)]
@@ -261,8 +260,7 @@ fn does_not_roll() -> Claim {
         .equals_cited(bardenhagen_2001::ROLLING_AT_HALF_RADIUS, 1.0, |done| rolling(&done[0]))
         .within(judged(
             0.05,
-            "the paper states it for a sphere; the disc rotates at most by the rocking of its flat \
-                              side",
+            "the paper states it for a sphere; the disc rotates at most by the rocking of its flat side",
         ))
         .refuses(Control::solver("springs at the surface", "mpm"))
 }

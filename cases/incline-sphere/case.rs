@@ -1,23 +1,20 @@
 //! A sphere released from rest on an inclined plane (Bardenhagen et al. 2001).
 
-#[path = "elastic.rs"]
 mod elastic;
 
-use crate::rows::incline::{self, Incline, Slope};
+use crate::rows::incline::{Incline, LEVELS, Slope};
 use crate::rows::rigid::Row;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = incline::case(
-    [
-        "incline-sphere",
-        "A sphere on an inclined plane",
-        include_str!("scene.toml"),
-        include_str!("../incline-disc/derivation.md"),
-    ],
-    &claims,
+pub(crate) static CASE: Case = Case {
+    derivation: include_str!("../incline-disc/derivation.md"),
+    levels: LEVELS,
+    default_level: LEVELS[2],
+    claims: &claims,
     figures,
-);
+    ..crate::heads::INCLINE_SPHERE
+};
 
 static INCLINE: Incline = Incline {
     case: &CASE,

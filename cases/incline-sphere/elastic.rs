@@ -9,7 +9,6 @@ use crate::rows::elastic::{Rest, excess, settle};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::elastic_sphere;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 
 /// One slope with the expected values of the elastic sphere on it.
 #[derive(Clone, Copy)]
@@ -36,29 +35,27 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
 
 pub(super) fn claims() -> Vec<Claim> {
     const ASKED: &str = "required at this resolution before the solver existed, and the uncertainty of the reference";
-    let mut claims = Vec::new();
-    for slope in SLOPES {
-        for (cells, allowed) in [4.0, 8.0].into_iter().zip(slope.allowed) {
-            let run = run(slope, "mpm", cells);
-            claims.push(
-                claim(format!("displacement at 1 s over the rigid one, less 1, R/{cells}"), "1")
-                    // The run with cells of R/8 takes half a minute.
-                    .run(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
-                        (true, _) => run.long(),
-                        (false, true) => run,
-                        (false, false) => run.slow(),
-                    })
-                    .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
-                    .within(required(allowed + slope.reference.uncertainty, ASKED))
-                    .refuses(
-                        Control::contact_law("a tenth of the friction", |law| law.friction *= 0.1)
-                            .coarser(Resolution::grid(2.0, POINTS)),
-                    ),
-            );
-        }
-    }
+    let against_reference = |slope: Elastic, cells: f64, allowed: f64| {
+        let run = run(slope, "mpm", cells);
+        claim(format!("displacement at 1 s over the rigid one, less 1, R/{cells}"), "1")
+            // The run with cells of R/8 takes half a minute.
+            .run(match (cells > 4.0, slope.variant == SLOPES[0].variant) {
+                (true, _) => run.long(),
+                (false, true) => run,
+                (false, false) => run.slow(),
+            })
+            .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
+            .within(required(allowed + slope.reference.uncertainty, ASKED))
+            .refuses(
+                Control::contact_law("a tenth of the friction", |law| law.friction *= 0.1)
+                    .coarser(Resolution::grid(2.0, POINTS)),
+            )
+    };
+    let of_slope = |slope: Elastic| {
+        [against_reference(slope, 4.0, slope.allowed[0]), against_reference(slope, 8.0, slope.allowed[1])]
+    };
     let rolls = SLOPES[0];
-    claims.push(
+    let nodal = [
         claim("ΩR/v at 1 s, where a rigid sphere has 1, R/2", "1")
             .run(run(rolls, "mpm:2000", 2.0))
             .equals_cited(bardenhagen_2001::ROLLING_AT_HALF_RADIUS, 1.0, |done| {
@@ -67,8 +64,6 @@ pub(super) fn claims() -> Vec<Claim> {
             })
             .within(judged(0.02, "the sphere rotates at most by the rocking of its flat side"))
             .refuses(Control::solver("springs at the surface", "mpm")),
-    );
-    claims.push(
         claim("displacement at 1 s over the rigid one, less 1, against the elastic sphere, R/4", "1")
             .run(run(rolls, "mpm:2000", 4.0).known(
                 "nodal contact supports the sphere over a region of about √(2Rh), like a flat side: it rolls 25 % too slowly",
@@ -77,8 +72,8 @@ pub(super) fn claims() -> Vec<Claim> {
             .equals_cited(rolls.reference, 1.0, |done| excess(&done[0]))
             .within(required(rolls.allowed[0] + rolls.reference.uncertainty, ASKED))
             .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(4.0, POINTS))),
-    );
-    claims
+    ];
+    SLOPES.into_iter().flat_map(of_slope).chain(nodal).collect()
 }
 
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {

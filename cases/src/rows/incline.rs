@@ -1,54 +1,27 @@
 //! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
 //! Each case has its own scene, slopes and elastic body.
 
-use super::on_plane::{DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction};
+use super::on_plane::{DAMPING, NEARLY_RIGID, STEP, at_overlap, end, nearly_rigid, other_inertia, stronger_friction};
 use super::rigid::{self, Row};
 use super::set_down::{self, Dashpots};
 use super::{label, programs};
 use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
 use grainbench_harness::prelude::*;
-use std::f64::consts::PI;
 
 /// Parameters of the case `incline-disc` or `incline-sphere`.
 pub(crate) struct Incline {
     /// Case that defines the variants.
-    pub case: &'static Case,
+    pub(crate) case: &'static Case,
     /// Inclined planes of the case, each a variant of the scene.
-    pub slopes: &'static [Slope],
+    pub(crate) slopes: &'static [Slope],
     /// Variants for the solver `rigid` (rapier).
-    pub rigid: &'static [Row],
+    pub(crate) rigid: &'static [Row],
     /// Variant for the claims on a grain that is set down, and the coefficients of the dashpots in these claims.
-    pub set_down: (&'static str, Dashpots),
+    pub(crate) set_down: (&'static str, Dashpots),
 }
 
-/// Builds a case from its name, title, scene and derivation.
-pub(crate) const fn case(
-    [name, title, scene, derivation]: [&'static str; 4],
-    claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
-    figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
-) -> Case {
-    Case {
-        name,
-        title,
-        physics: Physics::Rolling,
-        claim: "A grain released from rest rolls or slips according to Coulomb friction: displacement, velocity and \
-                spin follow the rigid solution up to the compliance of the contact, and the compliant solution up to \
-                the error of the time step.",
-        scene,
-        derivation,
-        weakness: "One contact that never opens, with a constant normal and the static overlap as initial state. \
-                   Impact, history on a rotating contact and contacts between grains are not tested. Wrong friction is \
-                   visible only if the grain slips, and a wrong inertia mostly if it rolls. Only all slopes together \
-                   test both.",
-        levels: LEVELS,
-        default_level: LEVELS[2],
-        claims,
-        figures,
-        home: &crate::registry::HOME,
-    }
-}
-
-const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
+/// Levels of resolution of these cases.
+pub(crate) const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
 impl Incline {
     /// Returns all claims except the claims on the elastic body.
@@ -90,11 +63,11 @@ const COMPLIANCE: ClaimFigure = ClaimFigure {
 
 /// Inclined plane: a variant of the scene with one angle and friction.
 #[derive(Clone, Copy, Debug)]
-pub struct Slope {
+pub(crate) struct Slope {
     /// Variant of the scene.
-    pub variant: &'static str,
+    pub(crate) variant: &'static str,
     /// True if a rigid grain rolls without slip.
-    pub sticks: bool,
+    pub(crate) sticks: bool,
 }
 
 /// Time step of the undamped run that is compared with the compliant solution.
@@ -119,20 +92,6 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
         }
     }
     claims
-}
-
-/// Compares a quantity of the last state with the exact value, in units of the exact value.
-///
-/// # Errors
-/// When the record lacks the probe `grain` or has no samples.
-pub fn end(
-    done: &FinishedRun,
-    exact: impl Fn(&OneGrain, f64) -> State,
-    pick: fn(State) -> f64,
-) -> Result<Measurement, MissingData> {
-    let (t, state) = last(done)?;
-    let expected = pick(exact(&OneGrain::from_scene(&done.scene), t));
-    Ok(Measurement::relative(pick(state), expected))
 }
 
 /// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
@@ -166,9 +125,8 @@ fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
 const SWINGS: &str = "the tangential spring vibrates by up to twice its static displacement f g_t/ω², ω² = (k_t/m)(1 + \
                       1/i)";
 /// Reason why a slipping grain may deviate from the rigid solution.
-const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, \
-                    t_s = arccos(1 − μ g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that \
-                    for the displacement";
+const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, t_s = arccos(1 − μ \
+                    g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that for the displacement";
 
 /// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
 /// overlap of `ratio`·R.
@@ -335,24 +293,15 @@ fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     for slope in slopes {
         let done = runner.run(&at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))?;
         let grain = OneGrain::from_scene(&done.scene);
-        let states = course(&done).unwrap_or_default();
-        let thin: Vec<_> = states.iter().step_by(states.len().div_ceil(12).max(1)).collect();
-        let curve = |label: String, stroke, points| Curve { label, stroke, points };
-        displacement.push(curve(label(slope.variant), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.x)).collect()));
-        spin.push(curve(label(slope.variant), Stroke::Markers, thin.iter().map(|(t, s)| (*t, s.omega)).collect()));
-        let exact = |exact_value: &dyn Fn(f64) -> f64| {
-            (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, exact_value(t))).collect()
-        };
-        displacement.push(curve(
-            format!("{}, rigid", label(slope.variant)),
-            Stroke::Dashed,
-            exact(&|t| grain.rigid_incline(t).x),
-        ));
-        spin.push(curve(
-            format!("{}, rigid", label(slope.variant)),
-            Stroke::Dashed,
-            exact(&|t| grain.rigid_incline(t).omega),
-        ));
+        let states = thinned(course(&done).unwrap_or_default(), 12);
+        let exact: Vec<(f64, State)> =
+            (0..=50).map(|k| f64::from(k) / 50.0).map(|t| (t, grain.rigid_incline(t))).collect();
+        let (measured, rigid) = (label(slope.variant), format!("{}, rigid", label(slope.variant)));
+        for (label, stroke, states) in [(measured, Stroke::Markers, states), (rigid, Stroke::Dashed, exact)] {
+            let points = |pick: fn(&State) -> f64| states.iter().map(|(t, state)| (*t, pick(state))).collect();
+            displacement.push(Curve::new(label.clone(), stroke, points(|state| state.x)));
+            spin.push(Curve::new(label, stroke, points(|state| state.omega)));
+        }
     }
     Ok(vec![
         Figure::graph(

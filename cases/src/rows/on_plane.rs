@@ -1,51 +1,53 @@
 //! Runs of a grain on a plane, and their negative controls.
 
-use crate::exact::one_grain::{OneGrain, last, normal_axis, rest_at_overlap};
+use crate::exact::one_grain::{OneGrain, State, last, normal_axis, rest_at_overlap};
 use grainbench_harness::prelude::*;
 
 /// Time step of runs that are compared with rigid solutions.
-pub const STEP: Resolution = Resolution::CriticalFraction(0.01);
+pub(crate) const STEP: Resolution = Resolution::CriticalFraction(0.01);
 /// Static overlap divided by R at which soft contacts of all conventions nearly agree with a rigid contact.
-pub const NEARLY_RIGID: f64 = 1e-5;
+pub(crate) const NEARLY_RIGID: f64 = 1e-5;
 /// Damping ratio of the damped runs.
-pub const DAMPING: f64 = 0.5;
+pub(crate) const DAMPING: f64 = 0.5;
 
 /// Replaces the moment of inertia of a disc by that of a sphere, or that of a sphere by that of a disc.
-pub fn wrong_inertia(scene: &mut Scene) {
+pub(crate) fn wrong_inertia(scene: &mut Scene) {
     let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };
     let grain = &mut scene.grains[0];
     grain.inertia = factor * grain.mass * grain.radius * grain.radius;
 }
 
 /// Places the grain exactly in contact with the plane, without overlap.
-pub fn touching(scene: &mut Scene) {
+pub(crate) fn touching(scene: &mut Scene) {
     let axis = normal_axis(scene);
     scene.grains[0].position[axis] = scene.grains[0].radius;
 }
 
 /// Returns the negative control for sliding grains: friction that is 5 % larger.
-#[must_use]
-pub fn stronger_friction() -> Control {
+pub(crate) fn stronger_friction() -> Control {
     Control::contact_law("friction ×1.05", |law| law.friction *= 1.05)
 }
 
 /// Returns the negative control for rolling grains: the moment of inertia of the other shape, disc or sphere.
-#[must_use]
-pub fn other_inertia() -> Control {
+pub(crate) fn other_inertia() -> Control {
     Control::scene("the inertia of the other shape", wrong_inertia)
 }
 
 /// Returns a run at a static overlap of `ratio`·R.
-#[must_use]
-pub fn at_overlap(variant: &'static str, solver: &'static str, ratio: f64, damping: f64, step: Resolution) -> Run {
+pub(crate) fn at_overlap(
+    variant: &'static str,
+    solver: &'static str,
+    ratio: f64,
+    damping: f64,
+    step: Resolution,
+) -> Run {
     let name = format!("overlap/R = {ratio:e}, damping ratio {damping}");
     Run::new(variant, solver, step).adjusted(&name, move |scene| rest_at_overlap(scene, ratio, damping))
 }
 
 /// Returns a run at a static overlap of 1e-5 R, with or without a tangential dashpot. A slipping grain runs without it,
 /// because contact conventions differ in whether the dashpot force counts in the Coulomb limit.
-#[must_use]
-pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
+pub(crate) fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
     if tangential_dashpot {
         return at_overlap(variant, "dem:lammps", NEARLY_RIGID, DAMPING, STEP);
     }
@@ -54,6 +56,19 @@ pub fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> Run {
         rest_at_overlap(scene, NEARLY_RIGID, DAMPING);
         scene.change_laws(|law| law.tangential_damping = 0.0);
     })
+}
+
+/// Compares a quantity of the last state with the exact value, in units of the exact value.
+///
+/// # Errors
+/// When the record lacks the probe `grain` or has no samples.
+pub(crate) fn end(
+    done: &FinishedRun,
+    exact: impl Fn(&OneGrain, f64) -> State,
+    pick: fn(State) -> f64,
+) -> Result<Measurement, MissingData> {
+    let (t, state) = last(done)?;
+    Ok(Measurement::relative(pick(state), pick(exact(&OneGrain::from_scene(&done.scene), t))))
 }
 
 /// Returns the claims on the final velocity of rolling, which agrees to rounding with the solution for the lever arm of

@@ -1,15 +1,13 @@
 //! Target quantity of the cost study for one grain on a plane: its displacement, compared with the rigid solution for
 //! several stiffnesses of the contact and of the grain.
 
-use crate::exact::one_grain::{OneGrain, State, last, rest_at_overlap};
+use crate::exact::one_grain::{OneGrain, State, rest_at_overlap};
 use crate::registry;
 use crate::rows::elastic::{Rest, settle, stiffen};
-use crate::rows::on_plane::{DAMPING, touching};
+use crate::rows::on_plane::{DAMPING, end, touching};
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::method::Method;
-use grainbench_scene::scene::Duration;
 use std::sync::Arc;
 
 /// Static overlaps of grains on springs, divided by the radius R.
@@ -19,8 +17,7 @@ const STIFFENED: [f64; 2] = [1.0, 10.0];
 
 /// Returns the displacement at the time `seconds` (s) as a target quantity, one for each of the variants of a case. The
 /// expected value is the rigid solution `exact`. All solvers run up to this time.
-#[must_use]
-pub fn displacement(
+pub(crate) fn displacement(
     name: &str,
     variants: &[&'static str],
     seconds: f64,
@@ -63,10 +60,8 @@ fn subject(
         unit: "m",
         source: source.to_owned(),
         measure: Arc::new(move |done| {
-            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
-            let (t, state) = last(done)?;
-            let expected = exact(&OneGrain::from_scene(&done.scene), t).x;
-            Ok(Measurement::relative(state.x, expected))
+            let done = done.first().ok_or("run")?;
+            end(done, exact, |state| state.x)
         }),
         lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
     }
