@@ -1,8 +1,8 @@
 //! Keys of a scene that follow from overridden keys. The positions of grains that touch walls or other grains follow
 //! their radii. Keys that a new contact law or new moduli exclude are removed.
 
-use grainbench_cases::exact::one_grain::static_overlap;
 use grainbench_cases::registry::read_grains;
+use grainbench_cases::static_overlap;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::nalgebra::Vector3;
 use grainbench_scene::scene::{Scene, WallShape};

@@ -2,7 +2,6 @@
 
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::BlockShape;
 
 const LEVELS: &[Level] = &[cells("L/20", 20.0, 2), cells("L/40", 40.0, 2), cells("L/80", 80.0, 2)];
 const SOURCE: Source = Source::Derived("waves in a line of material (derivation)");
@@ -62,19 +61,12 @@ const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 fn plateau(done: &FinishedRun) -> Result<f64, MissingData> {
     let impact = Impact::from_scene(&done.scene);
     let transit = impact.length / impact.wave;
-    let stress = done.column("middle.sigma_xx")?;
-    let within = |time: f64| (0.7 * transit..=1.3 * transit).contains(&time);
-    let samples: Vec<f64> =
-        done.series().time.iter().zip(stress).filter(|(time, _)| within(**time)).map(|(_, &stress)| stress).collect();
-    if samples.is_empty() {
-        Err(MissingData("samples".to_owned()))
-    } else {
-        Ok(samples.iter().sum::<f64>() / samples.len() as f64)
+    let mut stress = samples(done, "middle.sigma_xx")?;
+    stress.retain(|(time, _)| (0.7 * transit..=1.3 * transit).contains(time));
+    if stress.is_empty() {
+        return Err("samples".into());
     }
-}
-
-fn denser() -> Control {
-    Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0)
+    Ok(stress.iter().map(|(_, stress)| stress).sum::<f64>() / stress.len() as f64)
 }
 
 fn softer() -> Control {
@@ -82,11 +74,10 @@ fn softer() -> Control {
 }
 
 fn claims() -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for level in LEVELS {
+    let of_level = |level: &Level| {
         let run = || Run::new(PLAIN, "mpm", level.resolution);
         let width = width(level.resolution);
-        claims.push(
+        [
             claim(format!("velocity of the right bar, worst, {} cells", level.name), "m/s")
                 .run(run())
                 .series(|done| samples(done, "right.vx"))
@@ -103,8 +94,6 @@ fn claims() -> Vec<Claim> {
                 .refuses(softer().coarser(LEVELS[0].resolution))
                 .fair_to_any_continuum()
                 .drawn(&VELOCITY, level.name),
-        );
-        claims.push(
             claim(format!("velocity of the left bar in the end, {} cells", level.name), "m/s")
                 .run(run())
                 .equals(SOURCE, |done| {
@@ -115,22 +104,23 @@ fn claims() -> Vec<Claim> {
                     "the bars separate when half of the dispersed front has arrived, before the contact has \
                      transferred all momentum: .447 δ/2L (derivation); in units of v",
                 ))
-                .refuses(denser().coarser(LEVELS[0].resolution))
+                .refuses(
+                    Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0)
+                        .coarser(LEVELS[0].resolution),
+                )
                 .fair_to_any_continuum(),
-        );
-    }
-    claims.push(
-        claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
-            .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
-            .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
-                let exact = -Impact::from_scene(&done[0].scene).stress();
-                Ok(Measurement::new(plateau(&done[0])?, exact, -exact))
-            })
-            .within(estimated(0.015, "oscillation behind a discontinuous front"))
-            .refuses(softer())
-            .fair_to_any_continuum(),
-    );
-    claims
+        ]
+    };
+    let stress = claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
+        .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution))
+        .equals(Source::Derived("σ = ρ c v/2 (derivation)"), |done| {
+            let exact = -Impact::from_scene(&done[0].scene).stress();
+            Ok(Measurement::new(plateau(&done[0])?, exact, -exact))
+        })
+        .within(estimated(0.015, "oscillation behind a discontinuous front"))
+        .refuses(softer())
+        .fair_to_any_continuum();
+    LEVELS.iter().flat_map(of_level).chain([stress]).collect()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -7,8 +7,6 @@ use crate::rows::on_plane::{
 use crate::rows::programs;
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
-use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Sampling};
 use std::f64::consts::TAU;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
@@ -19,10 +17,8 @@ const STOPS: &str = "stops";
 const SUBSTEPS: u32 = 8;
 
 const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
-const STOPPED: Source = Source::Derived(
-    "no angular momentum about the belt: at rest after the displacement f V T \
-                                         (derivation)",
-);
+const STOPPED: Source =
+    Source::Derived("no angular momentum about the belt: at rest after the displacement f V T (derivation)");
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BELT };
@@ -313,8 +309,7 @@ fn kick() -> Claim {
         })
         .within(computed(
             1e-3,
-            "overlap/R, for a lever arm between R and R − overlap; in units of the velocity of \
-                                LIGGGHTS",
+            "overlap/R, for a lever arm between R and R − overlap; in units of the velocity of LIGGGHTS",
         ))
         .refuses(Control::our_contact_law("a dashpot along the belt × 1.05 in ours", |law| {
             law.tangential_damping *= 1.05

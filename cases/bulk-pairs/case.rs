@@ -26,12 +26,7 @@ const PAIRS: [(&str, &str); 8] = [
 ];
 
 fn claims() -> Vec<Claim> {
-    let mut all = Vec::new();
-    for (variant, about) in PAIRS {
-        all.push(force(variant, about));
-        all.push(torque(variant, about));
-    }
-    all
+    PAIRS.into_iter().flat_map(|(variant, about)| [force(variant, about), torque(variant, about)]).collect()
 }
 
 fn runs(variant: &'static str) -> [Run; 2] {
@@ -61,7 +56,7 @@ fn torque(variant: &'static str, about: &str) -> Claim {
 /// Returns the largest difference between our rate and that of LIGGGHTS, in units of the largest rate of LIGGGHTS. A
 /// rate is the change of a velocity in a step, times mass or moment of inertia, divided by the step.
 fn rate(done: &[FinishedRun], columns: &[&str], inertia: f64) -> Result<Measurement, MissingData> {
-    let [ours, theirs, ..] = done else { return Err(MissingData("second run to compare with".to_owned())) };
+    let [ours, theirs, ..] = done else { return Err("second run to compare with".into()) };
     let times = &theirs.series().time;
     let middle: Vec<f64> = times.windows(2).map(|pair| 0.5 * (pair[0] + pair[1])).collect();
     let gains = |values: &[f64]| -> Vec<f64> {
@@ -76,7 +71,6 @@ fn rate(done: &[FinishedRun], columns: &[&str], inertia: f64) -> Result<Measurem
         largest = theirs.iter().fold(largest, |most, value| most.max(value.abs()));
         both.push((ours, theirs));
     }
-    let found: Vec<Measurement> =
-        both.iter().map(|(ours, theirs)| Measurement::worst_of(&middle, ours, theirs, largest)).collect();
-    Measurement::worst_among(found).ok_or_else(|| MissingData("columns to compare".to_owned()))
+    let found = both.iter().map(|(ours, theirs)| Ok(Measurement::worst_of(&middle, ours, theirs, largest)));
+    Measurement::worst_read(found)
 }

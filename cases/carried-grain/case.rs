@@ -3,7 +3,6 @@
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;
-use grainbench_scene::nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[2];
@@ -31,8 +30,8 @@ impl Motion {
     fn from_scene(scene: &Scene) -> Self {
         let carried = &scene.grains[0];
         let stiffness = scene.laws[0].map_or(f64::NAN, |law| law.normal_stiffness());
-        let distance = |other: &grainbench_scene::scene::Grain| (other.position - carried.position).norm();
-        let overlap = |other: &grainbench_scene::scene::Grain| carried.radius + other.radius - distance(other);
+        let distance = |other: &Grain| (other.position - carried.position).norm();
+        let overlap = |other: &Grain| carried.radius + other.radius - distance(other);
         let drivers = || scene.grains.iter().skip(1);
         Self {
             spin: carried.spin,

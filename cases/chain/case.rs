@@ -1,11 +1,9 @@
 //! A linear chain of beads, driven at one end.
 
-#[path = "bessel.rs"]
 mod bessel;
 
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] =
     &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.025", 0.025), fraction("dt=.0125", 0.0125)];

@@ -2,10 +2,7 @@
 
 use crate::rows::programs::{PAIRS, row};
 use crate::sources::prototype::event_driven_gas::{COOLING_RATE, SPREAD};
-use grainbench_harness::course::samples;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
@@ -29,8 +26,7 @@ fn run(variant: &'static str, solver: &'static str) -> Run {
 /// Returns time (s) and 1/√T (1/√J) of each sample. T = E/N is the kinetic energy per disc.
 fn course(done: &FinishedRun) -> Result<Vec<(f64, f64)>, MissingData> {
     let count = done.scene.grains.len() as f64;
-    let samples = done.series().time.iter().zip(done.column(ENERGY)?);
-    Ok(samples.map(|(&time, energy)| (time, (energy / count).powf(-0.5))).collect())
+    Ok(samples(done, ENERGY)?.into_iter().map(|(time, energy)| (time, (energy / count).powf(-0.5))).collect())
 }
 
 /// Returns the slope of 1/√T against t (1/(s √J)) by least squares, from [`FROM`] on.
@@ -154,12 +150,10 @@ fn claims() -> Vec<Claim> {
         let runs = pair.map(|solver| run(PLAIN, solver));
         let quantity = format!("kinetic energy over the first {FORETOLD} s, worst");
         claims.push(row(&quantity, "J", allowed, runs, control, |done| {
-            let theirs = samples(&done[1], ENERGY)?;
-            let known = theirs.iter().take_while(|(time, _)| *time <= FORETOLD).count();
-            let values =
-                |done: &FinishedRun| Ok(done.column(ENERGY)?.iter().take(known).copied().collect::<Vec<f64>>());
-            let (ours, theirs) = (values(&done[0])?, values(&done[1])?);
-            Ok(Measurement::worst_of(&done[1].series().time[..known], &ours, &theirs, theirs[0]))
+            let (ours, theirs) = (done[0].column(ENERGY)?, done[1].column(ENERGY)?);
+            let times = &done[1].series().time;
+            let known = times.iter().take_while(|time| **time <= FORETOLD).count();
+            Ok(Measurement::worst_of(&times[..known], ours, &theirs[..known], theirs[0]))
         }));
     }
     claims
@@ -167,14 +161,15 @@ fn claims() -> Vec<Claim> {
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let ours = runner.run(&run(PLAIN, "dem"))?;
-    let mut curves = vec![];
-    for (label, stroke, done) in std::iter::once(("dem", Stroke::Line, ours.clone())).chain(
+    let course_of_ours = course(&ours).unwrap_or_default();
+    let mut curves = vec![Curve::new("dem", Stroke::Line, course_of_ours.clone())];
+    for [_, program] in PAIRS {
         // LAMMPS or LIGGGHTS has no curve if it is not installed and no run of it is stored.
-        PAIRS.iter().filter_map(|pair| Some((pair[1], Stroke::Markers, runner.run(&run(PLAIN, pair[1])).ok()?))),
-    ) {
-        curves.push(Curve::new(label, stroke, course(&done).unwrap_or_default()));
+        if let Ok(theirs) = runner.run(&run(PLAIN, program)) {
+            curves.push(Curve::new(program, Stroke::Markers, course(&theirs).unwrap_or_default()));
+        }
     }
-    let start = course(&ours).unwrap_or_default().into_iter().find(|(time, _)| *time >= FROM).unwrap_or((FROM, 1.0));
+    let start = course_of_ours.into_iter().find(|(time, _)| *time >= FROM).unwrap_or((FROM, 1.0));
     let line = |rate: f64| vec![start, (12.0, start.1 + rate * (12.0 - start.0))];
     curves.push(Curve::new("Enskog's theory", Stroke::Dashed, line(enskog(&ours.scene))));
     curves.push(Curve::new("hard discs, event by event", Stroke::Dashed, line(COOLING_RATE.value)));

@@ -1,16 +1,12 @@
 //! Arrival of force in chains of discs struck at one end (Bardenhagen et al. 2001, Figs 9 to 11).
 
-#[path = "elastic.rs"]
 mod elastic;
-#[path = "fringes.rs"]
 mod fringes;
-#[path = "modal.rs"]
 mod modal;
 
 use crate::rows::rigid;
 use crate::sources::literature::bardenhagen_2001;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 use modal::Modes;
 
 const LEVELS: &[Level] = &[fraction("dt=.02", 0.02), fraction("dt=.01", 0.01), fraction("dt=.005", 0.005)];
@@ -50,7 +46,7 @@ fn threshold(scene: &Scene) -> f64 {
 fn first_above(done: &FinishedRun, column: &str, threshold: f64) -> Result<f64, MissingData> {
     let (time, values) = (&done.series().time, done.column(column)?);
     let at = values.iter().position(|&value| value > threshold).filter(|&at| at > 0);
-    let at = at.ok_or_else(|| MissingData(format!("`{column}` above its threshold")))?;
+    let at = at.ok_or_else(|| format!("`{column}` above its threshold"))?;
     let share = (threshold - values[at - 1]) / (values[at] - values[at - 1]);
     Ok(time[at - 1] + share * (time[at] - time[at - 1]))
 }

@@ -6,11 +6,12 @@
 //! with a prototype of the same method.
 
 use super::{FASTER, SOONER, WAVE_SPEED, fringes};
+use crate::rows::elastic::stiffen;
 use crate::sources::literature::bardenhagen_2001::FRINGES_SLOWER;
 use crate::sources::prototype::disk_chains::ARRIVAL_IN_DISC_4;
 use crate::sources::prototype::disk_chains_nodal_contact::ARRIVAL_AT_40;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::{BodyName, Duration, Probe, ProbeTarget, Spot};
+use grainbench_scene::scene::{BodyName, Probe, ProbeTarget, Spot};
 
 const BEST: &str = "mpm";
 const STIFF: &str = "mpm+penalty=5.2";
@@ -78,11 +79,11 @@ pub(super) fn principal_difference(done: &FinishedRun, disc: usize) -> Result<im
 fn arrival(done: &FinishedRun, disc: usize) -> Result<f64, MissingData> {
     let scene = &done.scene;
     let difference = principal_difference(done, disc)?;
-    let volume = std::f64::consts::PI * scene.grains[0].radius.powi(2);
+    let volume = PI * scene.grains[0].radius.powi(2);
     let speed = scene.walls[0].motion.phases[0].velocity.norm();
     let threshold = ARRIVED * scene.grains[0].mass / volume * WAVE_SPEED * speed;
     let at = (1..done.series().time.len()).find(|&at| difference(at) > threshold);
-    let at = at.ok_or_else(|| MissingData(format!("stress above .1 ρcv in disc {disc}")))?;
+    let at = at.ok_or_else(|| format!("stress above .1 ρcv in disc {disc}"))?;
     let time = &done.series().time;
     let share = (threshold - difference(at - 1)) / (difference(at) - difference(at - 1));
     Ok((time[at - 1] + share * (time[at] - time[at - 1])) * WAVE_SPEED / (2.0 * scene.grains[0].radius))
@@ -94,69 +95,61 @@ fn delay(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 pub(super) fn claims() -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for (solver, cells, points, expected, allowed) in [
-        (BEST, 20.0, 2, ARRIVAL_IN_DISC_4, 0.3),
-        (BEST, 40.0, 2, ARRIVAL_IN_DISC_4, 0.2),
-        (PAPER, 20.0, 1, ARRIVAL_AT_40, 0.2),
-    ] {
-        let run = run("line", solver, grid(cells, points), 8.0);
-        let because = if solver == BEST {
-            "springs as soft as .4 cells of material delay the wave at each of four contacts"
-        } else {
-            "nodal contact joins the discs over a region from the start: the wave is too fast, and slows down with \
-             each refinement"
-        };
-        claims.push(
-            claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
-                .run(if cells > 20.0 { run.long() } else { run.slow() })
-                .equals_cited(expected, 1.0, |done| arrival(&done[0], 4))
-                .within(judged(allowed, because))
-                .refuses(Control::scene("discs a fifth softer", |scene| crate::rows::elastic::stiffen(scene, 0.8))),
-        );
-    }
-    // On still finer grids, two implementations of nodal contact differ by a fifteenth, and neither approaches the
-    // finite-element result.
+    let soft = "springs as soft as .4 cells of material delay the wave at each of four contacts";
     let too_fast = "nodal contact joins the discs over a region from the start: the wave is too fast, and slows down \
                     with each refinement";
-    claims.push(
-        claim("arrival of stress in disc 4, 80 cells a diameter", "d/c")
-            .run(run("line", PAPER, grid(40.0, 1), 8.0).known(too_fast).up_to(5.0).long())
-            .equals_cited(ARRIVAL_IN_DISC_4, 1.0, |done| arrival(&done[0], 4))
-            .within(judged(0.2, "accuracy of springs at the surface, at this resolution"))
-            .refuses(Control::without_the_error("springs at the surface", BEST, grid(40.0, 2))),
-    );
-    for (solver, points) in [(BEST, 2), (PAPER, 1)] {
-        claims.push(
-            claim("delay per disc at ν = .48 over that at ν = .22", "1")
-                .run(slower(solver, grid(10.0, points)).slow())
-                .run(run("line", solver, grid(10.0, points), 8.0))
-                .at_least(FRINGES_SLOWER.value, FRINGES_SLOWER.source(), |done| Ok(delay(&done[0])? / delay(&done[1])?))
-                .within(exactly("the paper states a bound"))
-                .refuses(Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3))),
-        );
-    }
-    for (variant, words, disc) in [("zig-zag-glued", "glued zig-zag", 5), ("line", "line", 4)] {
-        claims.push(
-            claim(format!("arrival of stress in disc {disc} of the {words} over that of the slipping zig-zag"), "1")
-                .run(run(variant, "mpm", grid(8.0, 2), 15.0))
-                .run(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
-                .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))
-                .within(exactly(
-                    "the paper states an order of fringes and no ratio; earlier by a hundredth or more is \
-                                 required",
-                ))
-                .refuses(
-                    Control::scene("the slipping zig-zag four times as stiff", |scene| {
-                        if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
-                            crate::rows::elastic::stiffen(scene, 4.0);
-                        }
-                    })
-                    .coarser(grid(4.0, 2)),
-                ),
-        );
-    }
-    claims
+    let arrives = |run: Run, cells: f64, expected: CitedNumber, tolerance, control| {
+        claim(format!("arrival of stress in disc 4, {} cells a diameter", 2.0 * cells), "d/c")
+            .run(run)
+            .equals_cited(expected, 1.0, |done| arrival(&done[0], 4))
+            .within(tolerance)
+            .refuses(control)
+    };
+    let softer = || Control::scene("discs a fifth softer", |scene| stiffen(scene, 0.8));
+    let line = |solver, cells, points| run("line", solver, grid(cells, points), 8.0);
+    let slower_fringes = |solver, points| {
+        claim("delay per disc at ν = .48 over that at ν = .22", "1")
+            .run(slower(solver, grid(10.0, points)).slow())
+            .run(line(solver, 10.0, points))
+            .at_least(FRINGES_SLOWER.value, FRINGES_SLOWER.source(), |done| Ok(delay(&done[0])? / delay(&done[1])?))
+            .within(exactly("the paper states a bound"))
+            .refuses(Control::scene("ν = .3 in both", |scene| set_poisson_ratio(scene, 0.3)))
+    };
+    let sooner = |variant, words: &str, disc: usize| {
+        claim(format!("arrival of stress in disc {disc} of the {words} over that of the slipping zig-zag"), "1")
+            .run(run(variant, "mpm", grid(8.0, 2), 15.0))
+            .run(run("zig-zag", "mpm", grid(8.0, 2), 15.0))
+            .at_most(SOONER, FASTER, move |done| Ok(arrival(&done[0], disc)? / arrival(&done[1], disc)?))
+            .within(exactly(
+                "the paper states an order of fringes and no ratio; earlier by a hundredth or more is required",
+            ))
+            .refuses(
+                Control::scene("the slipping zig-zag four times as stiff", |scene| {
+                    if scene.laws.iter().flatten().any(|law| law.friction == 0.5) {
+                        stiffen(scene, 4.0);
+                    }
+                })
+                .coarser(grid(4.0, 2)),
+            )
+    };
+    vec![
+        arrives(line(BEST, 20.0, 2).slow(), 20.0, ARRIVAL_IN_DISC_4, judged(0.3, soft), softer()),
+        arrives(line(BEST, 40.0, 2).long(), 40.0, ARRIVAL_IN_DISC_4, judged(0.2, soft), softer()),
+        arrives(line(PAPER, 20.0, 1).slow(), 20.0, ARRIVAL_AT_40, judged(0.2, too_fast), softer()),
+        // On still finer grids, two implementations of nodal contact differ by a fifteenth, and neither approaches the
+        // finite-element result.
+        arrives(
+            line(PAPER, 40.0, 1).known(too_fast).up_to(5.0).long(),
+            40.0,
+            ARRIVAL_IN_DISC_4,
+            judged(0.2, "accuracy of springs at the surface, at this resolution"),
+            Control::without_the_error("springs at the surface", BEST, grid(40.0, 2)),
+        ),
+        slower_fringes(BEST, 2),
+        slower_fringes(PAPER, 1),
+        sooner("zig-zag-glued", "glued zig-zag", 5),
+        sooner("line", "line", 4),
+    ]
 }
 
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {

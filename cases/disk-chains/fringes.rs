@@ -9,7 +9,6 @@ use super::elastic::{grid, principal_difference, run};
 use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::prelude::*;
-use grainbench_solver::record::Snapshot;
 use std::f64::consts::FRAC_PI_2;
 
 /// Chain of discs in the paper, with the times and observations of its figure.
@@ -129,6 +128,6 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 /// Returns the impact stress ρcv of the striker (Pa).
 fn impact_stress(done: &FinishedRun) -> f64 {
     let scene = &done.scene;
-    let density = scene.grains[0].mass / (std::f64::consts::PI * scene.grains[0].radius.powi(2));
+    let density = scene.grains[0].mass / (PI * scene.grains[0].radius.powi(2));
     density * WAVE_SPEED * scene.walls[0].motion.phases[0].velocity.norm()
 }

@@ -1,19 +1,15 @@
 //! Two kinds of spheres in a rotating drum. The large drum starts from the published initial state if the user provides
 //! its data file. A small drum starts from our own bed.
 
-#[path = "ladder.rs"]
 mod ladder;
-#[path = "zones.rs"]
 mod zones;
 
 use crate::registry::made_of;
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::claim::ClaimWithTolerance;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
-use grainbench_scene::scene::Duration;
 use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use zones::{COUNTED, ZONES};
@@ -116,28 +112,20 @@ fn zone(quantity: &str, [from, to]: [f64; 2], (allowed, because): (f64, &str)) -
         .run(of_paper())
         .equals(Source::Printed(&dosta::WORK, "derived: repeated runs of LIGGGHTS and MUSEN"), move |done| {
             let rows = course(DRUM).into_iter().filter(|[time, ..]| (from - 1e-9..=to + 1e-9).contains(time));
-            let found: Result<Vec<Measurement>, MissingData> = rows
-                .map(|[time, mean, half]| {
-                    let count = counted(&done[0], time)?;
-                    let code = if count > mean { mean - half } else { mean + half };
-                    Ok(Measurement::relative(count, code))
-                })
-                .collect();
-            Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
+            Measurement::worst_read(rows.map(|[time, mean, half]| {
+                let count = counted(&done[0], time)?;
+                let code = if count > mean { mean - half } else { mean + half };
+                Ok(Measurement::relative(count, code))
+            }))
         })
         .within(required(allowed, because))
 }
 
 /// Returns the number of M1 spheres in zone 2 at a time (s).
 fn counted(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
-    let table = done.table(zones::NAME)?;
-    let column = |name: &str| table.column(name).ok_or_else(|| MissingData(format!("column `{name}`")));
-    let times = column("time")?;
     // Snapshots are taken at whole steps, so their times may differ slightly from the compared times.
-    let place = times.iter().position(|at| (at - time).abs() < 1e-5);
-    place
-        .map(|place| column(COUNTED).map(|counts| counts[place]))
-        .unwrap_or_else(|| Err(MissingData(format!("count at {time} s"))))
+    let place = done.column_of(zones::NAME, "time")?.iter().position(|at| (at - time).abs() < 1e-5);
+    Ok(done.column_of(zones::NAME, COUNTED)?[place.ok_or_else(|| format!("count at {time} s"))?])
 }
 
 /// Returns the claim that the position of one grain agrees with LIGGGHTS before rounding errors have grown. Later,
@@ -165,8 +153,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     for (solver, stroke) in SIDES.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
         // A solver has no curve if it is not installed and no run of it is stored.
         if let Ok(done) = runner.run(&Run::new(PLAIN, solver, LEVELS[0].resolution)) {
-            let values = done.column("all.angular_momentum_y").unwrap_or_default();
-            let points = done.series().time.iter().zip(values).map(|(time, value)| (time * 1e3, -value * 1e6));
+            let momentum = samples(&done, "all.angular_momentum_y").unwrap_or_default().into_iter();
+            let points = momentum.map(|(time, value)| (time * 1e3, -value * 1e6));
             curves.push(Curve::new(solver, stroke, points.collect()));
         }
     }
@@ -182,8 +170,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 fn of_zone(done: &FinishedRun) -> Figure {
-    let zone_values =
-        |name: &str| done.table(zones::NAME).ok().and_then(|table| table.column(name)).unwrap_or_default();
+    let zone_values = |name: &str| done.column_of(zones::NAME, name).unwrap_or_default();
     let ours = zone_values("time").iter().copied().zip(zone_values(COUNTED).iter().map(|count| count / 1e3)).collect();
     let codes = course(DRUM).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
     Figure::graph(

@@ -2,10 +2,8 @@
 //! rounding.
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
-use grainbench_harness::claim::ClaimWithTolerance;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 use std::path::Path;
 
 /// Time up to which runs are compared (s).
@@ -38,10 +36,9 @@ fn worst(step: &str, run: Run) -> ClaimWithTolerance {
         .runs([run, of_paper().aside()])
         .agrees(Source::Ourselves("the same with the step of the case"), |done| {
             let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
-            let found: Result<Vec<Measurement>, MissingData> = times
-                .map(|time| Ok(Measurement::relative(counted(&done[0], time)?, counted(&done[1], time)?)))
-                .collect();
-            Measurement::worst_among(found?).ok_or_else(|| MissingData("time to compare at".to_owned()))
+            Measurement::worst_read(
+                times.map(|time| Ok(Measurement::relative(counted(&done[0], time)?, counted(&done[1], time)?))),
+            )
         })
         .within(required(EARLY.0, "tolerance of a count relative to either code until .5 s"))
 }

@@ -1,7 +1,6 @@
 //! Large deflection of a cantilever under its own weight.
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::BlockShape;
 
 const POINTS: u32 = 3;
 const LEVELS: &[Level] = &[cells("t/2", 2.0, POINTS), cells("t/3", 3.0, POINTS)];
@@ -92,7 +91,7 @@ fn claims() -> Vec<Claim> {
             claim(format!("displacement of the tip at rest, cells of {}", level.name), "m")
                 .run(run)
                 .equals(SOURCE, |done| {
-                    let [length, _, weight] = strip(&done[0].scene).ok_or_else(|| MissingData("a strip".to_owned()))?;
+                    let [length, _, weight] = strip(&done[0].scene).ok_or("a strip")?;
                     let exact = -length * Elastica::under(weight).sinking;
                     Ok(Measurement::relative(done[0].last("tip.uy")?, exact))
                 })

@@ -35,9 +35,7 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = vec![Curve::new("LIGGGHTS and MUSEN, one bed", Stroke::Markers, codes)];
     for (number, run) in on_all().iter().enumerate() {
         let done = runner.run(run)?;
-        let heights = done.column("ball.z").unwrap_or_default();
-        let course = done.series().time.iter().zip(heights).map(|(time, height)| (time * 1e3, height * 1e3)).collect();
-        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course));
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, super::course(&done)));
     }
     Ok(Figure::graph(
         "hundred-thousand",

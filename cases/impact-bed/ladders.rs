@@ -35,16 +35,15 @@ pub(super) fn claims() -> Vec<Claim> {
 }
 
 /// Returns the claim that runs agree with their reference runs. Runs and reference runs alternate in `runs`.
-fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> grainbench_harness::claim::ClaimWithTolerance {
+fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> ClaimWithTolerance {
     let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
         .runs(runs)
         .agrees(Source::Ourselves("the same with the step of the paper, or with steel"), |done| {
-            let pairs: Result<Vec<Measurement>, MissingData> = done
-                .chunks_exact(2)
-                .map(|pair| Ok(Measurement::new(at_30_ms(&pair[0])?, at_30_ms(&pair[1])?, 1.0)))
-                .collect();
-            Measurement::worst_among(pairs?).ok_or_else(|| MissingData("runs to compare".to_owned()))
+            let pairs = done.chunks_exact(2);
+            Measurement::worst_read(
+                pairs.map(|pair| Ok(Measurement::new(at_30_ms(&pair[0])?, at_30_ms(&pair[1])?, 1.0))),
+            )
         })
         .within(computed(allowed, because))
 }

@@ -1,38 +1,19 @@
 //! Comparison of our results with the published results of seven codes on ten beds.
 
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
+use grainbench_reference::round_robin::{IMPACT, Spread};
 
 /// Number of published beds.
-const PUBLISHED: usize = 10;
+pub(super) const PUBLISHED: usize = 10;
 
 /// Rows of time (s), mean height of the ball (mm), and standard deviations of the height between codes and between beds
 /// (mm), derived from the published data.
 pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock::new(|| {
-    let mut table = csv::Reader::from_reader(grainbench_reference::round_robin::IMPACT.as_bytes());
+    let mut table = csv::Reader::from_reader(IMPACT.as_bytes());
     let number = |row: &csv::StringRecord, place: usize| row.get(place)?.parse().ok();
     let row = |row: csv::StringRecord| Some([number(&row, 0)?, number(&row, 1)?, number(&row, 2)?, number(&row, 3)?]);
     table.records().flatten().filter_map(row).collect()
 });
-
-/// Mean of a quantity, and its standard deviations between codes and between beds.
-#[derive(Clone, Copy)]
-pub(super) struct Spread {
-    pub(super) mean: f64,
-    of: grainbench_reference::round_robin::Spread,
-}
-
-impl Spread {
-    pub(super) fn new(mean: CitedNumber, code: CitedNumber, bed: CitedNumber) -> Self {
-        let spread = grainbench_reference::round_robin::Spread { mean: mean.value, code: code.value, bed: bed.value };
-        Self { mean: mean.value, of: spread }
-    }
-
-    /// Returns the largest error of the mean over `own` of our beds that passes.
-    pub(super) fn allowed(&self, own: usize) -> f64 {
-        self.of.allowed(own, PUBLISHED)
-    }
-}
 
 /// Returns time (ms) and difference between the mean height on our beds and that of the codes, in standard deviations.
 /// Times at which codes or beds differ by at most 0.01 mm (standard deviation) are left out.
@@ -41,7 +22,7 @@ pub(super) fn scores(done: &[FinishedRun], published: &[[f64; 4]]) -> Result<Vec
     let is_counted = |row: &&[f64; 4]| row[0] <= last + 1e-9 && row[2] > 0.01 && row[3] > 0.01;
     let score = |&[time, mean, code, bed]: &[f64; 4]| {
         let own: Vec<f64> = done.iter().map(|done| super::height(done, time)).collect::<Result<_, _>>()?;
-        let spread = grainbench_reference::round_robin::Spread { mean, code, bed };
+        let spread = Spread { mean, code, bed };
         let off = own.iter().sum::<f64>() / own.len() as f64 - mean;
         Ok((time * 1e3, off / spread.deviation(own.len(), PUBLISHED)))
     };
@@ -67,10 +48,6 @@ pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N]
 /// Returns two figures: the heights on our beds with the mean of the codes, and the difference from this mean in
 /// standard deviations.
 pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figure> {
-    let course = |done: &FinishedRun| -> Vec<(f64, f64)> {
-        let heights = done.column("ball.z").unwrap_or_default();
-        done.series().time.iter().zip(heights).map(|(time, height)| (time * 1e3, height * 1e3)).collect()
-    };
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let within: Vec<&[f64; 4]> = published.iter().filter(|row| row[0] <= last + 1e-9).collect();
     let band = within.iter().flat_map(|[time, mean, code, bed]| {
@@ -84,7 +61,7 @@ pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figur
         within.iter().map(|[time, mean, ..]| (time * 1e3, *mean)).collect(),
     ));
     for (number, run) in done.iter().enumerate() {
-        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, course(run)));
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, super::course(run)));
     }
     let scores = scores(done, published).unwrap_or_default();
     let ends = [scores.first().map_or(0.0, |first| first.0), scores.last().map_or(1.0, |last| last.0)];

@@ -1,6 +1,5 @@
 //! Janssen's silo: floor and side wall each carry a part of the weight of a column of spheres.
 
-#[path = "column.rs"]
 mod column;
 
 use crate::rows::bulk;
@@ -9,7 +8,6 @@ use crate::rows::programs::row;
 use column::{COLUMN, STEADY, side};
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::{BLOCKS, difference};
-use std::f64::consts::PI;
 
 const LEVELS: &[Level] = &[time_step("dt=6e-4 s", 6e-4), time_step("dt=3e-4 s", 3e-4)];
 
@@ -55,18 +53,14 @@ fn weight(scene: &Scene) -> f64 {
 
 /// Returns the samples of a column during the steady descent.
 fn descending(done: &FinishedRun, name: &str) -> Result<Vec<f64>, MissingData> {
-    let values = done.series().time.iter().zip(done.column(name)?).filter(|(time, _)| **time >= STEADY);
-    let values: Vec<f64> = values.map(|(_, value)| *value).collect();
+    let values = samples(done, name)?.into_iter().filter(|(time, _)| *time >= STEADY);
+    let values: Vec<f64> = values.map(|(_, value)| value).collect();
     if values.is_empty() { Err(MissingData(format!("samples of `{name}`"))) } else { Ok(values) }
 }
 
 /// Returns the mean of a column during the steady descent.
 fn steady(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     Ok(mean(&descending(done, name)?))
-}
-
-fn mean(values: &[f64]) -> f64 {
-    values.iter().sum::<f64>() / values.len() as f64
 }
 
 /// Returns the fraction of the weight that the floor carries, averaged over the steady descent.
@@ -92,16 +86,14 @@ struct MiddleMeans {
 impl MiddleMeans {
     /// Averages over the slices between a quarter and three quarters of the height of the filling.
     fn from_run(done: &FinishedRun) -> Result<Self, MissingData> {
-        let table = done.table("slices")?;
-        let column =
-            |name: &str| table.column(name).ok_or_else(|| MissingData(format!("column `{name}` of the slices")));
+        let column = |name: &str| done.column_of("slices", name);
         let (heights, weights) = (column("height")?, column("weight")?);
         let top = top(heights, weights);
         let inside = |height: &f64| (0.25 * top..0.75 * top).contains(height);
         let over = |name: &str| -> Result<f64, MissingData> {
             let values = heights.iter().zip(column(name)?).filter(|(height, _)| inside(height));
             let values: Vec<f64> = values.map(|(_, value)| *value).collect();
-            if values.is_empty() { Err(MissingData("slices in the middle".to_owned())) } else { Ok(mean(&values)) }
+            if values.is_empty() { Err("slices in the middle".into()) } else { Ok(mean(&values)) }
         };
         Ok(Self {
             vertical: over("vertical")?,
@@ -148,7 +140,7 @@ fn all_borne(done: &FinishedRun, columns: &[&str]) -> Result<Measurement, Missin
         borne.iter_mut().zip(forces).for_each(|(borne, force)| *borne -= force / weight);
     }
     let estimate = difference(&vec![1.0; borne.len()], &borne, BLOCKS);
-    let estimate = estimate.ok_or_else(|| MissingData(format!("{BLOCKS} samples of {columns:?}")))?;
+    let estimate = estimate.ok_or_else(|| format!("{BLOCKS} samples of {columns:?}"))?;
     Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
 }
 
@@ -221,15 +213,11 @@ fn saturates() -> Claim {
         .at_most(
             1.35,
             Source::Derived(
-                "(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 if it is proportional to the \
-                             depth",
+                "(1 − e^(−3H/4λ))/(1 − e^(−H/2λ)) < 1.35 for H > λ; 1.5 if it is proportional to the depth",
             ),
             |done| {
-                let table = done[0].table("slices")?;
-                let missing = || MissingData("slices".to_owned());
-                let (heights, stress) =
-                    (table.column("height").ok_or_else(missing)?, table.column("vertical").ok_or_else(missing)?);
-                let weights = table.column("weight").ok_or_else(missing)?;
+                let column = |name: &str| done[0].column_of("slices", name);
+                let (heights, stress, weights) = (column("height")?, column("vertical")?, column("weight")?);
                 let top = top(heights, weights);
                 let at = |part: f64| {
                     let near = |(_, height): &(usize, &f64)| (*height - part * top).abs();
@@ -263,8 +251,9 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 }
 
 fn profile(done: &FinishedRun) -> Option<Figure> {
-    let (table, middle) = (done.table("slices").ok()?, MiddleMeans::from_run(done).ok()?);
-    let (heights, vertical) = (table.column("height")?, table.column("vertical")?);
+    let middle = MiddleMeans::from_run(done).ok()?;
+    let column = |name: &str| done.column_of("slices", name).ok();
+    let (heights, vertical) = (column("height")?, column("vertical")?);
     let (_, _, radius) = side(&done.scene);
     let (area, height) = (PI * radius * radius, weight(&done.scene) / middle.weight);
     let length = 2.0 * radius / (4.0 * middle.shear / middle.vertical);

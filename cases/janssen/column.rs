@@ -4,8 +4,6 @@ use grainbench_fields::contact_stress::{Stress, contact_stress};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
 use grainbench_scene::scene::WallShape;
-use grainbench_solver::record::{Partner, Snapshot};
-use nalgebra::Vector3;
 
 /// Evaluation of each snapshot in horizontal slices of the silo.
 pub(super) const COLUMN: Reading = Reading { name: "slices of a silo", begin };
@@ -77,7 +75,7 @@ impl Reader for Column {
     fn end(self: Box<Self>) -> Vec<Table> {
         let mut table = Table::new("slices", &COLUMNS);
         let (_, _, radius) = side(&self.scene);
-        let (area, around) = (std::f64::consts::PI * radius * radius, std::f64::consts::TAU * radius);
+        let (area, around) = (PI * radius * radius, std::f64::consts::TAU * radius);
         let count = self.snapshots as f64 * SLICE;
         for (slice, [virial, normal, shear, weight]) in self.sums.into_iter().enumerate() {
             let height = (slice as f64 + 0.5) * SLICE;

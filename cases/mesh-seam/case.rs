@@ -1,12 +1,10 @@
 //! A sphere on triangle meshes: it rolls across seams of coplanar triangles, and is in contact with edges and corners.
 
-#[path = "floors.rs"]
 mod floors;
 
 use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
-use grainbench_scene::nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 /// Time step (s): 1/65 of the critical time step.
@@ -43,8 +41,7 @@ fn level(floor: &'static str) -> Claim {
         })
         .within(computed(
             1e-9,
-            "rounding: 1e-16 m/1e-4 m per step for a thousand steps; springs bring older errors \
-                                back",
+            "rounding: 1e-16 m/1e-4 m per step for a thousand steps; springs bring older errors back",
         ))
         .refuses(control)
 }
@@ -96,7 +93,7 @@ const PLACES: [SeamPosition; 5] = [
 
 /// Returns the claim on the contact force on the sphere at a fixed position.
 fn held(at: &'static SeamPosition) -> Claim {
-    let place = |scene: &mut grainbench_scene::scene::Scene| scene.grains[0].position = at.centre.into();
+    let place = |scene: &mut Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
         .run(Run::new("cube", "dem", STEP).adjusted(at.words, place))
         .holds("k (R − d) from every contact point (derivation)", |done| {

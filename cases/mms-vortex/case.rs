@@ -2,7 +2,6 @@
 
 use crate::exact::manufactured::{error, order};
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 
 const CELLS: [f64; 4] = [16.0, 32.0, 64.0, 128.0];
 const LEVELS: &[Level] =
@@ -46,8 +45,7 @@ fn claims() -> Vec<Claim> {
             .runs(runs)
             .converges_at_least(1.0, SOURCE, |done| order(done, &CELLS))
             .within(exactly(
-                "the force is discontinuous at the edges, where a grid method is of first order \
-                             (derivation)",
+                "the force is discontinuous at the edges, where a grid method is of first order (derivation)",
             ))
             .refuses(damped())
     };

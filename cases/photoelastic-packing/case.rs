@@ -1,8 +1,6 @@
 //! 197 discs between four walls (Cundall & Strack 1979, verification test).
 
-#[path = "elastic.rs"]
 mod elastic;
-#[path = "figures.rs"]
 mod figures;
 
 use crate::rows::programs::{PAIRS, discs_for, stiffer};
@@ -10,10 +8,7 @@ use crate::sources::literature::{cundall_strack_1979 as paper, josselin_de_jong_
 use crate::stage::{NEAR_IN_GROWTH, NEAR_IN_OVERLAP, NEAR_IN_RATIO, Stage};
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns};
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{next_value, spread};
-use grainbench_scene::motion::Moment;
-use nalgebra::Vector3;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells("R/2", 2.0, 3)];
 /// Time step of the comparisons with LAMMPS and LIGGGHTS: 5 ms. The walls stop at the end of a step.
@@ -60,7 +55,7 @@ fn run(variant: &'static str) -> Run {
 fn stages(done: &FinishedRun) -> Result<[Stage; 2], MissingData> {
     match &done.record.snapshots[..] {
         [_, a, b] => Ok([Stage::from_snapshot(a), Stage::from_snapshot(b)]),
-        _ => Err(MissingData("snapshots of stages A and B".to_owned())),
+        _ => Err("snapshots of stages A and B".into()),
     }
 }
 
@@ -70,11 +65,8 @@ type StageReader = fn(&[Stage; 2]) -> f64;
 /// Returns the value of `read` for the packing in which it differs most from `from`. NaN counts as the largest
 /// difference.
 fn farthest(done: &[FinishedRun], from: f64, read: StageReader) -> Result<f64, MissingData> {
-    let found: Vec<Measurement> = done
-        .iter()
-        .map(|done| Ok(Measurement::new(read(&stages(done)?), from, 1.0)))
-        .collect::<Result<_, MissingData>>()?;
-    Measurement::worst_among(found).map(|worst| worst.value).ok_or_else(|| MissingData("packings".to_owned()))
+    let found = done.iter().map(|done| Ok(Measurement::new(read(&stages(done)?), from, 1.0)));
+    Ok(Measurement::worst_read(found)?.value)
 }
 
 fn ratio_at_b([_, b]: &[Stage; 2]) -> f64 {
@@ -183,8 +175,7 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
         .equals(printed.source(), move |done| {
             let values =
                 done.iter().map(|done| Ok(ratio_at_b(&stages(done)?))).collect::<Result<Vec<f64>, MissingData>>()?;
-            let (mean, half_width) =
-                next_value(&values).ok_or_else(|| MissingData("packings that differ".to_owned()))?;
+            let (mean, half_width) = next_value(&values).ok_or("packings that differ")?;
             Ok(Measurement::new(mean, printed.value, half_width))
         })
         .within(one_interval("in units of the half-width of the 99 % interval for one more packing"))
@@ -245,26 +236,22 @@ fn programs() -> Vec<Claim> {
         perturbed::pointwise(PARTING, known, without),
         perturbed::horizon(PARTING, HORIZON, [Run::new("first", lammps[0], STEP).slow(), perturbed("first", 0)]),
     ];
-    for pair in PAIRS {
-        for (stage, part) in [("A", 2), ("B", 1)] {
-            let perturbed = (0..4).map(|disc| perturbed("programs", disc).aside());
-            let runs = pair.map(|solver| common("programs", solver, pair[1])).into_iter().chain(perturbed);
-            claims.push(
-                claim(format!("F_H/F_V at stage {stage}, against {}", pair[1]), "1")
-                    .runs(runs)
-                    .agrees(Source::Program, move |done| {
-                        let perturbed =
-                            done[2..].iter().map(|perturbed| ratio_in(perturbed, part)).collect::<Result<Vec<f64>, _>>()?;
-                        let interval = spread(&perturbed).ok_or_else(|| MissingData("perturbed runs that differ".to_owned()))?;
-                        Ok(Measurement::new(ratio_in(&done[0], part)?, ratio_in(&done[1], part)?, interval))
-                    })
-                    .within(one_interval(
-                        "in units of the 99 % interval of the difference of two perturbed runs, from the spread of four",
-                    ))
-                    .refuses(smooth()),
-            );
-        }
-    }
+    let at_stage = |pair: [&'static str; 2], stage: &str, part| {
+        let perturbed = (0..4).map(|disc| perturbed("programs", disc).aside());
+        let runs = pair.map(|solver| common("programs", solver, pair[1])).into_iter().chain(perturbed);
+        claim(format!("F_H/F_V at stage {stage}, against {}", pair[1]), "1")
+            .runs(runs)
+            .agrees(Source::Program, move |done| {
+                let ratios = done.iter().map(|done| ratio_in(done, part)).collect::<Result<Vec<f64>, _>>()?;
+                let interval = spread(&ratios[2..]).ok_or("perturbed runs that differ")?;
+                Ok(Measurement::new(ratios[0], ratios[1], interval))
+            })
+            .within(one_interval(
+                "in units of the 99 % interval of the difference of two perturbed runs, from the spread of four",
+            ))
+            .refuses(smooth())
+    };
+    claims.extend(PAIRS.into_iter().flat_map(|pair| [at_stage(pair, "A", 2), at_stage(pair, "B", 1)]));
     claims
 }
 

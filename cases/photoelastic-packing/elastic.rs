@@ -3,7 +3,6 @@
 use super::{FOUND, IMPOSED, LEVELS, equilibrium, experiment, further_to_b, ratio_at_b, run, stages};
 use crate::stage::NEAR_IN_GROWTH;
 use grainbench_harness::prelude::*;
-use nalgebra::Vector3;
 
 const VARIANT: &str = "fifty-elastic";
 /// Index of the level with two cells in the smallest radius.

@@ -1,7 +1,6 @@
 //! Plane shear of discs under a lid with a prescribed pressure. The claims are about friction and packing fraction
 //! against the inertial number.
 
-#[path = "bulk.rs"]
 mod bulk;
 
 use crate::rows;
@@ -10,7 +9,7 @@ use crate::rows::programs::row;
 use bulk::BULK;
 use grainbench_harness::prelude::*;
 use grainbench_scene::columns::{Chosen, Columns};
-use grainbench_scene::scene::{Duration, Piston, Sampling};
+use grainbench_scene::scene::Piston;
 
 const LEVELS: &[Level] = &[time_step("dt=2e-3 s", 2e-3), time_step("dt=1e-3 s", 1e-3)];
 
@@ -90,18 +89,16 @@ fn width(scene: &Scene) -> f64 {
 
 /// Returns the mean of a bulk quantity over the steady flow.
 fn bulk(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
-    let table = done.table("bulk")?;
-    let missing = || MissingData(format!("column `{name}` of the bulk"));
-    let (times, values) = (table.column("time").ok_or_else(missing)?, table.column(name).ok_or_else(missing)?);
+    let (times, values) = (done.column_of("bulk", "time")?, done.column_of("bulk", name)?);
     let from = STEADY * times.last().copied().unwrap_or(0.0);
-    mean(times, values, from).ok_or_else(missing)
+    Ok(mean(times, values, from).ok_or_else(|| format!("column `{name}` of the bulk"))?)
 }
 
 /// Returns the mean of a column of the series over the steady flow.
 fn series(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     let times = &done.series().time;
     let from = STEADY * times.last().copied().unwrap_or(0.0);
-    mean(times, done.column(name)?, from).ok_or_else(|| MissingData(format!("samples of `{name}`")))
+    Ok(mean(times, done.column(name)?, from).ok_or_else(|| format!("samples of `{name}`"))?)
 }
 
 /// Returns the mean of the finite values from the time `from` (s) on. A value is not finite if a program outputs no

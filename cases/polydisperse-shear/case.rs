@@ -1,26 +1,16 @@
 //! A slab of 369 grains in shear. Plastic grains are compared with grains on springs.
 
-#[path = "chains.rs"]
 mod chains;
-#[path = "coarse.rs"]
 mod coarse;
-#[path = "figures.rs"]
 mod figures;
-#[path = "measures.rs"]
 mod measures;
-#[path = "paper.rs"]
 mod paper;
-#[path = "pictures.rs"]
 mod pictures;
-#[path = "sides.rs"]
 mod sides;
-#[path = "springs.rs"]
 mod springs;
-#[path = "yielding.rs"]
 mod yielding;
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 
 /// Returns a resolution with `cells` cells across the slab and two points per cell and axis, as in the paper.
 const fn grid(cells: f64) -> Resolution {

@@ -4,7 +4,6 @@ use super::chains::{Chains, chains};
 use super::measures;
 use super::pictures::{self, PROFILES, Slab};
 use grainbench_harness::prelude::*;
-use grainbench_solver::record::Snapshot;
 
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slabs = pictures::slabs(runner)?;

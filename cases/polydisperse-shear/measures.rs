@@ -40,7 +40,7 @@ pub(crate) fn at(done: &FinishedRun, wanted: f64) -> Result<&Snapshot, MissingDa
 
 /// Returns the snapshot at the end.
 pub(crate) fn end(done: &FinishedRun) -> Result<&Snapshot, MissingData> {
-    done.record.snapshots.last().ok_or_else(|| MissingData("snapshot".to_owned()))
+    done.record.snapshots.last().ok_or_else(|| "snapshot".into())
 }
 
 /// Returns the grains without prescribed motion.
@@ -206,12 +206,12 @@ pub(crate) fn with_their_start<'a>(
         let start = (point.position - point.displacement) / pitch;
         (format!("{:?}", point.owner), start.x.round() as i64, start.y.round() as i64)
     };
-    let first = done.record.snapshots.first().ok_or_else(|| MissingData("snapshot".to_owned()))?;
+    let first = done.record.snapshots.first().ok_or("snapshot")?;
     let at_start: HashMap<_, _> = first.points.iter().map(|point| (key(point), point)).collect();
     let found: Vec<_> = snapshot.points.iter().filter_map(|point| Some((point, *at_start.get(&key(point))?))).collect();
     // Because of rounding, a few points may have a neighbouring key.
     if found.len() * 100 < snapshot.points.len() * 99 || found.is_empty() {
-        return Err(MissingData("material points of the start".to_owned()));
+        return Err("material points of the start".into());
     }
     Ok(found)
 }

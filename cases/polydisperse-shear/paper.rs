@@ -10,7 +10,6 @@ use crate::sources::literature::bardenhagen_2000::WORK as PAPER;
 use crate::sources::prototype::sheared_slab as prototype;
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::interval;
-use grainbench_solver::record::Snapshot;
 
 const PACKINGS: [&str; 5] = ["seed-1", "seed-2", "seed-3", "seed-4", "seed-5"];
 // The paper states these results in words. The bounds of the claims are our own interpretation.
@@ -50,7 +49,7 @@ fn at_rest(scene: &mut Scene) {
 
 /// Returns the lower end of the 99 % confidence interval of the mean over packings.
 fn lower(values: &[f64]) -> Result<f64, MissingData> {
-    let (mean, half) = interval(values).ok_or_else(|| MissingData("packings enough for an interval".to_owned()))?;
+    let (mean, half) = interval(values).ok_or("packings enough for an interval")?;
     Ok(mean - half)
 }
 
@@ -69,7 +68,7 @@ fn least(values: &[f64]) -> Result<f64, MissingData> {
 fn gone(first: &Snapshot, second: &Snapshot) -> Result<f64, MissingData> {
     let first = chains(first);
     if first.links.is_empty() {
-        return Err(MissingData("force chains".to_owned()));
+        return Err("force chains".into());
     }
     Ok(1.0 - first.surviving(&chains(second)))
 }
@@ -166,8 +165,7 @@ fn on_springs() -> Vec<Claim> {
             .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::relative(bands(done)?, slower)))
             .within(judged(
                 0.4,
-                "spread between packings, and another kind of contact: the grains of the prototype \
-                                 deform",
+                "spread between packings, and another kind of contact: the grains of the prototype deform",
             ))
             .refuses(
                 Control::scene("grains of three hundredths of the mass", |scene| {

@@ -7,7 +7,7 @@ use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
-use grainbench_solver::record::{GrainState, Owner, Record, Snapshot};
+use grainbench_solver::record::{GrainState, Owner, Record};
 use std::sync::Arc;
 
 /// Mean shears at which the paper shows displacement profiles.
@@ -144,8 +144,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         figure(
             "coarse-pressure",
             "Pressure",
-            "Force chains carry the pressure from side to \
-                                               side.",
+            "Force chains carry the pressure from side to side.",
             "pressure",
             PRESSURES,
         ),
@@ -153,8 +152,7 @@ fn coarse(slabs: &[Slab]) -> Vec<Figure> {
         figure(
             "coarse-packing",
             "Packing fraction",
-            "The slab has dilated where the packing fraction is \
-                                                      small.",
+            "The slab has dilated where the packing fraction is small.",
             "packing_fraction",
             (0.7, 0.95),
         ),

@@ -8,8 +8,6 @@ use super::{FRAMES, chains, grid, to_shear};
 use crate::sources::literature::bardenhagen_2000::WORK as PAPER;
 use crate::sources::prototype::sheared_slab as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
-use grainbench_solver::record::Snapshot;
 
 const REACHES: &str = "contact under traction acts from more than half a cell away, and grains a few cells across penetrate \
                        each other instead of sliding";
@@ -35,7 +33,7 @@ type SnapshotValue = fn(&FinishedRun, &Snapshot) -> f64;
 
 /// Returns a quantity of the first run at a mean shear, divided by the same quantity of the second run.
 pub(super) fn over(done: &[FinishedRun], shear: f64, value: SnapshotValue) -> Result<f64, MissingData> {
-    let ratio_at = |done: &FinishedRun| Ok(value(done, at(done, shear)?));
+    let ratio_at = |done: &FinishedRun| at(done, shear).map(|snapshot| value(done, snapshot));
     Ok(ratio_at(&done[0])? / ratio_at(&done[1])?)
 }
 
@@ -139,7 +137,7 @@ fn motion() -> Vec<Claim> {
                 |done| {
                     let snapshot = at(&done[0], super::CHAINS[0])?;
                     if snapshot.told_contacts().is_empty() {
-                        return Err(MissingData("contacts that press".to_owned()));
+                        return Err("contacts that press".into());
                     }
                     Ok(chains::chains(snapshot).stressed)
                 },

@@ -1,7 +1,6 @@
 //! Compression of a plastic block between smooth sides.
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::material::{Constitutive, Deformable};
 
 /// Resolution of the negative controls.
 const COARSE: Resolution = Resolution::grid(4.0, 2);
@@ -116,8 +115,7 @@ fn claims() -> Vec<Claim> {
             .run(run())
             .equals(
                 Source::Derived(
-                    "(σ_xx + σ_yy + σ_zz)/3 = −K e, e from the volumes of the block, which flow conserves \
-                                 (derivation)",
+                    "(σ_xx + σ_yy + σ_zz)/3 = −K e, e from the volumes of the block, which flow conserves (derivation)",
                 ),
                 |done| {
                     let middle = MiddleMeans::from_run(&done[0])?;

@@ -84,14 +84,12 @@ fn way() -> Claim {
 /// spin.
 fn rocks(scene: &Scene) -> [f64; 2] {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
-    let each = |other: &grainbench_scene::scene::Grain| {
+    let each = |other: &Grain| {
         let effective = grain.radius * other.radius / (grain.radius + other.radius);
         let rolling = 2.25 * law.normal_stiffness() * (law.rolling_friction * effective).powi(2);
         law.tangential_stiffness() * grain.radius.powi(2) + rolling
     };
-    let touches = |other: &&grainbench_scene::scene::Grain| {
-        (other.position - grain.position).norm() < grain.radius + other.radius
-    };
+    let touches = |other: &&Grain| (other.position - grain.position).norm() < grain.radius + other.radius;
     let stiffness: f64 = scene.grains.iter().skip(1).filter(touches).map(each).sum();
     let rate = (stiffness / grain.inertia).sqrt();
     let phase = rate * scene.duration.seconds().unwrap_or(f64::NAN);

@@ -4,7 +4,6 @@
 use crate::rows::programs::PAIRS;
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::spread;
-use grainbench_scene::scene::Duration;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 
@@ -32,8 +31,7 @@ fn weight(done: &FinishedRun) -> f64 {
 
 fn packing_fraction(done: &FinishedRun) -> Result<f64, MissingData> {
     let height = settled(done, "all.gravitational_energy")? / weight(done);
-    let volume: f64 =
-        done.scene.grains.iter().map(|grain| 4.0 / 3.0 * std::f64::consts::PI * grain.radius.powi(3)).sum();
+    let volume: f64 = done.scene.grains.iter().map(|grain| 4.0 / 3.0 * PI * grain.radius.powi(3)).sum();
     let base = done.scene.domain.map_or(f64::NAN, |domain| {
         let size = domain.high - domain.low;
         size.x * size.y
@@ -56,44 +54,35 @@ fn carried(done: &FinishedRun) -> Result<f64, MissingData> {
 type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
 
 fn claims() -> Vec<Claim> {
-    let mut claims = vec![
-        claim("weight carried by floor and walls", "N")
-            .run(run(PAIRS[0][0]))
-            .equals(Source::Derived("balance of forces at rest"), |done| {
-                Ok(Measurement::relative(carried(&done[0])?, weight(&done[0])))
+    let weight = claim("weight carried by floor and walls", "N")
+        .run(run(PAIRS[0][0]))
+        .equals(Source::Derived("balance of forces at rest"), |done| {
+            Ok(Measurement::relative(carried(&done[0])?, weight(&done[0])))
+        })
+        .within(judged(
+            2e-3,
+            "remaining motion at the end, 1e-4 to 1.1e-3 depending on the convention; relative to the weight",
+        ))
+        .refuses(Control::scene("a run that ends while they fall", |scene| scene.duration = Duration::Seconds(4.0)))
+        .fair_to_any();
+    let beside = |[ours, program]: [&'static str; 2], quantity: &str, read: RunReader| {
+        claim(format!("{quantity}, against {program}"), "1")
+            // Each of our five runs takes one to two seconds.
+            .runs([run(ours).slow(), run(program)])
+            .runs(COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside()))
+            .agrees(Source::Program, move |done| {
+                let columns: Vec<f64> = done[2..].iter().map(read).collect::<Result<_, _>>()?;
+                let interval = spread(&columns).ok_or("columns that differ")?;
+                Ok(Measurement::new(read(&done[0])?, read(&done[1])?, interval))
             })
-            .within(judged(
-                2e-3,
-                "remaining motion at the end, 1e-4 to 1.1e-3 depending on the convention; relative to \
-                                  the weight",
+            .within(one_interval(
+                "in units of the 99 % interval of the difference of two columns, from the spread of four starts",
             ))
-            .refuses(Control::scene("a run that ends while they fall", |scene| scene.duration = Duration::Seconds(4.0)))
-            .fair_to_any(),
-    ];
-    let quantities: [(&str, RunReader); 2] =
-        [("packing fraction", packing_fraction), ("coordination number", coordination)];
-    for [ours, program] in PAIRS {
-        for (quantity, read) in quantities {
-            let columns = COLUMNS.map(|variant| Run { variant, ..run(PAIRS[0][0]) }.aside());
-            claims.push(
-                claim(format!("{quantity}, against {program}"), "1")
-                    // Each of our five runs takes one to two seconds.
-                    .runs([run(ours).slow(), run(program)])
-                    .runs(columns)
-                    .agrees(Source::Program, move |done| {
-                        let columns: Vec<f64> = done[2..].iter().map(read).collect::<Result<_, _>>()?;
-                        let interval = spread(&columns).ok_or_else(|| MissingData("columns that differ".to_owned()))?;
-                        Ok(Measurement::new(read(&done[0])?, read(&done[1])?, interval))
-                    })
-                    .within(one_interval(
-                        "in units of the 99 % interval of the difference of two columns, from the spread of four \
-                         starts",
-                    ))
-                    .refuses(Control::our_contact_law("friction .05 for .5 in ours", |law| law.friction = 0.05)),
-            );
-        }
-    }
-    claims
+            .refuses(Control::our_contact_law("friction .05 for .5 in ours", |law| law.friction = 0.05))
+    };
+    let of_pair =
+        |pair| [beside(pair, "packing fraction", packing_fraction), beside(pair, "coordination number", coordination)];
+    [weight].into_iter().chain(PAIRS.into_iter().flat_map(of_pair)).collect()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

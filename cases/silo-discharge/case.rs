@@ -3,7 +3,6 @@
 use crate::rows::bulk;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 use grainbench_reference::round_robin::{EARLY, SILO, STEADY, course};
 
 const LEVELS: &[Level] = &[time_step("dt=6e-6 s", 6e-6), time_step("dt=3e-6 s", 3e-6)];
@@ -53,7 +52,7 @@ const SLACK: f64 = 1e-5;
 /// Returns the number of remaining grains at a time of flow (s), interpolated between samples. The time of flow starts
 /// when the plug is removed.
 fn left(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
-    let begun = begins(&done.scene).ok_or_else(|| MissingData("plug".to_owned()))?;
+    let begun = begins(&done.scene).ok_or("plug")?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
     let after = times.partition_point(|sampled| sampled - begun < time - SLACK);
     if after == 0 || after == times.len() {
@@ -142,7 +141,7 @@ fn near(
     quantity: grainbench_harness::claim::Quantity,
     cited: CitedNumber,
     value: impl RunsReader<f64>,
-) -> grainbench_harness::claim::ClaimWithTolerance {
+) -> ClaimWithTolerance {
     quantity.equals_cited(cited, cited.value, value).within(required(ALLOWED, BECAUSE))
 }
 

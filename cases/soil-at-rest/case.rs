@@ -1,7 +1,6 @@
 //! Soil with the initial stress of its own weight.
 
 use grainbench_harness::prelude::*;
-use grainbench_scene::body::BlockShape;
 
 const LEVELS: &[Level] = &[cells("H/4", 4.0, 3), cells("H/8", 8.0, 3), cells("H/10", 10.0, 3)];
 const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg carries the weight (derivation)");
@@ -24,7 +23,7 @@ fn claims() -> Vec<Claim> {
         claim(format!("largest displacement, {law}, cells of {}", level.name), "m")
             .run(Run::new(law, "mpm", level.resolution))
             .equals(SOURCE, |done| {
-                let [_, sinking] = soil(&done[0].scene).ok_or_else(|| MissingData("soil in a box".to_owned()))?;
+                let [_, sinking] = soil(&done[0].scene).ok_or("soil in a box")?;
                 let columns = ["middle.ux", "middle.uy", "top.ux", "top.uy"].map(|name| done[0].column(name));
                 let mut most = 0.0_f64;
                 for column in columns {

@@ -1,12 +1,10 @@
 //! The worked example of Cundall & Strack (1979): two discs between two walls, with exact values of the calculation
 //! cycle.
 
-#[path = "elastic.rs"]
 mod elastic;
 
 use crate::rows::rigid;
 use grainbench_harness::prelude::*;
-use grainbench_scene::motion::Moment;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
 /// Rounding error of forces, in units of k v Δt. It is the rounding error of positions up to 4 R, divided by the
@@ -54,56 +52,44 @@ fn first_cycles(cycle: u32, q: f64) -> (f64, f64) {
 }
 
 fn claims() -> Vec<Claim> {
-    let mut claims = Vec::new();
-    for cycle in 1..=3_u32 {
-        for (contact, column) in [("A", "A.normal_force"), ("B", "B.normal_force"), ("C", "C.normal_force")] {
-            claims.push(
-                claim(format!("normal force at {contact}, cycle {cycle}"), "N")
-                    .run(run())
-                    .equals(Source::Derived("Cundall & Strack 1979, eqs. 1-7 (derivation)"), move |done| {
-                        let (q, unit) = units(&done[0]);
-                        let (side, middle) = first_cycles(cycle, q);
-                        let expected = if contact == "B" { middle } else { side };
-                        Ok(Measurement::new(done[0].at_step(column, u64::from(cycle))?, expected * unit, unit))
-                    })
-                    .within(computed(
-                        ROUNDING,
-                        "rounding of positions up to 4 R by ε; in units of k v Δt with v Δt = \
-                                                1e-3 R",
-                    ))
-                    .refuses(match (cycle, contact) {
-                        (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
-                            scene.grains[1].position.x -= 1e-6;
-                        }),
-                        (3, _) => Control::grains("the mass of the discs off by a millionth", |grain| {
-                            grain.mass *= 1.0 + 1e-6
-                        }),
-                        (_, "C") => late("the right wall starts one cycle late", 1),
-                        _ => late("the left wall starts one cycle late", 0),
-                    }),
-            );
-        }
-    }
-    for (contact, column, force) in [
-        ("A", "A.normal_force", force_at_a as fn(&FinishedRun, f64) -> f64),
-        ("B", "B.normal_force", |done, time| 2.0 * moved(done, time)),
-    ] {
-        claims.push(
-            claim(format!("normal force at {contact} over 200 cycles, worst"), "N")
-                .run(run())
-                .series(|done| samples(done, column))
-                .follows(Source::Derived("closed solution of the paper's recurrence (derivation)"), force, |done| {
-                    units(done).1
-                })
-                .within(computed(
-                    200_f64.sqrt() * ROUNDING,
-                    "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 \
-                     R",
-                ))
-                .refuses(Control::contact_law("damping of 1e-6 of critical", |law| law.normal_damping = 2e-6))
-                .drawn(&FORCES, contact),
-        );
-    }
+    let of_cycle = |cycle: u32, contact: &'static str| {
+        claim(format!("normal force at {contact}, cycle {cycle}"), "N")
+            .run(run())
+            .equals(Source::Derived("Cundall & Strack 1979, eqs. 1-7 (derivation)"), move |done| {
+                let (q, unit) = units(&done[0]);
+                let (side, middle) = first_cycles(cycle, q);
+                let expected = if contact == "B" { middle } else { side };
+                let force = done[0].at_step(&format!("{contact}.normal_force"), u64::from(cycle))?;
+                Ok(Measurement::new(force, expected * unit, unit))
+            })
+            .within(computed(ROUNDING, "rounding of positions up to 4 R by ε; in units of k v Δt with v Δt = 1e-3 R"))
+            .refuses(match (cycle, contact) {
+                (1, "B") => Control::scene("the discs overlap by 1e-6 R at the start", |scene| {
+                    scene.grains[1].position.x -= 1e-6;
+                }),
+                (3, _) => Control::grains("the mass of the discs off by a millionth", |grain| grain.mass *= 1.0 + 1e-6),
+                (_, "C") => late("the right wall starts one cycle late", 1),
+                _ => late("the left wall starts one cycle late", 0),
+            })
+    };
+    let over_cycles = |contact: &'static str, force: fn(&FinishedRun, f64) -> f64| {
+        claim(format!("normal force at {contact} over 200 cycles, worst"), "N")
+            .run(run())
+            .series(move |done| samples(done, &format!("{contact}.normal_force")))
+            .follows(Source::Derived("closed solution of the paper's recurrence (derivation)"), force, |done| {
+                units(done).1
+            })
+            .within(computed(
+                200_f64.sqrt() * ROUNDING,
+                "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 R",
+            ))
+            .refuses(Control::contact_law("damping of 1e-6 of critical", |law| law.normal_damping = 2e-6))
+            .drawn(&FORCES, contact)
+    };
+    let mut claims: Vec<Claim> =
+        (1..=3).flat_map(|cycle| ["A", "B", "C"].map(|contact| of_cycle(cycle, contact))).collect();
+    claims.push(over_cycles("A", force_at_a));
+    claims.push(over_cycles("B", |done, time| 2.0 * moved(done, time)));
     claims.push(rigid::refuses_cycles(PLAIN));
     claims.extend(elastic::DISCS.claims(&CASE, |run| run));
     claims

@@ -8,7 +8,7 @@ use crate::registry;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::method::Method;
-use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Sampling};
+use grainbench_scene::scene::{Probe, ProbeTarget};
 use std::sync::Arc;
 
 /// Duration of the run (s), several periods of the pair of discs. The period is 2π/√3 = 3.63 s.
@@ -33,7 +33,7 @@ pub(crate) fn subjects() -> Vec<TargetQuantity> {
         unit: "m",
         source: "u = vt/3 − (v/3W) sin Wt, W = √(3k/m) (derivation)".to_owned(),
         measure: Arc::new(|done| {
-            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
+            let done = done.first().ok_or("run")?;
             let scene = &done.scene;
             let stiffness = scene.laws.iter().flatten().map(|law| law.normal_stiffness()).fold(0.0, f64::max);
             let speed = scene.walls[0].motion.phases[0].velocity.x;

@@ -9,7 +9,6 @@
 use crate::rows::elastic::{DiscDisplacements, PressedDisc};
 use crate::rows::ringing::{FreeVibration, VibrationParameters};
 use grainbench_harness::prelude::*;
-use std::f64::consts::PI;
 
 /// Discs of E' = 16 Pa, ν = 1/4, with the mass of the example and a period of vibration of about 1.6 s.
 pub(super) const DISCS: FreeVibration = FreeVibration {
@@ -44,8 +43,8 @@ pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     for (name, run) in [("mpm, elastic discs", DISCS.discs(DISCS.cells)), ("dem, k_n = 3F/2d", DISCS.rigid())] {
         let done = runner.run(&run)?;
         let unit = DISCS.exact(&done).map_or(1.0, |rung| rung.force);
-        let force = done.series().column(DISCS.column).unwrap_or_default();
-        let points = done.series().time.iter().zip(force).map(|(&time, force)| (time, force / unit)).collect();
+        let force = samples(&done, DISCS.column).unwrap_or_default().into_iter();
+        let points = force.map(|(time, force)| (time, force / unit)).collect();
         curves.push(Curve::new(name, Stroke::Line, points));
     }
     Ok(Figure::graph(

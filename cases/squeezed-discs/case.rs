@@ -3,8 +3,6 @@
 use crate::rows::elastic::{PressedDisc, stiffen};
 use crate::sources::prototype::squeezed_discs::{LEAST_NODAL_FORCE, MOST_NODAL_FORCE};
 use grainbench_harness::prelude::*;
-use grainbench_scene::motion::Moment;
-use grainbench_solver::record::Snapshot;
 use std::collections::BTreeMap;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/6", 6.0, 3), cells("R/12", 12.0, 3)];
@@ -14,8 +12,7 @@ const PHASES: [&str; 3] = ["mpm", "mpm+phase=0.25", "mpm+phase=0.5"];
 /// Solver with contact springs that are twice as stiff.
 const STIFF: &str = "mpm+penalty=5.2";
 const SOURCE: Source = Source::Derived(
-    "Johnson, Contact Mechanics, line contact, with the expansion by the transverse pair of forces \
-                     (derivation)",
+    "Johnson, Contact Mechanics, line contact, with the expansion by the transverse pair of forces (derivation)",
 );
 
 pub(crate) static CASE: Case =
@@ -57,7 +54,7 @@ fn spread(done: &FinishedRun) -> Result<(usize, f64), MissingData> {
         *forces.entry((contact.grain, format!("{:?}", contact.partner))).or_default() += contact.normal_force;
     }
     if forces.is_empty() {
-        return Err(MissingData("contacts".to_owned()));
+        return Err("contacts".into());
     }
     let mean = forces.values().sum::<f64>() / forces.len() as f64;
     Ok((forces.len(), forces.values().map(|force| (force / mean - 1.0).abs()).fold(0.0, f64::max)))
@@ -74,7 +71,15 @@ fn over_phases(done: &[FinishedRun]) -> Result<f64, MissingData> {
 }
 
 fn claims() -> Vec<Claim> {
-    let mut claims = vec![
+    let over_grid_positions = |level: Level, tolerance: Tolerance| {
+        claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
+            .runs(phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() }))
+            .equals(SOURCE, |done| Ok(Measurement::relative(over_phases(done)?, exact(&done[0].scene))))
+            .within(tolerance)
+            .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)))
+    };
+    let soft = "springs are as soft as .4 cells of material, and the contact area is a quarter of a cell wide";
+    vec![
         claim("largest deviation of the 24 contact forces from their mean", "1")
             .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())
             .holds("equilibrium and symmetry: all forces are equal (derivation)", |done| match spread(&done[0])? {
@@ -85,28 +90,8 @@ fn claims() -> Vec<Claim> {
             .refuses(Control::scene("the left wall moves in twice as far", |scene| {
                 scene.walls[0].motion.phases[0].velocity *= 2.0;
             })),
-    ];
-    for (level, tolerance) in [
-        (
-            LEVELS[1],
-            required(
-                0.1,
-                "springs are as soft as .4 cells of material, and the contact area is a quarter of a cell \
-                           wide",
-            ),
-        ),
-        (LEVELS[2], judged(0.08, "the same with a contact area of half a cell")),
-    ] {
-        let runs = phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() });
-        claims.push(
-            claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
-                .runs(runs)
-                .equals(SOURCE, |done| Ok(Measurement::relative(over_phases(done)?, exact(&done[0].scene))))
-                .within(tolerance)
-                .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9))),
-        );
-    }
-    claims.push(
+        over_grid_positions(LEVELS[1], required(0.1, soft)),
+        over_grid_positions(LEVELS[2], judged(0.08, "the same with a contact area of half a cell")),
         claim("contact force over the exact one, R/6", "1")
             .run(Run::new(PLAIN, "mpm:gap", LEVELS[1].resolution).slow())
             .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
@@ -114,8 +99,6 @@ fn claims() -> Vec<Claim> {
             })
             .within(exactly("the band is wide because the force depends on the position of the grid"))
             .refuses(Control::solver("springs at the surface", "mpm")),
-    );
-    claims.push(
         claim("contact force, R/4", "N/m")
             .run(Run::new(PLAIN, "mpm:gap", LEVELS[0].resolution)
                 .known("a node in contact stops a whole cell of the surface at once: contacts are about twice as stiff as they \
@@ -126,8 +109,7 @@ fn claims() -> Vec<Claim> {
             })
             .within(judged(0.2, "accuracy of springs at the surface for any position of the grid"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", LEVELS[0].resolution)),
-    );
-    claims
+    ]
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -3,7 +3,7 @@
 //! repeated only by commands that select its tier.
 
 use crate::registry::CASES;
-use crate::stored::is_program;
+use crate::stored::{folder_name, is_program};
 use flate2::read::GzDecoder;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
@@ -146,10 +146,7 @@ pub fn cases() -> Vec<&'static Case> {
 /// Returns the folder name of a run, or of its negative control with this name. Scene, solver, resolution and control
 /// are joined by `-` in lower case, with letters, digits and `.` only.
 fn id(run: &Run, control: Option<&str>) -> String {
-    let words = format!("{} {} {} {}", run.scene_words(), run.solver, run.resolution, control.unwrap_or_default());
-    let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
-    let words: String = words.chars().map(plain).collect();
-    words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
+    folder_name(&format!("{} {} {} {}", run.scene_words(), run.solver, run.resolution, control.unwrap_or_default()))
 }
 
 fn folder(case: &Case, id: &str) -> PathBuf {
@@ -185,8 +182,7 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, RunErro
     if !is_scene_of(&provenance.scene, scene, &stepping) || reading != provenance.reading {
         let name = folder.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let reason = format!(
-            "`{name}` belongs to another scene, time step or evaluation; `grainbench reference keep` computes \
-                     it again"
+            "`{name}` belongs to another scene, time step or evaluation; `grainbench reference keep` computes it again"
         );
         return Err(RunError::Stale { solver, reason });
     }

@@ -3,11 +3,11 @@
 //! A case is a folder beside `src` with `scene.toml`, its claims (`claims.toml`, or `case.rs` with `case.toml`) and
 //! `derivation.md`. The registry contains every folder that has a `scene.toml`.
 
-pub mod exact;
+mod exact;
 pub mod folder;
 pub mod kept;
 pub mod registry;
-pub mod rows;
+mod rows;
 mod silo;
 pub mod solvers;
 pub mod sources;
@@ -16,6 +16,7 @@ pub mod stored;
 pub mod uncertainty;
 mod varied;
 
+pub use exact::one_grain::static_overlap;
 pub use grainbench_harness::case::Case;
 pub(crate) use registry::heads;
 pub use solvers::runner;

@@ -25,9 +25,7 @@ use std::time::Duration;
 /// Returns all our solvers.
 #[must_use]
 pub fn all() -> Vec<Box<dyn Solver>> {
-    let dem = Convention::ALL.into_iter().map(|convention| Box::new(Dem::new(convention)) as Box<dyn Solver>);
-    let mpm = Mpm::ALL.into_iter().map(|setting| Box::new(setting) as Box<dyn Solver>);
-    dem.chain([Box::new(Rigid::new()) as Box<dyn Solver>]).chain(mpm).collect()
+    with_terms().into_iter().map(|(solver, _)| solver).collect()
 }
 
 /// Returns the solvers that run LAMMPS and LIGGGHTS, whether or not these programs are installed.

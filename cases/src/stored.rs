@@ -75,10 +75,13 @@ impl Reference {
 pub fn id(case: &Case, run: &Run) -> String {
     let variant = if run.variant == PLAIN { "" } else { run.variant };
     let adjustment = run.adjustment.as_ref().map_or("", |(name, _)| name.as_str());
-    let plain = |letter: char| if letter.is_ascii_alphanumeric() || letter == '.' { letter } else { '-' };
-    let words = format!("{} {variant} {adjustment}", case.name);
-    let words: String = words.chars().map(plain).collect();
-    words.split('-').filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
+    folder_name(&format!("{} {variant} {adjustment}", case.name))
+}
+
+/// Returns words as the name of a folder: in lower case, joined by `-`, with letters, digits and `.` only.
+pub(crate) fn folder_name(words: &str) -> String {
+    let words = words.split(|letter: char| !letter.is_ascii_alphanumeric() && letter != '.');
+    words.filter(|word| !word.is_empty()).collect::<Vec<_>>().join("-").to_lowercase()
 }
 
 /// Returns true for the solver names `lammps` and `liggghts`.

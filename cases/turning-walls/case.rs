@@ -2,7 +2,6 @@
 
 use crate::exact::turning::{second_order, sprung};
 use grainbench_harness::prelude::*;
-use grainbench_scene::nalgebra::Vector3;
 use std::f64::consts::TAU;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.02", 0.02)];

@@ -2,7 +2,6 @@
 
 use crate::sources::prototype::two_elastic_discs::{ENERGY_OF_2000, OBLIQUE_SPIN, RESTITUTION};
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::Duration;
 use std::f64::consts::SQRT_2;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
@@ -47,9 +46,10 @@ fn spin(done: &FinishedRun) -> Result<f64, MissingData> {
 fn first_gap(done: &FinishedRun) -> Result<f64, MissingData> {
     let force = done.column("contact.normal_force")?;
     // The force of a step belongs to the positions at its start.
-    let at = force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?.max(1) - 1;
-    let along = |axis: &str| Ok(done.column(&format!("right.{axis}"))?[at] - done.column(&format!("left.{axis}"))?[at]);
-    Ok(f64::hypot(along("x")?, along("y")?) - 2.0 * done.scene.grains[0].radius)
+    let at = force.iter().position(|&force| force > 0.0).ok_or("contact")?.max(1) - 1;
+    let place = |name: &str| done.column(name).map(|column| column[at]);
+    let (x, y) = (place("right.x")? - place("left.x")?, place("right.y")? - place("left.y")?);
+    Ok(f64::hypot(x, y) - 2.0 * done.scene.grains[0].radius)
 }
 
 fn run(variant: &'static str, solver: &'static str) -> Run {
@@ -58,44 +58,40 @@ fn run(variant: &'static str, solver: &'static str) -> Run {
 
 fn claims() -> Vec<Claim> {
     let energetic = || Control::solver("nodal contact on approach (2000), which makes energy", "mpm:2000");
-    let mut claims = Vec::new();
-    for (cells, allowed) in [(8.0, 0.015), (16.0, 0.01)] {
+    let head_on = |cells: f64, allowed: f64| {
         let run = Run::new("head-on", "mpm", grid(cells));
         let run = if cells > 8.0 { run.slow() } else { run };
-        claims.push(
+        [
             claim(format!("energy after over before, {cells} cells a radius"), "1")
                 .run(run.clone())
                 .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
                 .within(required(5e-3, "damping by the grid, and half a step between velocities and springs"))
                 .refuses(energetic()),
-        );
-        claims.push(
             claim(format!("restitution, {cells} cells a radius"), "1")
                 .run(run)
                 .equals_cited(RESTITUTION, 1.0, |done| restitution(&done[0]))
                 .within(required(allowed, "discretisation, and the uncertainty of the prototype"))
                 .refuses(energetic()),
-        );
-    }
-    for variant in ["head-on", "inclined", "oblique"] {
-        claims.push(
-            claim("momentum in the end", "kg m/s")
-                .run(run(variant, "mpm"))
-                .holds("equal and opposite impulses", |done| momentum(&done[0]))
-                .within(computed(
-                    1e-14,
-                    "random rounding by ε in a thousand steps, √1000 ε = 7e-15, and the sum over points; in units of m \
-                     v₀",
-                ))
-                .refuses(Control::scene("one disc faster by a millionth", |scene| {
-                    scene.grains[0].velocity *= 1.0 + 1e-6;
-                    // The sum of the impulses is wrong from the start, so a shorter run is enough.
-                    if let Duration::Seconds(time) = &mut scene.duration {
-                        *time *= 0.1;
-                    }
-                })),
-        );
-    }
+        ]
+    };
+    let conserved = |variant| {
+        claim("momentum in the end", "kg m/s")
+            .run(run(variant, "mpm"))
+            .holds("equal and opposite impulses", |done| momentum(&done[0]))
+            .within(computed(
+                1e-14,
+                "random rounding by ε in a thousand steps, √1000 ε = 7e-15, and the sum over points; in units of m v₀",
+            ))
+            .refuses(Control::scene("one disc faster by a millionth", |scene| {
+                scene.grains[0].velocity *= 1.0 + 1e-6;
+                // The sum of the impulses is wrong from the start, so a shorter run is enough.
+                if let Duration::Seconds(time) = &mut scene.duration {
+                    *time *= 0.1;
+                }
+            }))
+    };
+    let mut claims = [head_on(8.0, 0.015), head_on(16.0, 0.01)].concat();
+    claims.extend(["head-on", "inclined", "oblique"].map(conserved));
     claims.push(
         claim("spurious spin ΩR/v₀, frictionless, 30° to the grid", "1")
             .run(run("inclined", "mpm"))
@@ -106,7 +102,7 @@ fn claims() -> Vec<Claim> {
     claims.extend(oblique());
     claims.extend(three());
     claims.extend(touching());
-    claims.push(
+    claims.extend([
         claim("energy after over before, manufactured by the 2000 criterion", "1")
             .run(run("head-on", "mpm:2000").known(
                 "the energy is lower than the lowest of six results of the prototype. It depends on the position of \
@@ -116,8 +112,6 @@ fn claims() -> Vec<Claim> {
             .at_least(ENERGY_OF_2000.value, ENERGY_OF_2000.source(), |done| energy(&done[0]))
             .within(exactly("the smallest value of the prototype at three resolutions, with two kinds of normals"))
             .refuses(Control::without_the_error("four cells a radius", "mpm:2000", grid(4.0))),
-    );
-    claims.push(
         claim("energy after over before", "1")
             .run(
                 run("head-on", "mpm:2000")
@@ -127,7 +121,7 @@ fn claims() -> Vec<Claim> {
             .holds("conservation of energy", |done| Ok(Measurement::relative(energy(&done[0])?, 1.0)))
             .within(required(5e-3, "accuracy of springs at the surface"))
             .refuses(Control::without_the_error("springs at the surface", "mpm", grid(8.0))),
-    );
+    ]);
     claims
 }
 
@@ -145,9 +139,8 @@ fn three() -> Vec<Claim> {
         claim("momentum in the end, three discs at one point", "kg m/s")
             .run(run)
             .holds("equal and opposite impulses", |done| {
-                let at_start = |axis: &str| Ok(done[0].column(&format!("all.momentum_{axis}"))?[0]);
                 let gained = momentum(&done[0])?;
-                let before = f64::hypot(at_start("x")?, at_start("y")?);
+                let before = f64::hypot(done[0].column("all.momentum_x")?[0], done[0].column("all.momentum_y")?[0]);
                 Ok(Measurement::new((gained.value - before).abs(), 0.0, gained.scale))
             })
             .within(required(1e-12, "rounding, including the initial state; in units of m v₀"))
@@ -225,8 +218,7 @@ fn touching() -> Vec<Claim> {
             .run(run("sulsky", "mpm"))
             .equals(SURFACES_MEET, |done| {
                 let force = done[0].column("contact.normal_force")?;
-                let at =
-                    force.iter().position(|&force| force > 0.0).ok_or_else(|| MissingData("contact".to_owned()))?;
+                let at = force.iter().position(|&force| force > 0.0).ok_or("contact")?;
                 Ok(Measurement::relative(done[0].series().time[at], TOUCH))
             })
             .within(computed(
@@ -244,10 +236,10 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let done = runner.run(&Run::new("head-on", solver, grid(8.0)))?;
         let speed = speed(&done);
         let series = |name: &str, scale: f64| -> Vec<(f64, f64)> {
-            let values = done.series().column(name).unwrap_or_default();
-            done.series().time.iter().zip(values).map(|(&time, &value)| (time, value / scale)).collect()
+            let values = samples(&done, name).unwrap_or_default().into_iter();
+            values.map(|(time, value)| (time, value / scale)).collect()
         };
-        let start = done.series().column("all.total_energy").and_then(|all| all.first()).copied().unwrap_or(1.0);
+        let start = done.column("all.total_energy").map_or(1.0, |all| all[0]);
         energies.push(Curve::new(solver, Stroke::Line, series("all.total_energy", start)));
         speeds.push(Curve::new(solver, Stroke::Line, series("left.vx", speed)));
     }

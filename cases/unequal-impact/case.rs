@@ -28,7 +28,7 @@ struct Impact {
 
 impl Impact {
     fn from_scene(scene: &Scene) -> Self {
-        let pair = |read: fn(&grainbench_scene::scene::Grain) -> f64| [read(&scene.grains[0]), read(&scene.grains[1])];
+        let pair = |read: fn(&Grain) -> f64| [read(&scene.grains[0]), read(&scene.grains[1])];
         let (masses, radii) = (pair(|grain| grain.mass), pair(|grain| grain.radius));
         let before = [scene.grains[0].velocity.x, scene.grains[0].velocity.y];
         let law = scene.laws[0].unwrap_or_default();
@@ -41,7 +41,7 @@ impl Impact {
             (overlap, 2.943_275_184 * overlap / before[0])
         } else {
             let rate = (law.normal_stiffness() / reduced).sqrt();
-            (before[0] / rate, std::f64::consts::PI / rate)
+            (before[0] / rate, PI / rate)
         };
         let turned = before[1] * time / (radii[0] + radii[1]);
         let step = LEVELS[1].step(scene);

@@ -3,8 +3,6 @@
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Hold;
-use grainbench_scene::material::Constitutive;
-use std::f64::consts::PI;
 
 pub(crate) const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
 /// Variant of the bar between smooth sides.
@@ -56,12 +54,16 @@ pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
 /// Returns the small parameters of the tolerances: (kh)² of the mode at a resolution, with k = π/2L and the cell h, and
 /// the largest strain v₀√(ρ/E).
 fn small(resolution: Resolution) -> (f64, f64) {
-    let Resolution::Grid { cells, .. } = resolution else { return (f64::NAN, f64::NAN) };
     let strain = CASE.variant(PLAIN).ok().and_then(|scene| {
         let wave = scene.bodies[0].wave?;
         Some(wave.amplitude * wave.wave_number / mode(&scene).0)
     });
-    ((PI / 2.0 / cells).powi(2), strain.unwrap_or(f64::NAN))
+    ((PI / 2.0 / cells_of(resolution)).powi(2), strain.unwrap_or(f64::NAN))
+}
+
+/// Returns the number of cells in the length of the bar.
+fn cells_of(resolution: Resolution) -> f64 {
+    if let Resolution::Grid { cells, .. } = resolution { cells } else { f64::NAN }
 }
 
 /// Returns the relative decrease of a mode's frequency on the grid (derivation): (1/4 + 1/96)(kh)², minus (ωΔt)²/24 of
@@ -90,7 +92,7 @@ pub(crate) fn period(done: &FinishedRun) -> Result<f64, MissingData> {
         .collect();
     match (crossings.first(), crossings.last()) {
         (Some(first), Some(last)) if crossings.len() > 2 => Ok(2.0 * (last - first) / (crossings.len() - 1) as f64),
-        _ => Err(MissingData("crossings of zero".to_owned())),
+        _ => Err("crossings of zero".into()),
     }
 }
 
@@ -149,127 +151,107 @@ fn of_others() -> Vec<Claim> {
     let at = LEVELS[1];
     let time = 20.0;
     let off = CASE.number(VISCOUS, |scene| damped_off(at.resolution, scene, time));
-    let mut claims = vec![
-        claim(format!("mean velocity of a viscous bar over two periods, worst, {} cells", at.name), "m/s")
-            .run(Run::new(VISCOUS, "mpm", at.resolution))
+    let viscous = claim(format!("mean velocity of a viscous bar over two periods, worst, {} cells", at.name), "m/s")
+        .run(Run::new(VISCOUS, "mpm", at.resolution))
+        .series(|done| samples(done, "bar.vx"))
+        .follows(
+            Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
+            |done, time| DampedMode::from_scene(&done.scene).velocity(time),
+            |done| DampedMode::from_scene(&done.scene).amplitude,
+        )
+        .within(computed(
+            off,
+            "k² of the grid is lower by (25/48)(kh)², the viscous stress is one step late, and the law adds .355 ε \
+                 (derivation); in units of the initial amplitude",
+        ))
+        .refuses(Control::scene("half the shear viscosity", |scene| {
+            for material in scene.deformable.iter_mut().flatten() {
+                if let Constitutive::KelvinVoigt { viscosity, .. } = &mut material.constitutive {
+                    *viscosity *= 0.5;
+                }
+            }
+        }))
+        .drawn(&VISCOUS_VELOCITY, at.name);
+    let stretched = |level: &Level| {
+        claim(format!("mean velocity of a stretched bar let go, a period, worst, {} cells", level.name), "m/s")
+            .run(Run::new(STRETCHED, "mpm", level.resolution))
             .series(|done| samples(done, "bar.vx"))
             .follows(
-                Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
-                |done, time| DampedMode::from_scene(&done.scene).velocity(time),
-                |done| DampedMode::from_scene(&done.scene).amplitude,
+                Source::Derived("d'Alembert's waves of a stressed bar, fixed-free (derivation)"),
+                |done, time| triangle(&done.scene, time),
+                |done| triangle(&done.scene, 3.0 * stretched(&done.scene).2),
             )
             .within(computed(
-                off,
-                "k² of the grid is lower by (25/48)(kh)², the viscous stress is one step late, and the law adds .355 ε \
-                 (derivation); in units of the initial amplitude",
+                2.0 * AHEAD * front(1.0 / cells_of(level.resolution), 3.0),
+                "the grid disperses the front over the distance 3L, so part of it arrives early: 2 (−Ai'(0)) δ/L at the \
+                 arrival time (derivation); in units of σ/ρc",
             ))
-            .refuses(Control::scene("half the shear viscosity", |scene| {
-                for material in scene.deformable.iter_mut().flatten() {
-                    if let Constitutive::KelvinVoigt { viscosity, .. } = &mut material.constitutive {
-                        *viscosity *= 0.5;
-                    }
+            .refuses(Control::scene("half the stress", |scene| {
+                if let Some(stress) = &mut scene.bodies[0].stress {
+                    stress.centre *= 0.5;
                 }
             }))
-            .drawn(&VISCOUS_VELOCITY, at.name),
-    ];
-    for level in LEVELS {
-        let Resolution::Grid { cells, .. } = level.resolution else { continue };
-        claims.push(
-            claim(format!("mean velocity of a stretched bar let go, a period, worst, {} cells", level.name), "m/s")
-                .run(Run::new(STRETCHED, "mpm", level.resolution))
-                .series(|done| samples(done, "bar.vx"))
-                .follows(
-                    Source::Derived("d'Alembert's waves of a stressed bar, fixed-free (derivation)"),
-                    |done, time| triangle(&done.scene, time),
-                    |done| triangle(&done.scene, 3.0 * stretched(&done.scene).2),
-                )
-                .within(computed(
-                    2.0 * AHEAD * front(1.0 / cells, 3.0),
-                    "the grid disperses the front over the distance 3L, so part of it arrives early: 2 (−Ai'(0)) δ/L \
-                     at the arrival time (derivation); in units of σ/ρc",
-                ))
-                .refuses(Control::scene("half the stress", |scene| {
-                    if let Some(stress) = &mut scene.bodies[0].stress {
-                        stress.centre *= 0.5;
-                    }
-                }))
-                .drawn(&STRETCHED_VELOCITY, level.name),
-        );
-    }
-    claims
+            .drawn(&STRETCHED_VELOCITY, level.name)
+    };
+    [viscous].into_iter().chain(LEVELS.iter().map(stretched)).collect()
 }
 
 fn claims() -> Vec<Claim> {
     let softer = || Control::scene("two per cent softer", |scene| stiffen(scene, 0.98));
     let run = |level: Level| Run::new(PLAIN, "mpm", level.resolution);
-    let mut claims: Vec<Claim> = LEVELS
-        .iter()
-        .map(|&level| {
-            let (squared, strain) = small(level.resolution);
-            claim(format!("period, {} cells", level.name), "s")
-                .run(run(level))
-                .equals(DISPERSED, move |done| {
-                    Ok(Measurement::relative(
-                        period(&done[0])?,
-                        2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared)),
-                    ))
-                })
-                .within(computed(rest(squared, strain), REST))
-                .refuses(softer())
-        })
-        .collect();
-    let (squared, strain) = small(LEVELS[1].resolution);
-    claims.push(
-        claim(format!("period between smooth sides, {} cells", LEVELS[1].name), "s")
-            .run(Run::new(HELD, "mpm", LEVELS[1].resolution))
-            .equals(
-                Source::Derived("u_tt = ((K + 4G/3)/ρ) u_xx, fixed-free, slowed by the grid's dispersion (derivation)"),
-                move |done| Ok(Measurement::relative(period(&done[0])?, HELD_PERIOD * (1.0 + slower(squared)))),
-            )
-            .within(computed(rest(squared, strain), REST))
-            .refuses(Control::scene("free sides: the period of E/(1 − ν²)", |scene| {
-                scene.bodies[0].sides[1] = [Hold::Free; 2];
-            })),
-    );
-    for level in LEVELS {
+    let period_of = |level: &Level| {
         let (squared, strain) = small(level.resolution);
-        claims.push(
-            claim(format!("mean velocity over two periods, worst, {} cells", level.name), "m/s")
-                .run(run(*level))
-                .series(|done| samples(done, "bar.vx"))
-                .follows(
-                    SOURCE,
-                    |done, time| {
-                        let (frequency, amplitude) = mode(&done.scene);
-                        amplitude * (frequency * time).cos()
-                    },
-                    |done| mode(&done.scene).1,
-                )
-                .within(computed(
-                    4.0 * PI * slower(squared) + 0.355 * strain,
-                    "phase error of dispersion and time step in two periods, 4π ((1/4 + 1/96)(kh)² − (ωΔt)²/24), and \
-                     .355 ε of the law at a strain ε; in units of the amplitude",
-                ))
-                .refuses(softer())
-                .fair_to_any_continuum()
-                .drawn(&VELOCITY, level.name),
-        );
-    }
-    let (squared, strain) = small(LEVELS[1].resolution);
-    claims.push(
-        claim("total energy over two periods, worst", "J")
-            .run(run(LEVELS[1]))
-            .holds("conservation of energy", |done| {
-                let energy = done[0].column("all.total_energy")?;
-                Ok(Measurement::drift(&done[0].series().time, energy, energy[0]))
+        claim(format!("period, {} cells", level.name), "s")
+            .run(run(*level))
+            .equals(DISPERSED, move |done| {
+                let exact = 2.0 * PI / mode(&done[0].scene).0 * (1.0 + slower(squared));
+                Ok(Measurement::relative(period(&done[0])?, exact))
             })
+            .within(computed(rest(squared, strain), REST))
+            .refuses(softer())
+    };
+    let velocity = |level: &Level| {
+        let (squared, strain) = small(level.resolution);
+        claim(format!("mean velocity over two periods, worst, {} cells", level.name), "m/s")
+            .run(run(*level))
+            .series(|done| samples(done, "bar.vx"))
+            .follows(
+                SOURCE,
+                |done, time| {
+                    let (frequency, amplitude) = mode(&done.scene);
+                    amplitude * (frequency * time).cos()
+                },
+                |done| mode(&done.scene).1,
+            )
             .within(computed(
-                8.0 / (9.0 * PI) * strain + Resolution::COURANT.powi(2) * squared,
-                "(8/9π) ε because the elastic energy is computed as quadratic in σ, and (ωΔt)² because velocities are \
-                 half a step from stresses",
+                4.0 * PI * slower(squared) + 0.355 * strain,
+                "phase error of dispersion and time step in two periods, 4π ((1/4 + 1/96)(kh)² − (ωΔt)²/24), and .355 ε \
+                 of the law at a strain ε; in units of the amplitude",
             ))
-            .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01)),
-    );
-    claims.extend(of_others());
-    claims
+            .refuses(softer())
+            .fair_to_any_continuum()
+            .drawn(&VELOCITY, level.name)
+    };
+    let (squared, strain) = small(LEVELS[1].resolution);
+    let held = claim(format!("period between smooth sides, {} cells", LEVELS[1].name), "s")
+        .run(Run::new(HELD, "mpm", LEVELS[1].resolution))
+        .equals(
+            Source::Derived("u_tt = ((K + 4G/3)/ρ) u_xx, fixed-free, slowed by the grid's dispersion (derivation)"),
+            move |done| Ok(Measurement::relative(period(&done[0])?, HELD_PERIOD * (1.0 + slower(squared)))),
+        )
+        .within(computed(rest(squared, strain), REST))
+        .refuses(Control::scene("free sides: the period of E/(1 − ν²)", |scene| {
+            scene.bodies[0].sides[1] = [Hold::Free; 2];
+        }));
+    let energy = claim("total energy over two periods, worst", "J")
+        .run(run(LEVELS[1]))
+        .holds("conservation of energy", |done| Measurement::drift_of(&done[0], "all.total_energy"))
+        .within(computed(
+            8.0 / (9.0 * PI) * strain + Resolution::COURANT.powi(2) * squared,
+            "(8/9π) ε because the elastic energy is computed as quadratic in σ, and (ωΔt)² because velocities are half a \
+             step from stresses",
+        ))
+        .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01));
+    let of_mode = LEVELS.iter().map(period_of).chain([held]).chain(LEVELS.iter().map(velocity));
+    of_mode.chain([energy]).chain(of_others()).collect()
 }

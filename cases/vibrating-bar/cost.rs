@@ -6,7 +6,6 @@ use crate::registry;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::method::Method;
-use std::f64::consts::PI;
 use std::sync::Arc;
 
 pub(crate) fn subjects() -> Vec<TargetQuantity> {
@@ -18,7 +17,7 @@ pub(crate) fn subjects() -> Vec<TargetQuantity> {
         unit: "s",
         source: source.to_owned(),
         measure: Arc::new(move |done| {
-            let done = done.first().ok_or_else(|| MissingData("run".to_owned()))?;
+            let done = done.first().ok_or("run")?;
             let exact = exact(&done.scene);
             Ok(Measurement::relative(period(done)?, exact))
         }),

@@ -6,8 +6,7 @@ use std::f64::consts::PI;
 /// uses the velocity half a step earlier. The velocity v − ½Δt dv/dt makes spring and dashpot stiffer by the factor 1 +
 /// ζωΔt each. The damping ratio ζ is then larger by the factor 1 + ζωΔt/2. With e = exp(−πζ/√(1 − ζ²)), dln e/dζ =
 /// −π/(1 − ζ²)^{3/2}. Source: the damped oscillator.
-#[must_use]
-pub fn lag(damping_ratio: f64) -> f64 {
+pub(crate) fn lag(damping_ratio: f64) -> f64 {
     0.5 * PI * damping_ratio * damping_ratio / (1.0 - damping_ratio * damping_ratio).powf(1.5)
 }
 
@@ -15,8 +14,7 @@ pub fn lag(damping_ratio: f64) -> f64 {
 /// x = 0 starts with x = 0 and x′ = 1. At t = 2φ/√(1 − ζ²), cos φ = ζ, it has x″ = 0 and −x′ = exp(−ζ t). Above
 /// critical damping, acosh ζ and √(ζ² − 1) replace acos ζ and √(1 − ζ²). Source: the damped oscillator (Schwager &
 /// Pöschel 2007; Hertz contacts obey it in δ^{5/4}).
-#[must_use]
-pub fn no_tension_restitution(damping_ratio: f64) -> f64 {
+pub(crate) fn no_tension_restitution(damping_ratio: f64) -> f64 {
     (-2.0 * damping_ratio * arc(damping_ratio)).exp()
 }
 
@@ -28,8 +26,7 @@ fn arc(damping_ratio: f64) -> f64 {
 
 /// Returns the damping ratio that gives a coefficient of restitution, for a contact that ends when its force is zero.
 /// It is found by bisection.
-#[must_use]
-pub fn no_tension_ratio(restitution: f64) -> f64 {
+pub(crate) fn no_tension_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 / restitution);
     for _ in 0..80 {
         let middle = 0.5 * (low + high);
@@ -39,8 +36,7 @@ pub fn no_tension_ratio(restitution: f64) -> f64 {
 }
 
 /// Returns [`lag`] for a contact that ends when its force is zero: dln e/dζ = −2 [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)].
-#[must_use]
-pub fn no_tension_lag(damping_ratio: f64) -> f64 {
+pub(crate) fn no_tension_lag(damping_ratio: f64) -> f64 {
     damping_ratio * damping_ratio * (arc(damping_ratio) - damping_ratio) / (1.0 - damping_ratio * damping_ratio)
 }
 

@@ -8,7 +8,7 @@ use grainbench_scene::manufactured::Medium;
 ///
 /// # Errors
 /// When the record has no material points or the scene has no manufactured motion.
-pub fn error(done: &FinishedRun) -> Result<f64, MissingData> {
+pub(crate) fn error(done: &FinishedRun) -> Result<f64, MissingData> {
     let missing = || MissingData("material points at the end".to_owned());
     let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
     let (material, motion) = scene.deformable[0].zip(scene.start.manufactured).ok_or_else(missing)?;
@@ -28,7 +28,7 @@ pub fn error(done: &FinishedRun) -> Result<f64, MissingData> {
 ///
 /// # Errors
 /// When [`error`] has an error for a run.
-pub fn order(done: &[FinishedRun], cells: &[f64]) -> Result<f64, MissingData> {
+pub(crate) fn order(done: &[FinishedRun], cells: &[f64]) -> Result<f64, MissingData> {
     let point = |(done, cells): (&FinishedRun, &f64)| Ok((1.0 / cells, error(done)?));
     Ok(slope(&done.iter().zip(cells).map(point).collect::<Result<Vec<_>, MissingData>>()?))
 }

@@ -20,46 +20,45 @@ use std::f64::consts::PI;
 
 /// One grain, its plane and their contact law.
 #[derive(Clone, Copy, Debug)]
-pub struct OneGrain {
+pub(crate) struct OneGrain {
     /// Radius R (m).
-    pub radius: f64,
+    pub(crate) radius: f64,
     /// Mass m (kg).
-    pub mass: f64,
+    pub(crate) mass: f64,
     /// Inertia factor i = I/(mR²): 1/2 for a disc, 2/5 for a sphere.
-    pub inertia_factor: f64,
+    pub(crate) inertia_factor: f64,
     /// Gravity along the plane g_t (m/s²), down the slope.
-    pub along: f64,
+    pub(crate) along: f64,
     /// Gravity onto the plane g_n (m/s²).
-    pub onto: f64,
+    pub(crate) onto: f64,
     /// Friction coefficient μ.
-    pub friction: f64,
+    pub(crate) friction: f64,
     /// Tangential stiffness k_t (N/m), at the static overlap.
-    pub tangential_stiffness: f64,
+    pub(crate) tangential_stiffness: f64,
     /// Initial spin Ω₀ in the direction that drives the grain down the slope (rad/s).
-    pub spin: f64,
+    pub(crate) spin: f64,
     /// Static overlap divided by the radius.
-    pub overlap_ratio: f64,
+    pub(crate) overlap_ratio: f64,
     /// Normal stiffness at the static overlap (N/m).
-    pub normal_stiffness: f64,
+    pub(crate) normal_stiffness: f64,
     /// Tangential damping divided by the mass, γ_t (1/s), without the damping that is proportional to the stiffness.
-    pub tangential_damping: f64,
+    pub(crate) tangential_damping: f64,
 }
 
 /// Motion of the grain down the slope.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct State {
+pub(crate) struct State {
     /// Displacement down the slope (m).
-    pub x: f64,
+    pub(crate) x: f64,
     /// Velocity down the slope (m/s).
-    pub v: f64,
+    pub(crate) v: f64,
     /// Spin in the direction of rolling down (rad/s).
-    pub omega: f64,
+    pub(crate) omega: f64,
 }
 
 impl OneGrain {
     /// Reads a scene with one grain on a plane. The normal of the plane is y in two dimensions, z in three.
-    #[must_use]
-    pub fn from_scene(scene: &Scene) -> Self {
+    pub(crate) fn from_scene(scene: &Scene) -> Self {
         let grain = &scene.grains[0];
         let law = scene.laws.iter().flatten().next().copied().unwrap_or_default();
         let onto = -scene.gravity[normal_axis(scene)];
@@ -81,20 +80,17 @@ impl OneGrain {
     }
 
     /// Returns f = i/(1+i), the friction force on a rolling grain divided by the gravity force along the plane.
-    #[must_use]
-    pub fn share(&self) -> f64 {
+    pub(crate) fn share(&self) -> f64 {
         self.inertia_factor / (1.0 + self.inertia_factor)
     }
 
     /// Returns true if a rigid grain rolls without slip.
-    #[must_use]
-    pub fn sticks(&self) -> bool {
+    pub(crate) fn sticks(&self) -> bool {
         self.along * self.share() <= self.friction * self.onto
     }
 
     /// Returns the state at t (s) of a rigid grain released from rest on the slope.
-    #[must_use]
-    pub fn rigid_incline(&self, t: f64) -> State {
+    pub(crate) fn rigid_incline(&self, t: f64) -> State {
         if self.sticks() {
             let a = self.along / (1.0 + self.inertia_factor);
             State { x: 0.5 * a * t * t, v: a * t, omega: a * t / self.radius }
@@ -112,28 +108,24 @@ impl OneGrain {
 
     /// Returns the latest time (s) at which friction is fully mobilised, for any release height within the static
     /// overlap: half a period of the tangential spring plus half a period of the normal spring.
-    #[must_use]
-    pub fn onset(&self) -> f64 {
+    pub(crate) fn onset(&self) -> f64 {
         PI / self.tangential_frequency() + PI / (self.normal_stiffness / self.mass).sqrt()
     }
 
     /// Returns the amplitude a/ω (m/s) of the slip velocity of a rolling grain on an undamped tangential spring, for a
     /// force per mass a (m/s²).
-    #[must_use]
-    pub fn ringing(&self, acceleration: f64) -> f64 {
+    pub(crate) fn ringing(&self, acceleration: f64) -> f64 {
         acceleration / self.tangential_frequency()
     }
 
     /// Returns the displacement of the tangential spring (m) under a force per mass a (m/s²): m a/k_t.
-    #[must_use]
-    pub fn stretch(&self, acceleration: f64) -> f64 {
+    pub(crate) fn stretch(&self, acceleration: f64) -> f64 {
         self.mass * acceleration / self.tangential_stiffness
     }
 
     /// Returns the time at which the undamped spring reaches the Coulomb limit, arccos(1 − μ g_n/(f g_t))/ω (s). NaN if
     /// it never does.
-    #[must_use]
-    pub fn slips_from(&self) -> f64 {
+    pub(crate) fn slips_from(&self) -> f64 {
         (1.0 - self.friction * self.onto / (self.share() * self.along)).acos() / self.tangential_frequency()
     }
 
@@ -141,8 +133,7 @@ impl OneGrain {
     /// a grain released on the slope. A sliding grain has no friction until an undamped spring reaches the Coulomb
     /// limit, and full friction from then on. For a rolling grain, the spring oscillates by up to twice its
     /// displacement f g_t/ω², and the final velocities are those of the rigid grain.
-    #[must_use]
-    pub fn compliance(&self, t: f64) -> State {
+    pub(crate) fn compliance(&self, t: f64) -> State {
         let exact = self.rigid_incline(t);
         if self.sticks() {
             let stretch = self.share() * self.along / self.tangential_frequency().powi(2);
@@ -155,8 +146,7 @@ impl OneGrain {
 
     /// Returns the fraction of a slip velocity that remains after t (s), while tangential spring and dashpot oscillate
     /// about rolling: e^{−λt}. λ is the slower rate of s″ + 2b s′ + ω² s = 0, 2b = γ_t (1 + 1/i).
-    #[must_use]
-    pub fn rung(&self, t: f64) -> f64 {
+    pub(crate) fn rung(&self, t: f64) -> f64 {
         (-self.settling_rate() * t).exp()
     }
 
@@ -169,8 +159,7 @@ impl OneGrain {
 
     /// Returns the frequency (rad/s) of a grain on its rolling spring (Ai, Chen, Rotter & Ooi 2011): ω_r² = k_r/((1 +
     /// i)mR²) with k_r = 2.25 k_n μ_r² R².
-    #[must_use]
-    pub fn rolling_frequency(&self, rolling_friction: f64) -> f64 {
+    pub(crate) fn rolling_frequency(&self, rolling_friction: f64) -> f64 {
         let moment = (1.0 + self.inertia_factor) * self.mass;
         1.5 * rolling_friction * (self.normal_stiffness / moment).sqrt()
     }
@@ -178,8 +167,7 @@ impl OneGrain {
     /// Returns the remaining fraction of the initial acceleration of a grain on a critically damped rolling spring,
     /// averaged from t to 2t. With v = a t e^{−ω_r t}, the average is at most e^{−ω_r t}. The time is reduced by 1/λ,
     /// the delay of the friction force behind the slip velocity.
-    #[must_use]
-    pub fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
+    pub(crate) fn rolled(&self, rolling_friction: f64, t: f64) -> f64 {
         (-self.rolling_frequency(rolling_friction) * (t - 1.0 / self.settling_rate())).exp()
     }
 
@@ -187,15 +175,13 @@ impl OneGrain {
     /// the Coulomb limit. Below the slip velocity s_c = γ_t μ g_n (1 + 1/i)/(k_t/m), the spring grows too slowly and
     /// friction falls below its limit. The remaining slip has ∫s dt < s_c γ_t/(k_t/m). The lag is the fraction f of
     /// this integral.
-    #[must_use]
-    pub fn tail(&self) -> f64 {
+    pub(crate) fn tail(&self) -> f64 {
         let follows = self.tangential_damping * self.mass / self.tangential_stiffness;
         self.share() * follows * follows * self.friction * self.onto * (1.0 + 1.0 / self.inertia_factor)
     }
 
     /// Returns the state at t (s) of a grain released from rest on the slope with an undamped tangential spring.
-    #[must_use]
-    pub fn compliant_incline(&self, t: f64) -> State {
+    pub(crate) fn compliant_incline(&self, t: f64) -> State {
         let (i, f, g) = (self.inertia_factor, self.share(), self.along);
         let omega = self.tangential_frequency();
         let stick = |t: f64| State {
@@ -219,8 +205,7 @@ impl OneGrain {
 
     /// Returns the state at t (s) of a rigid grain that is placed on a flat plane with spin Ω₀ and no velocity. It
     /// slides until v = ΩR, then rolls.
-    #[must_use]
-    pub fn rigid_backspin(&self, t: f64) -> State {
+    pub(crate) fn rigid_backspin(&self, t: f64) -> State {
         let a = self.friction * self.onto;
         let last = self.radius * self.spin * self.share();
         let until = last / a;
@@ -233,21 +218,18 @@ impl OneGrain {
     }
 
     /// Returns the lever arm of friction (m) in the contact convention of a solver: R − overlap/2 for LIGGGHTS, R for LAMMPS.
-    #[must_use]
-    pub fn arm(&self, solver: &str) -> f64 {
+    pub(crate) fn arm(&self, solver: &str) -> f64 {
         if solver == "dem:liggghts" { self.radius * (1.0 - 0.5 * self.overlap_ratio) } else { self.radius }
     }
 
     /// Returns the velocity of rolling down the slope at t (m/s) if tangential forces have the lever arm a (`arm`)
     /// instead of R. v(1 + i(R/a)²) = g_t t follows from m dv/dt = m g_t − F, I dΩ/dt = aF and v = aΩ.
-    #[must_use]
-    pub fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
+    pub(crate) fn rolling_velocity(&self, t: f64, arm: f64) -> f64 {
         self.along * t / (1.0 + self.inertia_factor * (self.radius / arm).powi(2))
     }
 
     /// Returns the final velocity after backspin with the lever arm a (`arm`) (m/s): iR²(Ω₀ − Ω) = a v and v = aΩ.
-    #[must_use]
-    pub fn backspin_velocity(&self, arm: f64) -> f64 {
+    pub(crate) fn backspin_velocity(&self, arm: f64) -> f64 {
         let moment = self.inertia_factor * self.radius * self.radius;
         moment * self.spin * arm / (arm * arm + moment)
     }
@@ -282,7 +264,7 @@ fn rolling_spin(scene: &Scene, spin: &nalgebra::Vector3<f64>) -> f64 {
 
 /// Sets stiffness and start so that the grain rests at a static overlap of `ratio`·R: k_n = m g_n/(ratio R), k_t =
 /// (2/7) k_n. The normal damping ratio is ζ and the tangential coefficient is equal: γ_n = γ_t = 2ζ√(k_n/m).
-pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
+pub(crate) fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
     let axis = normal_axis(scene);
     let onto = -scene.gravity[axis];
     let grain = &mut scene.grains[0];
@@ -300,7 +282,7 @@ pub fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
 ///
 /// # Errors
 /// When the record lacks the probe.
-pub fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
+pub(crate) fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
     let (x, v) = (done.column("grain.x")?, done.column("grain.vx")?);
     let (spin, sign) = match done.scene.dimension {
         Dimension::Two => (done.column("grain.omega")?, -1.0),
@@ -315,18 +297,18 @@ pub fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
 ///
 /// # Errors
 /// When the record lacks the probe.
-pub fn last(done: &FinishedRun) -> Result<(f64, State), MissingData> {
-    course(done)?.last().copied().ok_or_else(|| MissingData("samples".to_owned()))
+pub(crate) fn last(done: &FinishedRun) -> Result<(f64, State), MissingData> {
+    course(done)?.last().copied().ok_or_else(|| "samples".into())
 }
 
 /// Returns time (s) and state of the sample nearest to the time `moment` (s).
 ///
 /// # Errors
 /// When the record lacks the probe `grain` or has no samples.
-pub fn nearest(done: &FinishedRun, moment: f64) -> Result<(f64, State), MissingData> {
+pub(crate) fn nearest(done: &FinishedRun, moment: f64) -> Result<(f64, State), MissingData> {
     let course = course(done)?;
     let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
-    near.copied().ok_or_else(|| MissingData("samples".to_owned()))
+    near.copied().ok_or_else(|| "samples".into())
 }
 
 #[cfg(test)]

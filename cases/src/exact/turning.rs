@@ -6,8 +6,7 @@ use nalgebra::{Rotation3, Vector3};
 ///
 /// r̈ = −ω²(r − r₀(t)), where r₀ rotates at Ω. With w = x + iy across the axis, w = r₀[a e^{iΩt} + b e^{iωt} + c
 /// e^{−iωt}]. Here a = ω²/(ω² − Ω²), b + c = 1 − a and ω(b − c) = Ω(1 − a). The component along the axis is constant.
-#[must_use]
-pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64) -> Vector3<f64> {
+pub(crate) fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64) -> Vector3<f64> {
     let rate = spin.norm();
     let axis = spin / rate;
     let along = axis * axis.dot(&start);
@@ -25,8 +24,7 @@ pub fn sprung(start: Vector3<f64>, spin: Vector3<f64>, frequency: f64, time: f64
 ///
 /// The rotation of the frame gives d (ΩΔt)² (1 + Ωt)². The oscillation on the spring, of amplitude 2 d (Ω/ω)², is
 /// multiplied by its phase error ωt (ωΔt)²/24, at most 2.
-#[must_use]
-pub fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
+pub(crate) fn second_order(distance: f64, rate: f64, frequency: f64, [time, step]: [f64; 2]) -> f64 {
     let phase = frequency * time * (frequency * step).powi(2) / 24.0;
     distance * ((rate * step * (1.0 + rate * time)).powi(2) + 2.0 * (rate / frequency).powi(2) * phase.min(2.0))
 }

@@ -44,7 +44,7 @@ impl RecordExpression {
             })
         };
         let points: Points = series.time.iter().enumerate().map(|(place, &t)| (t, at(place, t))).collect();
-        if points.is_empty() { Err(MissingData("sample".to_owned())) } else { Ok(points) }
+        if points.is_empty() { Err("sample".into()) } else { Ok(points) }
     }
 
     /// Returns the time (s) and the value of the expression. The time of a reduction is the end of the run.

@@ -292,22 +292,24 @@ fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Resu
         return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
     };
     let ResolutionParameters { time_step_fraction, time_step, cells, points, courant, substeps, iterations } = *knobs;
-    let (step, grid) = (time_step_fraction.is_some() || time_step.is_some(), cells.is_some() || points.is_some());
-    let (grid, rigid) = (grid || courant.is_some(), substeps.is_some() || iterations.is_some());
-    let others = match method {
-        Method::Dem => grid || rigid || (time_step.is_some() && time_step_fraction.is_some()),
-        Method::Grid => step || rigid,
-        Method::Rigid => step || grid,
+    let given = [
+        ("time_step_fraction", time_step_fraction),
+        ("time_step", time_step),
+        ("cells", cells),
+        ("points", points.map(f64::from)),
+        ("courant", courant),
+        ("substeps", substeps.map(f64::from)),
+        ("iterations", iterations.map(f64::from)),
+    ];
+    let (own, expected): (&[&str], _) = match method {
+        Method::Dem => (&["time_step_fraction", "time_step"], "`time_step_fraction` or `time_step`, above zero"),
+        Method::Grid => (&["cells", "points", "courant"], "`cells`, `points` and `courant`, above zero"),
+        Method::Rigid => (&["substeps", "iterations"], "`substeps` and `iterations`, above zero"),
     };
-    let numbers = [time_step_fraction, time_step, cells, courant, substeps.map(f64::from), iterations.map(f64::from)];
-    let is_positive =
-        numbers.into_iter().flatten().all(|number| number.is_finite() && number > 0.0) && points != Some(0);
-    if others || !is_positive {
-        let expected = match method {
-            Method::Dem => "`time_step_fraction` or `time_step`, above zero",
-            Method::Grid => "`cells`, `points` and `courant`, above zero",
-            Method::Rigid => "`substeps` and `iterations`, above zero",
-        };
+    let is_wrong = |(name, value): (&str, Option<f64>)| {
+        value.is_some_and(|value| !own.contains(&name) || !value.is_finite() || value <= 0.0)
+    };
+    if given.into_iter().any(is_wrong) || (time_step.is_some() && time_step_fraction.is_some()) {
         return Err(wrong("resolution", expected, "others"));
     }
     let courant = courant.unwrap_or(Resolution::COURANT);

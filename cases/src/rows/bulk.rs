@@ -3,10 +3,8 @@
 //! the mean over our own packings.
 
 use crate::rows::programs::row;
-use grainbench_harness::claim::ClaimWithTolerance;
 use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::prelude::*;
-use grainbench_harness::source::CitedNumber;
 use grainbench_harness::statistics::{BLOCKS, difference};
 use grainbench_reference::round_robin::Spread;
 
@@ -40,7 +38,7 @@ pub(crate) fn mean(
         let (ours, theirs) = together(&done[0], &done[1], column)?;
         let first = done[1].series().time.partition_point(|&time| time < from);
         let estimate = difference(&theirs[first..], &ours[first..], BLOCKS);
-        let estimate = estimate.ok_or_else(|| MissingData(format!("{BLOCKS} samples after {from} s")))?;
+        let estimate = estimate.ok_or_else(|| format!("{BLOCKS} samples after {from} s"))?;
         Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
     })
 }

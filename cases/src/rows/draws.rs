@@ -4,14 +4,12 @@ use grainbench_harness::statistics::spread;
 
 /// Returns the half-width of the 99 % interval of the difference between the values of two further packings. Returns
 /// zero if the table lacks the quantity, so that the claim fails.
-#[must_use]
-pub fn apart(table: &str, quantity: &str) -> f64 {
+pub(crate) fn apart(table: &str, quantity: &str) -> f64 {
     spread(&draws_of(table, quantity)).unwrap_or(0.0)
 }
 
 /// Returns the absolute value of the mean of a quantity over packings. Returns NaN if the table lacks the quantity.
-#[must_use]
-pub fn mean_of(table: &str, quantity: &str) -> f64 {
+pub(crate) fn mean_of(table: &str, quantity: &str) -> f64 {
     let draws = draws_of(table, quantity);
     (draws.iter().sum::<f64>() / draws.len() as f64).abs()
 }

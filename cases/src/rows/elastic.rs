@@ -5,22 +5,19 @@ use crate::exact::one_grain::{OneGrain, last, normal_axis};
 use crate::rows::on_plane::touching;
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Settle;
-use grainbench_scene::scene::{Duration, Scene};
-use nalgebra::Vector3;
-use std::f64::consts::PI;
 
 /// Relaxation phase before the run.
 #[derive(Clone, Copy, Debug)]
-pub struct Rest {
+pub(crate) struct Rest {
     /// Duration (s).
-    pub duration: f64,
+    pub(crate) duration: f64,
     /// Mass-proportional damping α (1/s).
-    pub damping: f64,
+    pub(crate) damping: f64,
 }
 
 /// Places the first grain in contact with its plane and relaxes it under the normal component of gravity. The run then
 /// lasts `time` (s).
-pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
+pub(crate) fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     touching(scene);
     let (normal, mut gravity) = (normal_axis(scene), Vector3::zeros());
     gravity[normal] = scene.gravity[normal];
@@ -29,7 +26,7 @@ pub fn settle(scene: &mut Scene, rest: Rest, time: f64) {
 }
 
 /// Multiplies bulk and shear modulus of all deformable bodies by a factor.
-pub fn stiffen(scene: &mut Scene, factor: f64) {
+pub(crate) fn stiffen(scene: &mut Scene, factor: f64) {
     for material in scene.deformable.iter_mut().flatten() {
         material.bulk_modulus *= factor;
         material.shear_modulus *= factor;
@@ -52,21 +49,20 @@ pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
 /// two flats). s is zero for two sides. For four sides, the second pair of forces widens the disc, and s = (4/π − 1) +
 /// ν/(1 − ν).
 #[derive(Clone, Copy, Debug)]
-pub struct PressedDisc {
+pub(crate) struct PressedDisc {
     /// E' = E/(1 − ν²) (Pa).
-    pub modulus: f64,
+    pub(crate) modulus: f64,
     /// Poisson's ratio ν.
-    pub poisson: f64,
+    pub(crate) poisson: f64,
     /// Radius R (m).
-    pub radius: f64,
+    pub(crate) radius: f64,
     /// Number of compressed sides: 2 or 4.
-    pub sides: u8,
+    pub(crate) sides: u8,
 }
 
 impl PressedDisc {
     /// Reads the first grain of a scene; `None` if it is not deformable.
-    #[must_use]
-    pub fn from_scene(scene: &Scene, sides: u8) -> Option<Self> {
+    pub(crate) fn from_scene(scene: &Scene, sides: u8) -> Option<Self> {
         let disc = (*scene.deformable.first()?)?;
         let (bulk, shear) = (disc.bulk_modulus, disc.shear_modulus);
         let poisson = (3.0 * bulk - 2.0 * shear) / (2.0 * (3.0 * bulk + shear));
@@ -81,8 +77,7 @@ impl PressedDisc {
     }
 
     /// Returns the force (N per metre) that shortens each compressed diameter by `shortening` (m), by bisection.
-    #[must_use]
-    pub fn force(&self, shortening: f64) -> f64 {
+    pub(crate) fn force(&self, shortening: f64) -> f64 {
         let (mut low, mut high) = (1e-12, 0.05);
         for _ in 0..200 {
             let middle = 0.5 * (low + high);
@@ -112,8 +107,7 @@ impl PressedDisc {
     /// each side due to a pair of forces ΔF on the perpendicular diameter.
     /// Source: Flamant's solution (Timoshenko & Goodier, Theory of Elasticity, §§36, 41); Johnson, Contact Mechanics,
     /// eq. 5.57.
-    #[must_use]
-    pub fn gives(&self, force: f64) -> DiscDisplacements {
+    pub(crate) fn gives(&self, force: f64) -> DiscDisplacements {
         let n = self.poisson / (1.0 - self.poisson);
         let patch = self.patch(force);
         let u = 2.0 * (2.0 / patch).ln() - 1.25 - 0.25 * n;
@@ -124,8 +118,7 @@ impl PressedDisc {
     /// Returns the mean square of the deviation of the displacement from its mean, in units of (1/πE')². The loads are
     /// forces at left, right, bottom and top, and inertia balances them. The result gives the added mass of a disc,
     /// which is the inertia of its deformation. The quadrature uses the displacement field of [`Self::gives`].
-    #[must_use]
-    pub fn stirred(&self, loads: [f64; 4]) -> f64 {
+    pub(crate) fn stirred(&self, loads: [f64; 4]) -> f64 {
         self.stirred_by(100, loads)
     }
 
@@ -152,21 +145,20 @@ impl PressedDisc {
     }
 
     /// Returns the contact half-width a over the radius R, with a² = 4FR/(πE′).
-    #[must_use]
-    pub fn patch(&self, force: f64) -> f64 {
+    pub(crate) fn patch(&self, force: f64) -> f64 {
         (4.0 * force / (PI * self.modulus * self.radius)).sqrt()
     }
 }
 
 /// Displacements of a disc, in units of ΔF/(πE').
 #[derive(Clone, Copy, Debug)]
-pub struct DiscDisplacements {
+pub(crate) struct DiscDisplacements {
     /// Displacement of the loaded contact along ΔF, relative to the mean displacement.
-    pub u: f64,
+    pub(crate) u: f64,
     /// Displacement of the opposite point along ΔF, relative to the mean displacement.
-    pub v: f64,
+    pub(crate) v: f64,
     /// Outward displacement of a side due to a pair of forces ΔF on the perpendicular diameter.
-    pub w: f64,
+    pub(crate) w: f64,
 }
 
 /// −Ai'(0), where Ai is the Airy function: time integral of the part of a wave front of width 1 that arrives before the

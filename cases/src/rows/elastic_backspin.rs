@@ -21,7 +21,7 @@ pub(crate) fn rolling(done: &FinishedRun) -> Result<(f64, f64), MissingData> {
     let radius = done.scene.grains[0].radius;
     let states: Vec<_> = course(done)?.into_iter().filter(|(t, _)| *t >= ROLLS).collect();
     if states.is_empty() {
-        return Err(MissingData("samples after .5 s".to_owned()));
+        return Err("samples after .5 s".into());
     }
     let mean = |value: &dyn Fn(usize) -> f64| (0..states.len()).map(value).sum::<f64>() / states.len() as f64;
     Ok((mean(&|at| states[at].1.v), mean(&|at| states[at].1.omega * radius)))

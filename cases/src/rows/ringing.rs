@@ -6,10 +6,6 @@ use crate::rows::elastic::stiffen;
 use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::Springs;
-use grainbench_scene::material::{Constitutive, Deformable};
-use grainbench_scene::motion::Moment;
-use grainbench_scene::scene::{Duration, Sampling};
-use std::f64::consts::PI;
 
 /// Parameters and exact values of one arrangement of discs.
 #[derive(Clone, Copy)]
@@ -100,7 +96,7 @@ impl FreeVibration {
 
     /// Returns the exact values for the scene of a run.
     pub(crate) fn exact(self, done: &FinishedRun) -> Result<VibrationParameters, MissingData> {
-        (self.exact)(&done.scene, self.squeeze).ok_or_else(|| MissingData("moduli in its scene".to_owned()))
+        (self.exact)(&done.scene, self.squeeze).ok_or_else(|| "moduli in its scene".into())
     }
 
     /// Returns the angular frequency of elastic discs in closed form (rad/s).

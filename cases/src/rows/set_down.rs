@@ -16,7 +16,6 @@
 use crate::exact::one_grain::{OneGrain, course, normal_axis, rest_at_overlap};
 use crate::rows::on_plane::STEP;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::{Duration, Sampling};
 
 const SPRINGS: ClaimFigure = ClaimFigure {
     name: "set-down",
@@ -29,7 +28,7 @@ const SPRINGS: ClaimFigure = ClaimFigure {
 
 /// Coefficients of the dashpots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Dashpots {
+pub(crate) enum Dashpots {
     /// γ_n and γ_t (1/s): damping proportional to the mass.
     OfMass,
     /// β (s): damping proportional to the stiffness.
@@ -125,19 +124,13 @@ fn set_down(scene: &mut Scene, dashpots: Dashpots) {
 }
 
 /// Returns the claims on overlap and slip velocity over time, for a grain on a slope.
-#[must_use]
-pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
+pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     let name = match dashpots {
         Dashpots::OfMass => "set down, damping by mass",
         Dashpots::OfStiffness => "set down, damping by stiffness",
     };
     let run = || Run::new(variant, "dem:lammps", STEP).adjusted(name, move |scene| set_down(scene, dashpots));
-    let weaker = Control::contact_law("dashpots a tenth too weak", |law| {
-        law.normal_damping *= 0.9;
-        law.tangential_damping *= 0.9;
-        law.stiffness_damping *= 0.9;
-    });
-    let overlap = || {
+    vec![
         claim("overlap while it rings, largest deviation", "m")
             .run(run())
             .series(|done| samples(done, "contact.overlap"))
@@ -150,8 +143,9 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 |done| (DEEPER - 1.0) * rest(&done.scene),
             )
             .within(estimated(0.01, BECAUSE).up_to(0.02))
-    };
-    let slip = || {
+            .refuses(Control::contact_law("springs ×1.05", |law| law.springs = law.springs.scaled([1.05; 2])))
+            .fair_to_any_springs()
+            .drawn(&SPRINGS, super::label(variant)),
         claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
             .run(run())
             .series(|done| {
@@ -168,12 +162,11 @@ pub fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 |done| peak(&done.scene),
             )
             .within(estimated(0.01, BECAUSE).up_to(0.02))
-    };
-    vec![
-        overlap()
-            .refuses(Control::contact_law("springs ×1.05", |law| law.springs = law.springs.scaled([1.05; 2])))
-            .fair_to_any_springs()
-            .drawn(&SPRINGS, super::label(variant)),
-        slip().refuses(weaker).fair_to_any_springs(),
+            .refuses(Control::contact_law("dashpots a tenth too weak", |law| {
+                law.normal_damping *= 0.9;
+                law.tangential_damping *= 0.9;
+                law.stiffness_damping *= 0.9;
+            }))
+            .fair_to_any_springs(),
     ]
 }
