@@ -167,7 +167,6 @@ fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::relative(state.v, exact))
 }
 
-/// Returns the claims on the final velocity of rolling for the lever arm of each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
     let source = Source::Derived("v = iR²Ω₀a/(a² + iR²) with arm a (derivation)");
     let exact = |scene: &Scene, arm| OneGrain::from_scene(scene).backspin_velocity(arm);

@@ -20,7 +20,6 @@ fn run(variant: &'static str, solver: &'static str, cells: f64) -> Run {
     stiffened(variant, solver, cells, 1.0)
 }
 
-/// Returns the run of an elastic grain with its moduli times a factor.
 fn stiffened(variant: &'static str, solver: &'static str, cells: f64, factor: f64) -> Run {
     let (rest, points) = if variant == "sphere" { (SPHERE, 2) } else { (DISC, 3) };
     let name = format!("elastic and settled, moduli × {factor}");
@@ -91,7 +90,6 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claim that the displacement is that of a rigid disc.
 fn beside_rigid(run: Run, words: &str, allowed: Tolerance, control: Control) -> Claim {
     claim(format!("displacement at .8 s over the rigid one, less 1, {words}"), "1")
         .run(run)

@@ -205,8 +205,6 @@ fn rounding() -> Tolerance {
     )
 }
 
-/// Returns the claims on the final velocity of rolling, which agrees to rounding with the solution for the lever arm of
-/// each convention.
 fn final_motion(variant: &'static str) -> Vec<Claim> {
     let source = Source::Derived("v = V iR²/(iR² + a²) with arm a (derivation)");
     on_plane::final_velocity(variant, source, |scene, arm| Belt::from_scene(scene).rolling_at(arm), &rounding())

@@ -43,7 +43,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claims that velocity and, in an oblique impact, spin agree with LAMMPS or LIGGGHTS.
 fn beside_program(variant: &'static str, pair: [&'static str; 2]) -> Vec<Claim> {
     let runs = || pair.map(|solver| Run::new(variant, solver, STEP.resolution));
     let allowed = same_cycle("relative to the velocity before");

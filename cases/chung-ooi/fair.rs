@@ -95,7 +95,6 @@ fn parted(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(time[last] + (time[last + 1] - time[last]) * overlap[last] / (overlap[last] - next))
 }
 
-/// Returns the claims on the elastic impact of tests 1 and 2.
 fn normal(variant: &'static str) -> [Claim; 3] {
     let run = || Run::new(variant, "dem", STEP.resolution);
     let stiffer = || Control::contact_law("E* 1 % too large", |law| law.scale_normal(1.01));

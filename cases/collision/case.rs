@@ -31,7 +31,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claims on the solver `rigid`.
 fn by_impulses() -> Vec<Claim> {
     let run = |variant| Run::new(variant, "rigid", rigid::DEFAULT);
     let restitution = |variant| {
@@ -68,7 +67,6 @@ fn by_impulses() -> Vec<Claim> {
     DAMPED.map(restitution).into_iter().chain(AXES.map(momentum)).chain([angular_momentum]).collect()
 }
 
-/// Returns the claim that the coefficient of restitution agrees with LAMMPS or LIGGGHTS.
 fn beside_program(variant: &'static str, pair: [&'static str; 2]) -> Claim {
     let runs = pair.map(|solver| Run::new(variant, solver, LEVELS[1].resolution));
     let control = Control::our_contact_law("damping ×1.001 in ours", |law| {
@@ -186,7 +184,6 @@ fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     })
 }
 
-/// Returns a negative control with the other release convention.
 fn other(solver: &'static str) -> Control {
     if solver == "dem" {
         Control::solver("the dashpot may pull", "dem:1979")

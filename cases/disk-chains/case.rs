@@ -83,7 +83,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claim that the arrival time of force at a contact agrees with the modal solution.
 fn exact(variant: &'static str, first: usize) -> Claim {
     claim(format!("arrival of force between discs {first} and {}", first + 1), "s")
         .run(gentle(variant))
@@ -101,8 +100,6 @@ fn exact(variant: &'static str, first: usize) -> Claim {
         .refuses(Control::contact_law("contacts 1 % too stiff", |law| law.scale_normal(1.01)))
 }
 
-/// Returns the claim on the force between the first two discs of the sticking chain, until a contact of the assembly
-/// opens.
 fn glued() -> Claim {
     claim("force between discs 1 and 2 until a contact opens, worst", "N")
         .run(gentle(GLUED))
@@ -124,8 +121,6 @@ fn glued() -> Claim {
         .refuses(Control::contact_law("tangential springs 1 % too soft", |law| law.scale_tangential(0.99)))
 }
 
-/// Returns the claim that force arrives at the fourth disc of a variant sooner than in the slipping zig-zag, as in the
-/// paper.
 fn sooner(variant: &'static str, chain: &str) -> Claim {
     claim(format!("arrival at disc 4 of the {chain}"), "1")
         .run(Run::new(variant, "dem", STEP.resolution))
@@ -140,8 +135,6 @@ fn sooner(variant: &'static str, chain: &str) -> Claim {
         }))
 }
 
-/// Returns the claim on the arrival time for rigid contacts, for which an impulse passes through the whole chain in one
-/// step.
 fn rigid() -> Claim {
     claim("time until disc 4 moves at a tenth of the striker's speed", "s")
         .run(Run::new("line", "rigid", rigid::DEFAULT)

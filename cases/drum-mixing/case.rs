@@ -74,7 +74,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns a negative control that reads the counts in the other lower quarter of the drum.
 fn beside() -> Control {
     Control::misread("counted on the other side, x > 0", zones::on_the_other_side)
 }
@@ -100,7 +99,6 @@ fn rub(scene: &mut Scene, factor: f64) {
     }
 }
 
-/// Returns the run from the published initial state.
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
 }
@@ -140,8 +138,6 @@ fn mean(words: &str, unit: &'static str, column: &'static str, runs: [Run; 2], c
     bulk::mean(&format!("mean {words} from .03 to .06 s"), unit, (column, 0.03), runs, control)
 }
 
-/// Returns the figures. The first shows the number of M1 spheres in zone 2 over time, for our run and for the published
-/// codes, if the published initial state is available. The second shows the angular momentum of the small drum's bed.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut figures = Vec::new();
     match runner.run(&of_paper()) {

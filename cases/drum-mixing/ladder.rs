@@ -25,7 +25,6 @@ fn with(step: f64) -> Run {
     Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER).read_by(ZONES).long().kept()
 }
 
-/// Returns the claims that runs with other time steps give the counts of the run with the time step of the case.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = [("half the step", HALF), ("a step longer by a millionth", ROUNDED), ("twice the step", TWICE)];
     steps.into_iter().map(|(words, step)| worst(words, with(step)).refuses(beside())).collect()

@@ -221,7 +221,6 @@ fn pair_of_m1() -> Control {
     })
 }
 
-/// Returns the figures of the height over time and of the deviation from the codes' mean.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<FinishedRun> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);

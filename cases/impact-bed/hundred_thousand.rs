@@ -15,7 +15,6 @@ fn on_all() -> [Run; 5] {
     OWN.map(|variant| Run::new(variant, "dem:liggghts", super::STEP).paper_size().kept())
 }
 
-/// Returns the claim that the mean over five beds agrees with two codes on one bed.
 pub(super) fn claims() -> Vec<Claim> {
     let quantity = ("height of the ball at 30 ms, 100,000 grains, mean of five beds".to_owned(), "mm");
     let at_30_ms = of_packings(
@@ -29,7 +28,6 @@ pub(super) fn claims() -> Vec<Claim> {
     vec![at_30_ms.refuses(half_the_density())]
 }
 
-/// Returns the figure of the path of the ball on our beds, with the height in two codes.
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let codes = vec![(DOWN * 1e3, dosta::HEIGHT_30_100K.value)];
     let mut curves = vec![Curve::new("LIGGGHTS and MUSEN, one bed", Stroke::Markers, codes)];

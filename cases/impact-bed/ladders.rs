@@ -18,8 +18,6 @@ fn at_30_ms(done: &FinishedRun) -> Result<f64, MissingData> {
     height(done, DEEP - MET)
 }
 
-/// Returns the claims that runs with longer time steps agree with runs at the time step of the paper, and runs with
-/// softer steel with runs at 210 GPa.
 pub(super) fn claims() -> Vec<Claim> {
     let steps = STEPS[1..].iter().map(|&step| {
         let runs = BEDS.into_iter().flat_map(|bed| [on(bed, step), on(bed, STEPS[0]).aside()]);
@@ -48,7 +46,6 @@ fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> ClaimWithToler
         .within(computed(allowed, because))
 }
 
-/// Returns the figure of the height at 30 ms against the time step, for each bed.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves = Vec::new();
     for (number, bed) in BEDS.into_iter().enumerate() {

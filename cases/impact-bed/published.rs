@@ -45,8 +45,6 @@ pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N]
     both
 }
 
-/// Returns two figures: the heights on our beds with the mean of the codes, and the difference from this mean in
-/// standard deviations.
 pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figure> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let within: Vec<&[f64; 4]> = published.iter().filter(|row| row[0] <= last + 1e-9).collect();

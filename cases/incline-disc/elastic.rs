@@ -80,7 +80,6 @@ fn run(slope: Elastic, solver: &'static str, cells: f64) -> Run {
     stiffened(slope, solver, cells, 1.0)
 }
 
-/// Returns the run of a disc whose moduli are multiplied by a factor.
 fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> Run {
     let name = format!("elastic and settled, moduli × {factor}");
     Run::new(slope.variant, solver, Resolution::grid(cells, POINTS)).adjusted(&name, move |scene| {
@@ -121,7 +120,6 @@ pub(super) fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the negative control of a claim at a number of cells per radius.
 fn telling_at(slope: Elastic, cells: f64) -> Control {
     // At 8 cells, the control with the 2000 contact needs no additional run, because the claims on this contact use the
     // same run.
@@ -176,7 +174,6 @@ fn excess_words(slope: Elastic, cells: f64) -> String {
     format!("displacement at {} s over the rigid one, less 1, {cells} cells a radius", slope.time)
 }
 
-/// Returns the claim on the order at which the deviation from the elastic disc decreases with the cell length.
 fn order(slope: Elastic) -> Claim {
     claim("order in the cell of the deviation from the elastic disc, 2 to 8 cells a radius", "1")
         .runs(LEVELS.map(|cells| run(slope, "mpm", cells)))
@@ -219,7 +216,6 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
     .refuses(telling(slope))
 }
 
-/// Returns the claim that the nodal contact `mpm:2000` gives the cited result of another implementation.
 fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
     let control =
         if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling_at(slope, cells) };
@@ -236,7 +232,6 @@ fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
         .refuses(control)
 }
 
-/// Returns the claim that documents the error of the 2000 contact, relative to the elastic disc.
 fn known(slope: Elastic) -> Claim {
     let (cells, allowed) = slope.allowed[1];
     let run = run(slope, "mpm:2000", cells).known(
@@ -252,8 +247,6 @@ fn known(slope: Elastic) -> Claim {
         .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(cells, POINTS)))
 }
 
-/// Returns the claim that a disc in nodal contact does not roll at two cells per radius, as Bardenhagen et al. (2001)
-/// found for the sphere.
 fn does_not_roll() -> Claim {
     claim("mean ΩR over mean v at the end, where a rigid disc has 1, 2 cells a radius", "1")
         .run(run(SLOPES[3], "mpm:2000", 2.0))
@@ -289,7 +282,6 @@ fn extrapolated(slope: Elastic) -> Claim {
     .refuses(telling(slope))
 }
 
-/// Returns the claim that ΩR/v at 8 cells per radius agrees with the value at 16 cells per radius.
 fn turns_as_it_goes(slope: Elastic) -> Claim {
     claim("mean ΩR over mean v at the end, 8 cells a radius against 16", "1")
         .runs([8.0, FINEST].map(|cells| run(slope, "mpm", cells).long()))

@@ -144,7 +144,6 @@ fn all_borne(done: &FinishedRun, columns: &[&str]) -> Result<Measurement, Missin
     Ok(Measurement::new(estimate.second, estimate.first, estimate.half_width))
 }
 
-/// Returns the claim that floor and side wall together carry the weight.
 fn balance() -> Claim {
     claim("weight that floor and side bear, over the weight", "1")
         .run(run(PLAIN, "dem"))
@@ -155,7 +154,6 @@ fn balance() -> Claim {
         .refuses(Control::scene("gravity 1 % larger", |scene| scene.gravity *= 1.01))
 }
 
-/// Returns the claim that the floor carries the whole weight if the side wall has no friction.
 fn smooth() -> Claim {
     claim("part of the weight on the floor, smooth side", "1")
         .run(run("smooth", "dem"))
@@ -166,7 +164,6 @@ fn smooth() -> Claim {
         .refuses(Control::scene("a friction of .02 at the side", |scene| side_friction(scene, 0.02)))
 }
 
-/// Returns the claim that the shear stress on the side wall does not exceed the Coulomb limit.
 fn mobilised() -> Claim {
     claim("part of the friction of the side that is at work half-way up, friction .25", "1")
         .run(run("half", "dem"))
@@ -206,7 +203,6 @@ fn law(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread(TWICE, twice))
 }
 
-/// Returns the claim that the stress saturates with depth.
 fn saturates() -> Claim {
     claim("vertical stress a quarter up over that half-way up", "1")
         .run(run(PLAIN, "dem"))
@@ -232,7 +228,6 @@ fn saturates() -> Claim {
         .refuses(Control::scene("a smooth side", |scene| side_friction(scene, 0.0)))
 }
 
-/// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
 fn beside(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("part of the weight on the floor, friction {about} at the side");
     let because = "a filling is a random sample: 99 % interval of the difference of two fillings, from five seeds";
@@ -244,7 +239,6 @@ fn beside(variant: &'static str, about: &str) -> Claim {
     })
 }
 
-/// Returns the figure of the stress against the height, with Janssen's law.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done = runner.run(&run(PLAIN, "dem"))?;
     Ok(profile(&done).into_iter().collect())

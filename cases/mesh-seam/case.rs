@@ -23,7 +23,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claim that the sphere keeps its static overlap.
 fn level(floor: &'static str) -> Claim {
     let control = match floor {
         "two-triangles" => {
@@ -46,7 +45,6 @@ fn level(floor: &'static str) -> Claim {
         .refuses(control)
 }
 
-/// Returns the claim that the final velocity is 5/7 of the initial velocity.
 fn rolls(floor: &'static str) -> Claim {
     claim(format!("velocity at 1 s, {floor}"), "m/s")
         .run(Run::new(floor, "dem:lammps", STEP))
@@ -91,7 +89,6 @@ const PLACES: [SeamPosition; 5] = [
     },
 ];
 
-/// Returns the claim on the contact force on the sphere at a fixed position.
 fn held(at: &'static SeamPosition) -> Claim {
     let place = |scene: &mut Scene| scene.grains[0].position = at.centre.into();
     claim(format!("force {}, off from the exact vector", at.words), "N")
@@ -125,7 +122,6 @@ fn held(at: &'static SeamPosition) -> Claim {
         }))
 }
 
-/// Returns the claim that the position of the sphere agrees with LIGGGHTS on the same triangles.
 fn liggghts(floor: &'static str) -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| Run::new(floor, solver, STEP));
     let control = Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001));

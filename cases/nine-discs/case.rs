@@ -53,7 +53,6 @@ fn printed(what: &'static str) -> Source {
     Source::Printed(&cundall_strack_1979::WORK, what)
 }
 
-/// Returns the claims on the static forces at each named contact after compression.
 fn static_forces() -> Vec<Claim> {
     type Force = fn(&Modal) -> f64;
     let contacts: [(&str, &str, Force); 6] = [
@@ -184,7 +183,6 @@ fn without_geometry(done: &[FinishedRun]) -> Result<Vec<InwardDisplacements>, Mi
     Ok((0..samples).map(limit).collect())
 }
 
-/// Returns the claims that the displacements over 400 cycles follow the discrete solution of the calculation cycle.
 fn discrete() -> Vec<Claim> {
     let discrete_claim = |variant: &'static str| {
         let (runs, tolerance, control) = if variant == "kappa-0" {
@@ -207,8 +205,6 @@ fn discrete() -> Vec<Claim> {
     MODAL.map(discrete_claim).to_vec()
 }
 
-/// Returns the claim that the deviation from the linear solution is of first order in the overlap, as expected from the
-/// change of geometry.
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .runs(SPEEDS.map(|factor| at_speed("kappa-1", factor)))

@@ -90,7 +90,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns a negative control in which the walls move 10 % too far after stage A.
 fn further_to_b() -> Control {
     Control::scene("walls that go a tenth further from stage A to stage B", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity *= 1.1);
@@ -182,7 +181,6 @@ fn as_printed(packings: Vec<Run>, words: &str, printed: CitedNumber) -> Claim {
         .refuses(Control::without(Effect::Friction))
 }
 
-/// Returns the claim that half the time step gives the same F_H/F_V at stage B.
 fn step() -> Claim {
     claim("F_H/F_V at stage B, against half the step", "1")
         .runs([run(PLAIN).slow(), run(PLAIN).at(LEVELS[1].resolution).aside()])

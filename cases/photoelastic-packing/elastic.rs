@@ -8,12 +8,10 @@ const VARIANT: &str = "fifty-elastic";
 /// Index of the level with two cells in the smallest radius.
 const HALF: usize = 2;
 
-/// Returns the run of elastic discs.
 pub(super) fn discs() -> Run {
     Run::new(VARIANT, "mpm", LEVELS[HALF].resolution).long()
 }
 
-/// Returns the run of elastic discs whose walls stop at stage A.
 fn alone() -> Run {
     discs().adjusted("walls that stay at stage A", |scene| {
         scene.walls.iter_mut().for_each(|wall| wall.motion.phases[1].velocity = Vector3::zeros());

@@ -25,7 +25,6 @@ fn path(done: &FinishedRun) -> Vec<(f64, f64)> {
     points.map(|((time, _), ratio)| (100.0 * vertical_strain(done, time), ratio)).collect()
 }
 
-/// Returns the figure of fringes in discs on springs and in elastic discs, at both stages.
 fn side_by_side(springs: &FinishedRun, elastic: &FinishedRun) -> Figure {
     let mut shots = Vec::new();
     for (words, done) in [("on springs", springs), ("elastic", elastic)] {

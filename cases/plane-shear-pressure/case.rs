@@ -48,7 +48,6 @@ fn average(scene: &mut Scene) {
     scene.columns = Columns { chosen: vec![Chosen::Contacts, Chosen::MeanVirial], digits: None, mean_every: 10 };
 }
 
-/// Returns the run at four times the pressure and the same inertial number.
 fn pressed(variant: &'static str) -> Run {
     run(variant, "dem").adjusted("four times the pressure, twice the speed", |scene| {
         average(scene);
@@ -150,7 +149,6 @@ fn claims() -> Vec<Claim> {
     all
 }
 
-/// Returns the claim that the mean normal stress in the layer equals the pressure of the lid.
 fn normal(variant: &'static str, about: &str) -> Claim {
     let quantity = format!("normal stress of the bulk over the pressure of the lid, I ≈ {about}");
     let allowed = apart(PACKINGS, &quantity);
@@ -163,7 +161,6 @@ fn normal(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::scene("a lid that is pressed by an eighth less", |scene| press(scene, 0.875)))
 }
 
-/// Returns the claim that the mean shear stress in the layer equals the shear stress on the walls.
 fn shear(variant: &'static str, about: &str) -> Claim {
     // Reverses the part of the shear stress that comes from tangential forces, for a negative control. In fast flow,
     // its omission would change the result only by the difference of two packings. The reversal changes the result by
@@ -193,7 +190,6 @@ fn shear(variant: &'static str, about: &str) -> Claim {
         .refuses(Control::misread("tangential forces with the wrong sign in the stress", turned))
 }
 
-/// Returns the claim that a quantity does not change with four times the pressure and twice the wall speed.
 fn scales(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     const LAW: &str =
         "the run at four times the pressure and twice the speed: rigid grains depend on I alone (derivation)";
@@ -233,7 +229,6 @@ fn wrongly_pressed(is_slow: bool, is_inertia: bool) -> Control {
     })
 }
 
-/// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
 fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     let quantity = format!("{name}, I ≈ {about}");
     let (allowed, scale) = of_draws(&quantity);
@@ -252,7 +247,6 @@ fn of_draws(quantity: &str) -> (Tolerance, f64) {
     (computed(apart(PACKINGS, quantity) / mean, format!("{BECAUSE}; in units of the mean of the packings")), mean)
 }
 
-/// Returns the figures of friction and packing fraction against the inertial number, for our solver and for LAMMPS.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let mut curves: [Vec<Curve>; 2] = [Vec::new(), Vec::new()];
     for (solver, stroke) in [("dem", Stroke::MarkedLine), ("lammps", Stroke::Markers)] {

@@ -90,7 +90,6 @@ fn unaccounted(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(sum - work, 0.0, work))
 }
 
-/// Returns the claim that the energy balance accounts for the work of the walls.
 pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control) -> Claim {
     claim(quantity, "J")
         .run(run)
@@ -102,7 +101,6 @@ pub(super) fn accounted(quantity: &str, run: Run, allowed: f64, control: Control
         .refuses(control)
 }
 
-/// Returns the claim that the increase of kinetic, elastic and plastic energy does not exceed the work of the walls.
 pub(super) fn makes_none(shear: &str, run: Run, control: Control) -> Claim {
     claim(format!("kinetic, elastic and plastic energy over the work of the walls, {shear}"), "1")
         .run(run)

@@ -17,7 +17,6 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     Ok(all)
 }
 
-/// Returns the figure of displacement profiles across the slab, with one curve for each mean shear.
 fn displacement(slabs: &[Slab]) -> Figure {
     let mut curves = vec![Curve::new("uniform shear", Stroke::Dashed, vec![(0.0, 0.0), (1.0, 1.0)])];
     for (words, done) in slabs.iter().filter(|slab| pictures::has_friction(slab)) {
@@ -38,7 +37,6 @@ fn displacement(slabs: &[Slab]) -> Figure {
     )
 }
 
-/// Returns the figures of quantities against the mean shear, with one curve for each slab.
 fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     let graph =
         |name: &str, title: &str, caption: &str, label: &str, value: &dyn Fn(&FinishedRun, &Snapshot) -> f64| {
@@ -78,7 +76,6 @@ fn over_shear(slabs: &[Slab]) -> Vec<Figure> {
     figures
 }
 
-/// Returns the figures of stress, energy and chains of grains on springs.
 fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     let mut all = Vec::new();
     let named = |name: &str| done.series().column(name).unwrap_or_default().to_vec();
@@ -118,7 +115,6 @@ fn of_springs(done: &FinishedRun) -> Vec<Figure> {
     all
 }
 
-/// Returns the figures of force chains against the mean shear.
 fn of_chains(done: &FinishedRun) -> [Figure; 3] {
     let looked: Vec<(f64, Chains)> = done
         .record

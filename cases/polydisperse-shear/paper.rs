@@ -125,14 +125,12 @@ fn over_packings(
         .refuses(control)
 }
 
-/// Returns the claim that force chains form and disappear.
 fn chains_go_on(runs: Vec<Run>, words: &str, control: Control) -> Claim {
     let quantity =
         format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{words}");
     over_packings((&quantity, FIGURE_7), runs, VALUES, 0.4, control, |done| gone_in_the_mean(&done[0]))
 }
 
-/// Returns the claim that the force chains differ between the two mean shears at which the paper shows them.
 fn chains_of_the_paper(runs: Vec<Run>, words: &str, control: Control) -> Claim {
     let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{words}, least");
     over_packings((&quantity, FIGURE_7), runs, EACH, 0.2, control, |done| gone_in_the_paper(&done[0]))
@@ -143,7 +141,6 @@ pub(super) fn bands(done: &[FinishedRun]) -> Result<f64, MissingData> {
     Ok(band(&done[0], end(&done[0])?) / band(&done[1], end(&done[1])?))
 }
 
-/// Returns the claims on grains on springs.
 fn on_springs() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| springs::to(packing, 0.8, FRAMES).slow()).to_vec();
     let staying =
@@ -178,7 +175,6 @@ fn on_springs() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on plastic grains, most of them over five packings.
 fn yielding() -> Vec<Claim> {
     let runs = || PACKINGS.map(|packing| whole(packing, "mpm")).to_vec();
     let beside = |pair: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(pair).collect::<Vec<Run>>();

@@ -24,7 +24,6 @@ pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
     })
 }
 
-/// Returns the run of the first packing up to 80 % shear.
 pub(super) fn slab() -> Run {
     to("seed-1", 0.8, super::FRAMES)
 }

@@ -53,7 +53,6 @@ fn shrunk(scene: &mut Scene) {
     }
 }
 
-/// Returns the claim on the number of large voids without slip, compared with the number with friction.
 fn pores() -> Claim {
     claim("large voids without slip over those with friction, or one, 80 % shear", "1")
         // The relative error is −1 if there is no void.
@@ -63,7 +62,6 @@ fn pores() -> Claim {
         .refuses(Control::scene("every second of the larger grains a tenth as large, so that there are voids", shrunk))
 }
 
-/// Returns the claims on other contact methods than springs between surfaces.
 fn other_contacts() -> Vec<Claim> {
     let excess = 0.5 * (prototype::PLASTIC_STRAIN_RATIO_OF_2001.value - 1.0);
     vec![
@@ -89,7 +87,6 @@ fn other_contacts() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on the energy balance up to 80 % shear.
 fn energy() -> Vec<Claim> {
     const APPROACH: &str = "contact on approach (2000), which makes energy";
     let makes_energy = || Control::solver(APPROACH, "mpm:2000");
@@ -110,7 +107,6 @@ fn energy() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on the shear band and on stressed grains.
 fn motion() -> Vec<Claim> {
     let band_at = |variant| to_shear(Run::new(variant, "mpm", grid(75.0)), 0.25, 0).long();
     vec![
@@ -148,7 +144,6 @@ fn motion() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on the effect of a finer grid.
 fn refined() -> Vec<Claim> {
     type Quantity = (&'static str, SnapshotValue, f64, Option<&'static str>);
     let quantities: [Quantity; 2] =

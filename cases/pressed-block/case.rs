@@ -160,7 +160,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claim that the strain in the middle follows the displacement of the ram.
 fn follows_the_ram(level: &Level) -> Claim {
     const LAG: &str = "the contact springs at the face are compressed, and its tracers sink into the block when the \
                        face has moved a quarter of a cell from its initial nodes: by 0.008 of a cell with eight cells, \

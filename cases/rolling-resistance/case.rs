@@ -38,7 +38,6 @@ fn claims() -> Vec<Claim> {
     ours.chain(FLAT.into_iter().flat_map(beside_programs)).chain(SLOPE.map(rolls_off)).chain([lammps]).collect()
 }
 
-/// Returns the claim on a grain that starts from rest on a slope, with a damped rolling spring, against LIGGGHTS.
 fn rolls_off(variant: &'static str) -> Claim {
     let runs = PAIRS[1].map(|solver| Run { solver, ..tilted(variant, 1.001) });
     let control = Control::our_contact_law("the dashpot of the rolling spring × .999 in ours", |law| {

@@ -131,7 +131,6 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the runs of the small silo by our solver `ours` and by LIGGGHTS.
 fn in_the_funnel(variant: &'static str, ours: &'static str) -> [Run; 2] {
     [ours, "liggghts"].map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
 }
@@ -156,7 +155,6 @@ fn smooth() -> Control {
     })
 }
 
-/// Returns the figure of the number of remaining grains over time, with the results of two codes.
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let published = course(SILO).into_iter().map(|[time, mean, _]| (time, mean / 1e3)).collect();
     let small = |time: f64| (time, FILLED - dosta::SILO_SMALL_RATE.value * time);

@@ -157,7 +157,6 @@ fn three() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claims on the spin due to friction.
 fn oblique() -> Vec<Claim> {
     let spin_claim = |run: Run, quantity: &str, because, control| {
         claim(quantity, "1")
@@ -186,7 +185,6 @@ fn oblique() -> Vec<Claim> {
     ]
 }
 
-/// Returns the claims on position and time of the first contact in Sulsky's scene.
 fn touching() -> Vec<Claim> {
     const SURFACES_MEET: Source = Source::Derived(
         "centres √2 (.6 − .2 t) apart, as in Sulsky, Chen & Schreyer 1994, touch at t = 3 − √2 (derivation)",

@@ -77,7 +77,6 @@ const FINE: Resolution = Resolution::CriticalFraction(0.0025);
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
 /// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
-/// Returns the claims of spring-dashpot contacts on some slopes.
 fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &slope in slopes {
@@ -154,7 +153,6 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
     )
 }
 
-/// Returns the claims on damped motion against the rigid solution.
 fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
     let rigid_claim = |quantity: &str, unit, pick: fn(State) -> f64| {
@@ -286,7 +284,6 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-/// Returns the figures of displacement and spin against the rigid solution.
 fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
     let mut displacement = Vec::new();
     let mut spin = Vec::new();

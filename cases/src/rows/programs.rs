@@ -83,7 +83,6 @@ pub(crate) fn discs_for(program: &str, run: Run) -> Run {
     if program == "liggghts" { run.adjusted("one layer of spheres", layer_of_spheres) } else { run }
 }
 
-/// Returns a negative control with a stiffness 1e-6 too large.
 pub(crate) fn stiffer() -> Control {
     Control::our_contact_law("stiffness off by 1e-6 in ours", |law| law.scale_normal(1.0 + 1e-6))
 }

@@ -61,7 +61,6 @@ fn wrong(row: Row) -> Control {
     if row.rolls { other_inertia() } else { stronger_friction() }
 }
 
-/// Returns the claims on displacement, velocity and spin at 1 s against the rigid solution.
 fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
@@ -83,7 +82,6 @@ fn fine(row: Row) -> impl Iterator<Item = Run> {
     FINE.iter().map(move |&substeps| run(row.variant, Resolution::substeps(substeps)))
 }
 
-/// Returns the claim on the order of the displacement's error in the time step, for a slipping grain.
 fn order(row: Row) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .runs(fine(row))

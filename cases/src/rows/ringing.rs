@@ -82,13 +82,11 @@ impl FreeVibration {
         }
     }
 
-    /// Returns the run of elastic discs.
     pub(crate) fn discs(self, cells: f64) -> Run {
         let run = Run::new(self.variant, "mpm", Resolution::grid(cells, 3));
         run.adjusted("elastic discs", move |scene| self.elastic(scene))
     }
 
-    /// Returns the run of rigid discs on springs.
     pub(crate) fn rigid(self) -> Run {
         let run = Run::new(self.variant, "dem", Resolution::CriticalFraction(0.05));
         run.adjusted("springs with the force of elastic discs", move |scene| self.on_springs(scene))
@@ -125,8 +123,6 @@ impl FreeVibration {
         (self.exact)(&scene, self.squeeze).map_or(f64::NAN, soft)
     }
 
-    /// Returns the claims on the force at rest, the frequency, and the ratio of the frequency to that of rigid discs on
-    /// springs.
     pub(crate) fn claims(self, case: &Case, set: impl Fn(Run) -> Run) -> Vec<Claim> {
         let softer = |cells: f64| {
             Control::scene("discs a quarter softer", |scene| stiffen(scene, 0.75))

@@ -64,17 +64,14 @@ const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median"
 const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the difference of two deposits, from ten of our \
                         own";
 
-/// Returns a negative control with half the friction.
 fn half_the_friction() -> Control {
     Control::contact_law("friction .25 for .5", |law| law.friction = 0.25)
 }
 
-/// Returns a negative control with tangential springs a millionth as stiff.
 pub(crate) fn no_springs() -> Control {
     Control::contact_law("tangential springs a millionth as stiff", |law| law.scale_tangential(1e-6))
 }
 
-/// Returns a negative control with gravity rotated by ten degrees about y.
 fn turned_gravity() -> Control {
     Control::scene("gravity turned by 10°", |scene| {
         let (sine, cosine) = 10.0_f64.to_radians().sin_cos();
@@ -84,18 +81,15 @@ fn turned_gravity() -> Control {
     .long()
 }
 
-/// Returns the mean sin φ of the elements in steady flow.
 fn sine(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(mean(&steady(done, "sine_of_friction")?))
 }
 
-/// Returns the mean packing fraction of the elements in steady flow.
 fn packing(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(mean(&steady(done, "packing_fraction")?))
 }
 
 impl Silo {
-    /// Returns the claims on every silo.
     pub(crate) fn of_every(&self) -> Vec<Claim> {
         let numbers = self.numbers;
         // In pushed silos, half the friction changes sin φ by less than the difference between ten packings.
@@ -152,7 +146,6 @@ impl Silo {
             .refuses(control)
     }
 
-    /// Returns the claim on the fraction of elements whose sin φ is in the range of the paper.
     fn range_of_friction(&self) -> Claim {
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow.words()), "1")
             .run(self.run.clone())
@@ -183,7 +176,6 @@ impl Silo {
         ]
     }
 
-    /// Returns the claims on the angle between the major principal axes of stress and strain rate.
     fn coaxiality(&self, cited: [CitedNumber; 2]) -> Vec<Claim> {
         let of_frames = ["angle between the axes of largest T and D in blocks of 5 d", "deg"];
         let of_windows = ["the same angle of means over 20 frames", "deg"];
@@ -200,7 +192,6 @@ impl Silo {
         self.equals([words, "deg"], cited, ensemble::rate_turned(), ensemble::turn)
     }
 
-    /// Returns the claim that the mean shear stress of a symmetric silo is zero.
     pub(crate) fn symmetry(&self) -> Claim {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
             .run(self.run.clone())
@@ -247,13 +238,11 @@ impl Silo {
         ]
     }
 
-    /// Returns the claim on the packing fraction of the deposit.
     pub(crate) fn deposit(&self, cited: CitedNumber) -> Claim {
         let quantity = ["packing fraction of the deposit", "1"];
         self.equals(quantity, cited, ensemble::larger_radii(), ensemble::deposit)
     }
 
-    /// Returns the claim that our solver in the convention of LAMMPS agrees with LAMMPS from the same initial grains.
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
         let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
         let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {

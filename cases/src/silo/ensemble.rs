@@ -240,12 +240,10 @@ pub(crate) fn gone(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.scene.grains.len() as f64 - last.ok_or("a frame")?)
 }
 
-/// Returns a negative control in which each element has sin φ of another element.
 pub(crate) const fn friction_elsewhere() -> Control {
     Control::misread("each element beside the friction of another", |tables| rotate(tables, "sine_of_friction"))
 }
 
-/// Returns a negative control in which each element has the shear rate from displacements of another element.
 pub(crate) const fn rate_elsewhere() -> Control {
     Control::misread("each element beside the rate of another", |tables| rotate(tables, "shear_rate_between"))
 }
@@ -281,7 +279,6 @@ fn at(table: &Table, name: &str, row: usize) -> f64 {
     table.column(name).map_or(f64::NAN, |values| values[row])
 }
 
-/// Returns a negative control that compares D of each block with the stress of another block.
 pub(crate) const fn stress_elsewhere() -> Control {
     Control::misread("each block beside the stress of another", |tables| {
         change(tables, "largest", |table, row| at(table, "largest_elsewhere", row));
@@ -295,7 +292,6 @@ pub(crate) const fn rate_turned() -> Control {
     })
 }
 
-/// Returns a negative control whose inertial numbers have a density of 1 instead of 6/π.
 pub(crate) const fn density_of_one() -> Control {
     Control::misread("the density of the grains 1 for 6/π", |tables| {
         change(tables, "inertial_number", |table, row| at(table, "inertial_number", row) * (PI / 6.0).sqrt());
@@ -311,7 +307,6 @@ pub(crate) const fn without_the_end() -> Control {
     })
 }
 
-/// Returns a negative control whose packing fractions have radii 1 % too large.
 pub(crate) const fn larger_radii() -> Control {
     Control::misread("radii a hundredth too large", |tables| {
         change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.01_f64.powi(3));

@@ -115,7 +115,6 @@ impl PaperSize {
         all
     }
 
-    /// Returns the claims on a draining silo.
     fn of_drains(&self, drained: &DrainExpectations) -> Vec<Claim> {
         let (bins, over_the_slit) = self.bins.split_at(drained.bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
