@@ -107,31 +107,45 @@ fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// Returns the code of the case modules and of the registry.
+/// Returns the code of the case modules and of the registry. A file `cost.rs` of a case contains a function that returns the
+/// target quantities of the cost study.
 fn registry(root: &Path) -> Result<String, Failure> {
-    let names = folders_with(root, "scene.toml")?;
-    let (mut code, mut heads) = (String::new(), String::new());
-    for name in &names {
-        if let Some(head) = head(&root.join(name), name, "case.toml")? {
-            let constant = name.replace('-', "_").to_uppercase();
-            writeln!(heads, "pub(crate) const {constant}: Case = Case {{ {head}..EMPTY }};")?;
+    let [mut code, mut heads, mut cases, mut costs] = [const { String::new() }; 4];
+    for name in folders_with(root, "scene.toml")? {
+        let (folder, module) = (root.join(&name), name.replace('-', "_"));
+        if let Some(head) = head(&folder, &name, "case.toml")? {
+            writeln!(heads, "pub(crate) const {}: Case = Case {{ {head}..EMPTY }};", module.to_uppercase())?;
         }
-        let module = name.replace('-', "_");
-        let file = root.join(name).join("case.rs");
-        match of_claims(&root.join(name), name)? {
+        match of_claims(&folder, &name)? {
             Some(case) => writeln!(code, "mod {module} {{\n{case}}}")?,
-            None => writeln!(code, "#[path = {file:?}]\nmod {module};")?,
+            None => writeln!(code, "#[path = {:?}]\nmod {module};", folder.join("case.rs"))?,
+        }
+        writeln!(cases, "    &{module}::CASE,")?;
+        let cost = folder.join("cost.rs");
+        if cost.is_file() {
+            writeln!(code, "#[path = {cost:?}]\nmod {module}_cost;")?;
+            writeln!(costs, "    ({name:?}, {module}_cost::subjects),")?;
         }
     }
-    writeln!(code, "/// Cases with the texts of their `case.toml` and without claims.\npub(crate) mod heads {{")?;
-    writeln!(code, "use crate::{{Case, folder::EMPTY}};\n{heads}}}")?;
-    writeln!(code, "/// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[")?;
-    for name in &names {
-        writeln!(code, "    &{}::CASE,", name.replace('-', "_"))?;
-    }
-    writeln!(code, "];")?;
-    with_costs(root, &names, &mut code)?;
-    Ok(code)
+    Ok(format!(
+        "{code}/// Cases with the texts of their `case.toml` and without claims.\npub(crate) mod heads {{\n\
+         use crate::{{Case, folder::EMPTY}};\n{heads}}}\n\
+         /// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[\n{cases}];\n\
+         /// Target functions of the cases that define their own.\n\
+         pub(crate) static COSTS: &[TargetFunction] = &[\n{costs}];\n"
+    ))
+}
+
+/// Reads a TOML file.
+fn table_of(file: &Path) -> Result<toml::Table, Failure> {
+    let table = fs::read_to_string(file)?.parse();
+    Ok(table.map_err(|error: toml::de::Error| format!("{}: {error}", file.display()))?)
+}
+
+/// Returns a text of a table that is not blank.
+fn text<'t>(table: &'t toml::Table, key: &str) -> Result<&'t str, Failure> {
+    let text = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
+    Ok(text.ok_or_else(|| format!("expected a text `{key}`"))?)
 }
 
 /// Returns the fields of a case that a file of its folder states, and its scene and derivation, as Rust code. `None` if
@@ -141,12 +155,8 @@ fn head(folder: &Path, name: &str, file: &str) -> Result<Option<String>, Failure
     if !file.is_file() {
         return Ok(None);
     }
-    let wrong = |error: &dyn std::fmt::Display| format!("{}: {error}", file.display());
-    let table: toml::Table = fs::read_to_string(&file)?.parse().map_err(|error| wrong(&error))?;
-    let text = |key: &str| {
-        let text = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
-        text.ok_or_else(|| wrong(&format!("expected a text `{key}`")))
-    };
+    let table = table_of(&file)?;
+    let text = |key: &str| text(&table, key).map_err(|error| format!("{}: {error}", file.display()));
     let [title, claim, physics] = [text("title")?, text("claim")?, text("physics")?];
     let physics = physics[..1].to_uppercase() + &physics[1..];
     let mut code = format!(
@@ -178,22 +188,6 @@ fn of_claims(folder: &Path, name: &str) -> Result<Option<String>, Failure> {
     }))
 }
 
-/// Adds a module for each case that has a `cost.rs`, and the list of the functions in these modules. Each function
-/// returns the target quantities of the cost study for its case.
-fn with_costs(root: &Path, names: &[String], code: &mut String) -> std::fmt::Result {
-    let own: Vec<&String> = names.iter().filter(|name| root.join(name).join("cost.rs").is_file()).collect();
-    for name in &own {
-        let file = root.join(name).join("cost.rs");
-        writeln!(code, "#[path = {file:?}]\nmod {}_cost;", name.replace('-', "_"))?;
-    }
-    writeln!(code, "/// Target functions of the cases that define their own.")?;
-    writeln!(code, "pub(crate) static COSTS: &[TargetFunction] = &[")?;
-    for name in &own {
-        writeln!(code, "    ({name:?}, {}_cost::subjects),", name.replace('-', "_"))?;
-    }
-    writeln!(code, "];")
-}
-
 /// Subfolder of the reference folder that contains estimated uncertainties.
 const ESTIMATES: &str = "uncertainty";
 
@@ -217,9 +211,7 @@ fn sources(references: &Path) -> Result<String, Failure> {
         writeln!(code, "/// Works of this kind.\npub mod {kind} {{")?;
         for name in folders_with(&references.join(kind), "provenance.toml")? {
             let path = references.join(kind).join(&name).join("provenance.toml");
-            let table: toml::Table =
-                fs::read_to_string(&path)?.parse().map_err(|error| format!("{}: {error}", path.display()))?;
-            work(&mut code, kind, &name, &table).map_err(|error| format!("{}: {error}", path.display()))?;
+            work(&mut code, kind, &name, &table_of(&path)?).map_err(|error| format!("{}: {error}", path.display()))?;
             write!(all, "&{kind}::{}::WORK, ", name.replace('-', "_"))?;
         }
         writeln!(code, "}}")?;
@@ -230,10 +222,6 @@ fn sources(references: &Path) -> Result<String, Failure> {
 
 /// Adds the module of one work with its citation and its values.
 fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
-    let text = |table: &toml::Table, key: &str| -> Result<String, Failure> {
-        let value = table.get(key).and_then(toml::Value::as_str).filter(|text| !text.trim().is_empty());
-        Ok(value.ok_or(format!("expected a text `{key}`"))?.to_owned())
-    };
     let number = |table: &toml::Table, key: &str| {
         table.get(key).and_then(|value| value.as_float().or(value.as_integer().map(|whole| whole as f64)))
     };
