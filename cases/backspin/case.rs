@@ -4,16 +4,16 @@ mod elastic;
 
 use crate::exact::one_grain::{OneGrain, State, course, nearest, rest_at_overlap};
 use crate::rows::on_plane::{
-    self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
+    self, DAMPING, NEARLY_RIGID, Plane, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
 };
-use crate::rows::rigid::{self, Row};
+use crate::rows::rigid;
 use crate::rows::{incline, programs};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
-const RIGID: &[Row] =
-    &[Row { variant: "disc", rolls: true, lifts: None }, Row { variant: "sphere", rolls: true, lifts: None }];
+const RIGID: &[Plane] =
+    &[Plane { variant: "disc", rolls: true, lifts: None }, Plane { variant: "sphere", rolls: true, lifts: None }];
 
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BACKSPIN };

@@ -2,8 +2,8 @@
 
 mod elastic;
 
-use crate::rows::incline::{Incline, LEVELS, Slope};
-use crate::rows::rigid::Row;
+use crate::rows::incline::{Incline, LEVELS};
+use crate::rows::on_plane::Plane;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
@@ -13,16 +13,10 @@ pub(crate) static CASE: Case =
 static INCLINE: Incline = Incline {
     case: &CASE,
     slopes: &[
-        Slope { variant: "60deg-mu.3", sticks: false },
-        Slope { variant: "60deg-mu.9", sticks: true },
-        Slope { variant: "60deg-mu.5", sticks: false },
-        Slope { variant: "30deg-mu.5", sticks: true },
-    ],
-    rigid: &[
-        Row { variant: "60deg-mu.3", rolls: false, lifts: None },
-        Row { variant: "60deg-mu.9", rolls: true, lifts: Some([4e-4, 8e-4]) },
-        Row { variant: "60deg-mu.5", rolls: false, lifts: Some([4e-4, 8e-4]) },
-        Row { variant: "30deg-mu.5", rolls: true, lifts: None },
+        Plane { variant: "60deg-mu.3", rolls: false, lifts: None },
+        Plane { variant: "60deg-mu.9", rolls: true, lifts: Some([4e-4, 8e-4]) },
+        Plane { variant: "60deg-mu.5", rolls: false, lifts: Some([4e-4, 8e-4]) },
+        Plane { variant: "30deg-mu.5", rolls: true, lifts: None },
     ],
     set_down: ("30deg-mu.5", Dashpots::OfMass),
 };

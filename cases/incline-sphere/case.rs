@@ -2,8 +2,8 @@
 
 mod elastic;
 
-use crate::rows::incline::{Incline, LEVELS, Slope};
-use crate::rows::rigid::Row;
+use crate::rows::incline::{Incline, LEVELS};
+use crate::rows::on_plane::Plane;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
@@ -18,10 +18,9 @@ pub(crate) static CASE: Case = Case {
 
 static INCLINE: Incline = Incline {
     case: &CASE,
-    slopes: &[Slope { variant: "45deg-mu.495", sticks: true }, Slope { variant: "60deg-mu2_7", sticks: false }],
-    rigid: &[
-        Row { variant: "45deg-mu.495", rolls: true, lifts: None },
-        Row { variant: "60deg-mu2_7", rolls: false, lifts: None },
+    slopes: &[
+        Plane { variant: "45deg-mu.495", rolls: true, lifts: None },
+        Plane { variant: "60deg-mu2_7", rolls: false, lifts: None },
     ],
     set_down: ("45deg-mu.495", Dashpots::OfStiffness),
 };

@@ -1,8 +1,8 @@
 //! Claims shared by `incline-disc` and `incline-sphere`, in which a grain is released from rest on an inclined plane.
 //! Each case has its own scene, slopes and elastic body.
 
-use super::on_plane::{DAMPING, NEARLY_RIGID, STEP, at_overlap, end, nearly_rigid, other_inertia, stronger_friction};
-use super::rigid::{self, Row};
+use super::on_plane::{DAMPING, NEARLY_RIGID, Plane, STEP, at_overlap, end, nearly_rigid, stronger_friction};
+use super::rigid;
 use super::set_down::{self, Dashpots};
 use super::{label, programs};
 use crate::exact::one_grain::{OneGrain, State, course, last, rest_at_overlap};
@@ -13,9 +13,7 @@ pub(crate) struct Incline {
     /// Case that defines the variants.
     pub(crate) case: &'static Case,
     /// Inclined planes of the case, each a variant of the scene.
-    pub(crate) slopes: &'static [Slope],
-    /// Variants for the solver `rigid` (rapier).
-    pub(crate) rigid: &'static [Row],
+    pub(crate) slopes: &'static [Plane],
     /// Variant for the claims on a grain that is set down, and the coefficients of the dashpots in these claims.
     pub(crate) set_down: (&'static str, Dashpots),
 }
@@ -31,7 +29,7 @@ impl Incline {
         [
             springs(self.case, self.slopes),
             set_down::claims(variant, dashpots),
-            rigid::inclines(self.case, self.rigid),
+            rigid::inclines(self.case, self.slopes),
             programs::one_grain(&variants),
         ]
         .concat()
@@ -43,14 +41,10 @@ impl Incline {
     /// When a run fails.
     pub(crate) fn figures(&self, runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let mut figures = motion(runner, self.slopes)?;
-        figures.push(rigid::figure(runner, self.rigid, OneGrain::rigid_incline)?);
+        figures.push(rigid::figure(runner, self.slopes, OneGrain::rigid_incline)?);
         Ok(figures)
     }
 }
-
-/// Source of the rigid solutions.
-const RIGID: Source =
-    Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 
 const COMPLIANCE: ClaimFigure = ClaimFigure {
     name: "compliance",
@@ -61,15 +55,6 @@ const COMPLIANCE: ClaimFigure = ClaimFigure {
     logarithmic: true,
 };
 
-/// Inclined plane: a variant of the scene with one angle and friction.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Slope {
-    /// Variant of the scene.
-    pub(crate) variant: &'static str,
-    /// True if a rigid grain rolls without slip.
-    pub(crate) sticks: bool,
-}
-
 /// Time step of the undamped run that is compared with the compliant solution.
 const FINE: Resolution = Resolution::CriticalFraction(0.0025);
 /// Numbers of steps before slip begins, in the undamped runs for the order of convergence. In each run, slip begins in
@@ -77,16 +62,16 @@ const FINE: Resolution = Resolution::CriticalFraction(0.0025);
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
 /// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
-fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
+fn springs(case: &Case, slopes: &[Plane]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &slope in slopes {
-        if !slope.sticks {
+        if !slope.rolls {
             claims.extend(compliant(case, slope));
         }
         claims.extend(rigid(case, slope));
         claims.push(exponent(slope));
         claims.extend(near_rigid(case, slope));
-        if slope.sticks {
+        if slope.rolls {
             claims.extend(final_motion(case, slope));
         }
     }
@@ -95,7 +80,7 @@ fn springs(case: &Case, slopes: &[Slope]) -> Vec<Claim> {
 
 /// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
 /// step, and second order in the time step.
-fn compliant(case: &Case, slope: Slope) -> Vec<Claim> {
+fn compliant(case: &Case, slope: Plane) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
     let run = |step| at_overlap(slope.variant, "dem:lammps", 1e-3, 0.0, step);
@@ -129,7 +114,7 @@ const LATE: &str = "friction may be absent until an undamped spring has reached 
 
 /// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
 /// overlap of `ratio`·R.
-fn compliance(case: &Case, slope: Slope, ratio: f64) -> State {
+fn compliance(case: &Case, slope: Plane, ratio: f64) -> State {
     let unknown = State { x: f64::NAN, v: f64::NAN, omega: f64::NAN };
     case.variant(slope.variant).map_or(unknown, |mut scene| {
         rest_at_overlap(&mut scene, ratio, DAMPING);
@@ -153,18 +138,18 @@ pub(crate) fn come_to_roll(case: &Case, variant: &str, slides: impl Fn(&OneGrain
     )
 }
 
-fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
+fn rigid(case: &Case, slope: Plane) -> Vec<Claim> {
     let allowed = compliance(case, slope, 1e-3);
     let rigid_claim = |quantity: &str, unit, pick: fn(State) -> f64| {
         claim(quantity, unit)
             .run(at_overlap(slope.variant, "dem:lammps", 1e-3, DAMPING, STEP))
-            .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
-            .within(computed(pick(allowed), if slope.sticks { SWINGS } else { LATE }))
-            .refuses(telling(slope))
+            .equals(rigid::SOLUTION, move |done| end(&done[0], OneGrain::rigid_incline, pick))
+            .within(computed(pick(allowed), if slope.rolls { SWINGS } else { LATE }))
+            .refuses(slope.control())
     };
     let mut claims = vec![rigid_claim("displacement at 1 s", "m", |state| state.x)];
     // Velocity and spin of a rolling grain have a claim with a tolerance of rounding size, in `final_motion`.
-    if !slope.sticks {
+    if !slope.rolls {
         claims.push(rigid_claim("velocity at 1 s", "m/s", |state| state.v));
         claims.push(rigid_claim("spin at 1 s", "rad/s", |state| state.omega));
     }
@@ -173,8 +158,8 @@ fn rigid(case: &Case, slope: Slope) -> Vec<Claim> {
 
 /// Returns the claim on the exponent n in the relation error ∝ (overlap/R)^n, where the error is relative to the rigid
 /// solution.
-fn exponent(slope: Slope) -> Claim {
-    let expected: f64 = if slope.sticks { 1.0 } else { 0.5 };
+fn exponent(slope: Plane) -> Claim {
+    let expected: f64 = if slope.rolls { 1.0 } else { 0.5 };
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
     claim("exponent of the displacement's error in overlap/R, 1e-3 to 1e-5", "1")
         .runs(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
@@ -193,22 +178,16 @@ fn exponent(slope: Slope) -> Claim {
              same size, changes the exponent by its value times its power; taken at the middle of the two decades, \
              overlap/R = 1e-4",
         ))
-        .refuses(telling(slope))
-        .drawn(&COMPLIANCE, format!("{} ({})", label(slope.variant), if slope.sticks { "rolls" } else { "slips" }))
-}
-
-/// Returns a negative control that changes the result: wrong inertia for a rolling grain, larger friction for a
-/// slipping grain.
-fn telling(slope: Slope) -> Control {
-    if slope.sticks { other_inertia() } else { stronger_friction() }
+        .refuses(slope.control())
+        .drawn(&COMPLIANCE, format!("{} ({})", label(slope.variant), if slope.rolls { "rolls" } else { "slips" }))
 }
 
 /// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
 /// nearly agree.
-fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
+fn near_rigid(case: &Case, slope: Plane) -> Vec<Claim> {
     let allowed = compliance(case, slope, NEARLY_RIGID);
     let near_rigid_claims = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
-        let tolerance = if slope.sticks {
+        let tolerance = if slope.rolls {
             computed(
                 NEARLY_RIGID,
                 "compliance, and a lever arm between R and R − overlap/2: both ∝ overlap/R, here 1e-5",
@@ -217,10 +196,10 @@ fn near_rigid(case: &Case, slope: Slope) -> Vec<Claim> {
             computed(pick(allowed), LATE)
         };
         claim(format!("{} at 1 s, nearly rigid contact", quantity[0]), unit)
-            .run(nearly_rigid(slope.variant, slope.sticks))
-            .equals(RIGID, move |done| end(&done[0], OneGrain::rigid_incline, pick))
+            .run(nearly_rigid(slope.variant, slope.rolls))
+            .equals(rigid::SOLUTION, move |done| end(&done[0], OneGrain::rigid_incline, pick))
             .within(tolerance)
-            .refuses(telling(slope))
+            .refuses(slope.control())
             .fair_to_any()
             .at_other_numbers(quantity[1], ELSEWHERE, move |scene| pick(elsewhere(scene)))
     };
@@ -258,7 +237,7 @@ fn elsewhere(scene: &Scene) -> State {
 
 /// Returns the claims on the final rolling motion: v and ΩR agree to rounding with the solution for the lever arm of
 /// each convention.
-fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
+fn final_motion(case: &Case, slope: Plane) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         claim(quantity, "m/s")
             .run(at_overlap(slope.variant, solver, 1e-3, DAMPING, STEP))
@@ -284,7 +263,7 @@ fn final_motion(case: &Case, slope: Slope) -> Vec<Claim> {
     ]
 }
 
-fn motion(runner: &Runner, slopes: &[Slope]) -> Result<Vec<Figure>, RunError> {
+fn motion(runner: &Runner, slopes: &[Plane]) -> Result<Vec<Figure>, RunError> {
     let mut displacement = Vec::new();
     let mut spin = Vec::new();
     for slope in slopes {

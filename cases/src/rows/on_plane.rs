@@ -10,6 +10,26 @@ pub(crate) const NEARLY_RIGID: f64 = 1e-5;
 /// Damping ratio of the damped runs.
 pub(crate) const DAMPING: f64 = 0.5;
 
+/// Variant of a scene with one grain on a plane.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Plane {
+    /// Variant of the scene.
+    pub(crate) variant: &'static str,
+    /// True if a rigid grain finally rolls without slip.
+    pub(crate) rolls: bool,
+    /// Largest relative effects of lift-off on velocity and spin, for the solver `rigid` at its default resolution; `None`
+    /// unless rotation lifts the contact point off the plane at 1 s.
+    pub(crate) lifts: Option<[f64; 2]>,
+}
+
+impl Plane {
+    /// Returns a negative control that changes the result: wrong inertia for a rolling grain, larger friction for a
+    /// slipping grain.
+    pub(crate) fn control(self) -> Control {
+        if self.rolls { other_inertia() } else { stronger_friction() }
+    }
+}
+
 /// Replaces the moment of inertia of a disc by that of a sphere, or that of a sphere by that of a disc.
 pub(crate) fn wrong_inertia(scene: &mut Scene) {
     let factor = if scene.grain_shape.inertia_factor() > 0.45 { 0.4 } else { 0.5 };

@@ -16,7 +16,7 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::on_plane::{end, other_inertia, stronger_friction, touching};
+use crate::rows::on_plane::{Plane, end, stronger_friction, touching};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use std::f64::consts::TAU;
@@ -30,22 +30,10 @@ const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// Numbers of substeps in 1/60 s at which rotating grains no longer lift off.
 const FINE: [u32; 5] = [16, 32, 64, 128, 256];
 
-const RIGID_SOURCE: Source =
+/// Source of the rigid solutions.
+pub(crate) const SOLUTION: Source =
     Source::Derived("rolling or slipping under gravity: MPM 2000 eq. 25; 2001 eqs. 23-26 (derivation)");
 const ORDER_SOURCE: Source = Source::Derived("symplectic Euler is of first order in positions");
-
-/// Variant of a claim on the solver `rigid`, with its expected errors.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Row {
-    /// Variant of the scene.
-    pub(crate) variant: &'static str,
-    /// True if the grain finally rolls without slip. The negative control then has a wrong inertia, otherwise a wrong
-    /// friction.
-    pub(crate) rolls: bool,
-    /// Largest relative effects of lift-off on velocity and spin at the default resolution; `None` unless rotation
-    /// lifts the contact point off the plane at 1 s.
-    pub(crate) lifts: Option<[f64; 2]>,
-}
 
 /// Returns a run of the grain in contact without overlap, because a rigid contact has no static overlap.
 fn run(variant: &'static str, resolution: Resolution) -> Run {
@@ -57,53 +45,54 @@ fn rest_overlap(grain: &OneGrain) -> f64 {
     grain.onto / (TAU * Settings::default().wall_frequency).powi(2)
 }
 
-fn wrong(row: Row) -> Control {
-    if row.rolls { other_inertia() } else { stronger_friction() }
-}
-
-fn against(row: Row, exact: fn(&OneGrain, f64) -> State, x_control: Control, allowed: [Tolerance; 3]) -> Vec<Claim> {
+fn against(
+    plane: Plane,
+    exact: fn(&OneGrain, f64) -> State,
+    x_control: Control,
+    allowed: [Tolerance; 3],
+) -> Vec<Claim> {
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
-            .run(run(row.variant, DEFAULT))
-            .equals(RIGID_SOURCE, move |done| end(&done[0], exact, pick))
+            .run(run(plane.variant, DEFAULT))
+            .equals(SOLUTION, move |done| end(&done[0], exact, pick))
             .within(tolerance)
             .refuses(control)
     };
     let [x, v, omega] = allowed;
     vec![
         rigid_claim("displacement at 1 s", "m", x, x_control, |state| state.x),
-        rigid_claim("velocity at 1 s", "m/s", v, wrong(row), |state| state.v),
-        rigid_claim("spin at 1 s", "rad/s", omega, wrong(row), |state| state.omega),
+        rigid_claim("velocity at 1 s", "m/s", v, plane.control(), |state| state.v),
+        rigid_claim("spin at 1 s", "rad/s", omega, plane.control(), |state| state.omega),
     ]
 }
 
 /// Returns one run for each number of substeps in [`FINE`].
-fn fine(row: Row) -> impl Iterator<Item = Run> {
-    FINE.iter().map(move |&substeps| run(row.variant, Resolution::substeps(substeps)))
+fn fine(plane: Plane) -> impl Iterator<Item = Run> {
+    FINE.iter().map(move |&substeps| run(plane.variant, Resolution::substeps(substeps)))
 }
 
-fn order(row: Row) -> Claim {
+fn order(plane: Plane) -> Claim {
     claim("order in Δt of the displacement's error", "1")
-        .runs(fine(row))
+        .runs(fine(plane))
         .sweep(|done| {
             let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
             Ok((done.record.provenance.time_step, error))
         })
         .converges(1.0, ORDER_SOURCE)
         .within(asymptotic(1.0))
-        .refuses(wrong(row))
+        .refuses(plane.control())
 }
 
 /// Returns the claim on the displacement of a rolling grain, corrected for the error h/t. The corrected displacement
 /// lies between the exact displacements for two lever arms of friction. The lever arm is R until the overlap at rest δ
 /// is reached, and R − δ/2 afterwards. With a finer step, the overlap is reached later: after half a second with 256
 /// substeps. The remaining error has no order in the time step.
-fn between_arms(case: &Case, row: Row) -> Claim {
-    let (overlap, i) = arm(case, row);
+fn between_arms(case: &Case, plane: Plane) -> Claim {
+    let (overlap, i) = arm(case, plane);
     let width = overlap * i / (1.0 + i);
     let coarsest = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS * FINE[0]);
     claim("displacement less h/t, between arms of R − δ/2 and R, farthest of 16 to 256 substeps", "1")
-        .runs(fine(row))
+        .runs(fine(plane))
         .between(
             [0.0, 1.0],
             Source::Derived("v(1 + i(R/a)²) = g_t t, a from R to R − δ/2 (derived with the claim)"),
@@ -125,30 +114,30 @@ fn between_arms(case: &Case, row: Row) -> Claim {
             coarsest * coarsest / width,
             "(h/t)² of the coarsest step, in units of the effect of the lever arms, δ i/(R (1 + i))",
         ))
-        .refuses(wrong(row))
+        .refuses(plane.control())
 }
 
 /// Returns the claims on a grain released on a slope.
-pub(crate) fn inclines(case: &Case, rows: &[Row]) -> Vec<Claim> {
-    rows.iter().flat_map(|&row| incline(case, row)).collect()
+pub(crate) fn inclines(case: &Case, planes: &[Plane]) -> Vec<Claim> {
+    planes.iter().flat_map(|&plane| incline(case, plane)).collect()
 }
 
 /// Returns the overlap at rest divided by the radius, and the inertia factor I/(mR²).
-fn arm(case: &Case, row: Row) -> (f64, f64) {
-    let grain = case.variant(row.variant).map(|scene| OneGrain::from_scene(&scene));
+fn arm(case: &Case, plane: Plane) -> (f64, f64) {
+    let grain = case.variant(plane.variant).map(|scene| OneGrain::from_scene(&scene));
     grain.map_or((f64::NAN, f64::NAN), |grain| (rest_overlap(&grain) / grain.radius, grain.inertia_factor))
 }
 
-fn incline(case: &Case, row: Row) -> Vec<Claim> {
+fn incline(case: &Case, plane: Plane) -> Vec<Claim> {
     const X: &str = "with symplectic Euler, positions are ahead of the velocities by h/t = 5.2e-4, h = Δt/4; if \
                      rotation lifts the contact point off the plane, the friction impulse of the fall is missing";
     const LIFTED: &str = "rotation lifts the contact point off for a part of a step: the friction impulse μ m |v_n| is \
                           missing, which vanishes at smaller steps";
-    let (overlap, i) = arm(case, row);
+    let (overlap, i) = arm(case, plane);
     let of_arm = |factor: f64, because: &str| computed(factor * overlap, because);
-    let [v, omega] = match row.lifts {
+    let [v, omega] = match plane.lifts {
         Some(most) => most.map(|most| estimated(most, LIFTED)),
-        None if row.rolls => [
+        None if plane.rolls => [
             of_arm(
                 2.0 * i / (1.0 + i),
                 "lever arm between R and R − δ in v(1 + i(R/a)²) = g_t t: 2i/(1 + i) times δ/R",
@@ -160,10 +149,10 @@ fn incline(case: &Case, row: Row) -> Vec<Claim> {
             of_arm(1.0, "the torque of friction has a lever arm between R and R − δ: δ/R"),
         ],
     };
-    let mut claims = against(row, OneGrain::rigid_incline, wrong(row), [estimated(2e-3, X), v, omega]);
-    claims.push(if row.rolls { between_arms(case, row) } else { order(row) });
-    if row.rolls {
-        claims.push(final_velocity(case, row));
+    let mut claims = against(plane, OneGrain::rigid_incline, plane.control(), [estimated(2e-3, X), v, omega]);
+    claims.push(if plane.rolls { between_arms(case, plane) } else { order(plane) });
+    if plane.rolls {
+        claims.push(final_velocity(case, plane));
     }
     claims
 }
@@ -177,13 +166,13 @@ fn rolling(grain: &OneGrain, t: f64) -> f64 {
 /// slow growth of the overlap that determines the lever arm. An overdamped contact of frequency f and damping ratio ζ
 /// approaches its overlap at rest as exp(−t/τ), τ = 2ζ/(2πf). A part τ/t of the effect of the lever arm is therefore
 /// missing at t.
-fn final_velocity(case: &Case, row: Row) -> Claim {
+fn final_velocity(case: &Case, plane: Plane) -> Claim {
     /// Time at which the velocity is compared (s).
     const END: f64 = 1.0;
     let Settings { wall_frequency, damping_ratio, .. } = Settings::default();
-    let ((overlap, i), lag) = (arm(case, row), 2.0 * damping_ratio / (TAU * wall_frequency));
+    let ((overlap, i), lag) = (arm(case, plane), 2.0 * damping_ratio / (TAU * wall_frequency));
     claim("velocity at 1 s, arm R − δ/2", "m/s")
-        .run(run(row.variant, Resolution::substeps(32)))
+        .run(run(plane.variant, Resolution::substeps(32)))
         .equals(
             Source::Derived("v(1 + i(R/a)²) = g_t t with arm a = R − δ/2, δ = g_n/(2πf)² (derived with the claim)"),
             |done| {
@@ -197,18 +186,18 @@ fn final_velocity(case: &Case, row: Row) -> Claim {
             "the overlap approaches its value with exp(−t/τ), τ = 2ζ/(2πf) = .053 s: τ/t times the effect of the lever \
              arm, i/(1 + i) times δ/R",
         ))
-        .refuses(wrong(row))
+        .refuses(plane.control())
 }
 
 /// Returns the claims on a grain set down with spin.
-pub(crate) fn backspins(case: &Case, rows: &[Row]) -> Vec<Claim> {
-    rows.iter().flat_map(|&row| backspin(case, row)).collect()
+pub(crate) fn backspins(case: &Case, planes: &[Plane]) -> Vec<Claim> {
+    planes.iter().flat_map(|&plane| backspin(case, plane)).collect()
 }
 
-fn backspin(case: &Case, row: Row) -> Vec<Claim> {
+fn backspin(case: &Case, plane: Plane) -> Vec<Claim> {
     const X: &str = "while RΩ² exceeds g, the contact point lifts off faster than the grain can fall: friction starts \
                      up to a step late and is intermittent";
-    let (overlap, i) = arm(case, row);
+    let (overlap, i) = arm(case, plane);
     let of_arm = |factor: f64, because: &str| computed(factor * overlap, because);
     let allowed = [
         estimated(2e-3, X),
@@ -218,19 +207,23 @@ fn backspin(case: &Case, row: Row) -> Vec<Claim> {
         ),
         of_arm(2.0 / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: 2/(1 + i) times δ/R"),
     ];
-    against(row, OneGrain::rigid_backspin, stronger_friction(), allowed)
+    against(plane, OneGrain::rigid_backspin, stronger_friction(), allowed)
 }
 
 /// Returns a figure of the error of the displacement against the number of substeps.
 ///
 /// # Errors
 /// When a run fails for another reason than a crash of the solver.
-pub(crate) fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) -> State) -> Result<Figure, RunError> {
+pub(crate) fn figure(
+    runner: &Runner,
+    planes: &[Plane],
+    exact: fn(&OneGrain, f64) -> State,
+) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
-    for row in rows {
+    for plane in planes {
         let mut points = Vec::new();
         for substeps in LEVELS {
-            let done = match runner.run(&run(row.variant, Resolution::substeps(substeps))) {
+            let done = match runner.run(&run(plane.variant, Resolution::substeps(substeps))) {
                 // The step is too coarse for a grain that rotates this fast, so there is no point.
                 Err(RunError::Broken(_)) => continue,
                 done => done?,
@@ -239,7 +232,7 @@ pub(crate) fn figure(runner: &Runner, rows: &[Row], exact: fn(&OneGrain, f64) ->
                 points.push((f64::from(substeps), displacement.error().abs()));
             }
         }
-        curves.push(Curve::new(super::label(row.variant), Stroke::MarkedLine, points));
+        curves.push(Curve::new(super::label(plane.variant), Stroke::MarkedLine, points));
     }
     let ends = [LEVELS[0], LEVELS[LEVELS.len() - 1]].map(f64::from);
     let small = Resolution::RIGID_STEP / f64::from(Resolution::RIGID_ITERATIONS);
