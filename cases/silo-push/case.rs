@@ -1,20 +1,13 @@
 //! The deposit of the wide silo with half of its floor pushed up, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{LEVELS, Numbers, Silo, WEAKNESS};
+use crate::silo::claims::{LEVELS, Numbers, Silo, case};
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::PaperSize;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = Case {
-    weakness: WEAKNESS,
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::heads::SILO_PUSH
-};
+pub(crate) static CASE: Case = case(crate::heads::SILO_PUSH, &claims, figures);
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
 

@@ -1,21 +1,14 @@
 //! A tall silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, WEAKNESS, no_springs};
+use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, case, no_springs};
 use crate::silo::ensemble::{Flow, gone};
 use crate::silo::paper::{DrainExpectations, PaperSize};
 use crate::silo::{collapse, flows};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = Case {
-    weakness: WEAKNESS,
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::heads::SILO_TALL
-};
+pub(crate) static CASE: Case = case(crate::heads::SILO_TALL, &claims, figures);
 
 static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };
 

@@ -1,21 +1,14 @@
 //! A wide silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, WEAKNESS};
+use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, case};
 use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::{DrainExpectations, PaperSize};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = Case {
-    weakness: WEAKNESS,
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::heads::SILO_WIDE
-};
+pub(crate) static CASE: Case = case(crate::heads::SILO_WIDE, &claims, figures);
 
 static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };
 

@@ -43,11 +43,20 @@ pub(crate) struct Silo {
     pub(crate) packings: &'static str,
 }
 
+/// Adds to a case what all silos share.
+pub(crate) const fn case(
+    head: Case,
+    claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
+    figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
+) -> Case {
+    Case { weakness: WEAKNESS, levels: LEVELS, default_level: LEVELS[0], claims, figures, ..head }
+}
+
 /// Levels of resolution of silos. The claims use the first.
 pub(crate) const LEVELS: &[Level] = &[time_step("dt=2.5e-4 s", 2.5e-4), time_step("dt=1e-4 s", 1e-4)];
 
 /// Limitations of these cases.
-pub(crate) const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
+const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
                                    the spread between the ten gives the tolerances. At full size there is one deposit \
                                    of each silo. The paper does not print the friction, which is assumed to be 0.5. \
                                    `run` judges stored results. The tests repeat the runs at a tenth of the size, most \
