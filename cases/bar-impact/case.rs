@@ -29,12 +29,14 @@ struct Impact {
 impl Impact {
     fn from_scene(scene: &Scene) -> Self {
         let body = &scene.bodies[0];
-        let length = match body.shape {
-            BlockShape::Box { low, high } => high.x - low.x,
-            BlockShape::Annulus { .. } => f64::NAN,
-        };
+        let (low, high) = body.shape.corners();
         let modulus = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_modulus());
-        Self { speed: body.velocity.x, wave: (modulus / body.density).sqrt(), length, density: body.density }
+        Self {
+            speed: body.velocity.x,
+            wave: (modulus / body.density).sqrt(),
+            length: high.x - low.x,
+            density: body.density,
+        }
     }
 
     /// Returns the velocity of the right bar's centre of mass (m/s) at a time (s).

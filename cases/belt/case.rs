@@ -37,10 +37,7 @@ impl Belt {
         Self {
             grain: OneGrain::from_scene(scene),
             speed: phase.map_or(f64::NAN, |phase| phase.velocity.x),
-            stop: phase.map_or(f64::NAN, |phase| match phase.stop {
-                Moment::Seconds(time) => time,
-                Moment::Cycle(_) | Moment::Never => f64::INFINITY,
-            }),
+            stop: phase.map_or(f64::NAN, |phase| phase.stop.seconds(f64::INFINITY)),
         }
     }
 

@@ -57,10 +57,6 @@ impl Motion {
     }
 }
 
-fn motion(variant: &str) -> Option<Motion> {
-    CASE.variant(variant).ok().map(|scene| Motion::from_scene(&scene))
-}
-
 /// Returns the final position of the carried grain (m).
 fn place(done: &FinishedRun) -> Result<Vector3<f64>, MissingData> {
     let mut place = Vector3::zeros();
@@ -71,9 +67,7 @@ fn place(done: &FinishedRun) -> Result<Vector3<f64>, MissingData> {
 }
 
 fn claims() -> Vec<Claim> {
-    let mut claims: Vec<Claim> = ["across", "along"].into_iter().map(after_a_turn).collect();
-    claims.push(spin());
-    claims
+    vec![after_a_turn("across"), after_a_turn("along"), spin()]
 }
 
 fn without_spin() -> Control {
@@ -83,7 +77,10 @@ fn without_spin() -> Control {
 }
 
 fn after_a_turn(variant: &'static str) -> Claim {
-    let allowed = motion(variant).map_or(f64::NAN, |motion| motion.off(variant == "across") / motion.start.norm());
+    let allowed = CASE.number(variant, |scene| {
+        let motion = Motion::from_scene(scene);
+        motion.off(variant == "across") / motion.start.norm()
+    });
     claim(format!("place after a turn, axis {variant} the normals, off"), "m")
         .run(Run::new(variant, "dem", STEP.resolution))
         .holds("a mass on isotropic springs whose rest position rotates (derivation)", |done| {
@@ -101,7 +98,8 @@ fn after_a_turn(variant: &'static str) -> Claim {
 }
 
 fn spin() -> Claim {
-    let allowed = motion("across").map_or(f64::NAN, |motion| {
+    let allowed = CASE.number("across", |scene| {
+        let motion = Motion::from_scene(scene);
         let (rate, step) = (motion.spin.norm(), motion.step);
         2.0 * motion.overlap / motion.radius + (rate * step * (1.0 + rate * motion.time)).powi(2)
     });

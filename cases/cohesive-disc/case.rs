@@ -16,8 +16,7 @@ pub(crate) static CASE: Case =
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {
     let grain = OneGrain::from_scene(scene);
-    let share = grain.inertia_factor / (1.0 + grain.inertia_factor);
-    grain.mass * (grain.along * share - grain.friction * grain.onto)
+    grain.mass * (grain.along * grain.share() - grain.friction * grain.onto)
 }
 
 fn with_cohesion(factor: f64) -> Run {
@@ -44,8 +43,8 @@ fn slip(done: &FinishedRun) -> Result<Measurement, MissingData> {
 }
 
 fn claims() -> Vec<Claim> {
-    let steps = CASE.variant(PLAIN).ok().and_then(|scene| STEP.resolution.steps(&scene).ok());
-    let rounding = 4.0 * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64);
+    let steps = |scene: &Scene| STEP.resolution.steps(scene).map_or(f64::NAN, |(_, steps)| steps as f64);
+    let rounding = 4.0 * f64::EPSILON * CASE.number(PLAIN, steps);
     let strength_claim = |quantity: &str, factor: f64, wrong, by: f64| {
         claim(quantity, "m/s²")
             .run(with_cohesion(factor))

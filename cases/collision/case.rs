@@ -239,8 +239,8 @@ fn steps(variant: &'static str, solver: &'static str) -> Claim {
 
 /// Returns the tolerance for rounding errors in the oblique impact: `count` times ε in each step.
 fn oblique_rounding(count: f64, because: &str) -> Tolerance {
-    let steps = CASE.variant("oblique").ok().and_then(|scene| LEVELS[1].resolution.steps(&scene).ok());
-    computed(count * f64::EPSILON * steps.map_or(f64::NAN, |(_, steps)| steps as f64), because)
+    let steps = |scene: &Scene| LEVELS[1].resolution.steps(scene).map_or(f64::NAN, |(_, steps)| steps as f64);
+    computed(count * f64::EPSILON * CASE.number("oblique", steps), because)
 }
 
 /// Starts a claim about the oblique impact.

@@ -29,12 +29,9 @@ struct Column {
 impl Column {
     fn from_scene(scene: &Scene) -> Self {
         let body = &scene.bodies[0];
-        let height = match body.shape {
-            BlockShape::Box { low, high } => high.y - low.y,
-            BlockShape::Annulus { .. } => f64::NAN,
-        };
+        let (low, high) = body.shape.corners();
         let modulus = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_modulus());
-        Self { height, density: body.density, modulus, gravity: -scene.gravity.y }
+        Self { height: high.y - low.y, density: body.density, modulus, gravity: -scene.gravity.y }
     }
 
     /// Returns the displacement of the centre of mass at rest, ρgH²/3E (m).

@@ -57,10 +57,7 @@ fn arrival(done: &FinishedRun, first: usize) -> Result<f64, MissingData> {
 }
 
 fn duration(scene: &Scene) -> f64 {
-    match scene.duration {
-        Duration::Seconds(time) => time,
-        Duration::Cycles(_) => f64::NAN,
-    }
+    scene.duration.seconds().unwrap_or(f64::NAN)
 }
 
 /// Returns the run with a thousandth of the striker's speed, so that the geometry hardly changes, as the modal solution

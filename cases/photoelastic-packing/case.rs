@@ -275,8 +275,6 @@ fn vertical_strain(done: &FinishedRun, time: f64) -> f64 {
 
 /// Returns the time of stage A (s), when the walls start again.
 fn time_of_a(done: &FinishedRun) -> f64 {
-    match done.scene.walls.first().and_then(|wall| wall.motion.phases.get(1)).map(|phase| phase.start) {
-        Some(Moment::Seconds(time)) => time,
-        _ => f64::NAN,
-    }
+    let second = done.scene.walls.first().and_then(|wall| wall.motion.phases.get(1));
+    second.map_or(f64::NAN, |phase| phase.start.seconds(f64::NAN))
 }

@@ -21,10 +21,7 @@ pub(crate) static CASE: Case =
 /// Returns the distance by which each wall moves in (m).
 fn squeeze(scene: &Scene) -> f64 {
     let phase = &scene.walls[0].motion.phases[0];
-    match phase.stop {
-        Moment::Seconds(stop) => phase.velocity.norm() * stop,
-        Moment::Cycle(_) | Moment::Never => f64::NAN,
-    }
+    phase.velocity.norm() * phase.stop.seconds(f64::NAN)
 }
 
 /// Returns the contact force (N per metre) in closed form. Two opposite walls shorten a row of three diameters by twice
