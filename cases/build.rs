@@ -220,7 +220,8 @@ fn sources(references: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Adds the module of one work with its citation and its values.
+/// Adds the module of one work with its citation and its values. Values whose keys end in `_0`, `_1` and so on are also a
+/// list without this number in its name.
 fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
     let number = |table: &toml::Table, key: &str| {
         table.get(key).and_then(|value| value.as_float().or(value.as_integer().map(|whole| whole as f64)))
@@ -235,13 +236,19 @@ fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Resul
     let source = "grainbench_harness::source";
     writeln!(code, "/// The work.\npub static WORK: {source}::Work =")?;
     writeln!(code, "{source}::Work {{ kind: {source}::Kind::{variant}, id: \"{kind}/{name}\", cited: {cited:?} }};")?;
+    let mut keys = Vec::new();
     for value in table.get("value").and_then(toml::Value::as_array).into_iter().flatten() {
         let value = value.as_table().ok_or("expected tables `[[value]]`")?;
         let (key, what) = (text(value, "key")?, text(value, "what")?);
         let uncertainty = number(value, "uncertainty").unwrap_or(0.0);
         let value = number(value, "value").ok_or(format!("expected a number `value` of {key}"))?;
+        keys.push(key.to_uppercase());
         writeln!(code, "/// {what}\npub const {}: {source}::CitedNumber = {source}::CitedNumber", key.to_uppercase())?;
         writeln!(code, "{{ work: &WORK, what: {what:?}, value: {value:?}, uncertainty: {uncertainty:?} }};")?;
+    }
+    for name in keys.iter().filter_map(|key| key.strip_suffix("_0")) {
+        let list: Vec<String> = (0..).map(|at| format!("{name}_{at}")).take_while(|key| keys.contains(key)).collect();
+        writeln!(code, "/// List of values.\npub const {name}: &[{source}::CitedNumber] = &[{}];", list.join(", "))?;
     }
     writeln!(code, "}}")?;
     Ok(())

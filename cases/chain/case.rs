@@ -63,9 +63,7 @@ fn claims() -> Vec<Claim> {
         .equals(Source::Derived("impedance of the chain, V√(km)"), |done| {
             let (speed, _, impedance) = chain(&done[0].scene);
             let force = done[0].column("driver.force_x")?;
-            let half = &force[force.len() / 2..];
-            let mean = half.iter().sum::<f64>() / half.len() as f64;
-            Ok(Measurement::relative(-mean, speed * impedance))
+            Ok(Measurement::relative(-mean(&force[force.len() / 2..]), speed * impedance))
         })
         .within(computed(
             2.0 * (2.0 / PI).sqrt() * 20_f64.powf(-2.5),

@@ -294,10 +294,7 @@ fn largest(values: impl IntoIterator<Item = f64>) -> f64 {
 
 /// Returns mean and amplitude of a column after the walls have stopped.
 fn residual(done: &FinishedRun, column: &str) -> Result<(f64, f64), MissingData> {
-    let stop = match done.scene.walls[0].motion.phases[0].stop {
-        Moment::Cycle(cycle) => cycle as usize,
-        Moment::Seconds(_) | Moment::Never => 0,
-    };
+    let stop = done.scene.walls[0].motion.phases[0].stop.seconds(1.0) as usize;
     let values = &done.column(column)?[stop..];
     let mean = mean(values);
     Ok((mean, largest(values.iter().map(|value| value - mean))))

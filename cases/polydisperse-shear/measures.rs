@@ -2,7 +2,7 @@
 //! strain also use material points.
 
 use grainbench_fields::overlap::disc_in_box;
-use grainbench_harness::prelude::{FinishedRun, MissingData};
+use grainbench_harness::prelude::{FinishedRun, MissingData, mean};
 use grainbench_solver::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
@@ -173,12 +173,8 @@ pub(crate) fn fluctuation(done: &FinishedRun, force: &str) -> Result<f64, Missin
         }
         blocks.last_mut().into_iter().for_each(|block| block.push(*force));
     }
-    let means: Vec<f64> = blocks
-        .iter()
-        .filter(|block| !block.is_empty())
-        .map(|block| block.iter().sum::<f64>() / block.len() as f64)
-        .collect();
-    let mean = means.iter().sum::<f64>() / means.len() as f64;
+    let means: Vec<f64> = blocks.iter().filter(|block| !block.is_empty()).map(|block| mean(block)).collect();
+    let mean = mean(&means);
     let variance = means.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / (means.len() as f64 - 1.0);
     Ok(variance.sqrt() / mean.abs())
 }

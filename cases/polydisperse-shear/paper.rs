@@ -88,7 +88,7 @@ fn gone_in_the_mean(done: &FinishedRun) -> Result<f64, MissingData> {
     let started = snapshots.iter().filter(|snapshot| shear(done, snapshot.time) >= 0.2);
     let pairs = started.filter_map(|first| Some((first, at(done, shear(done, first.time) + LIFE).ok()?)));
     let gone = pairs.map(|(first, second)| gone(first, second)).collect::<Result<Vec<f64>, MissingData>>()?;
-    Ok(gone.iter().sum::<f64>() / gone.len() as f64)
+    Ok(mean(&gone))
 }
 
 /// Function that reduces the values of all packings to the value that is compared with the bound, and the reason of the

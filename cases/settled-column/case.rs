@@ -20,8 +20,7 @@ fn run(solver: &'static str) -> Run {
 /// Returns the mean of a column over the last fifth of the run.
 fn settled(done: &FinishedRun, column: &str) -> Result<f64, MissingData> {
     let values = done.column(column)?;
-    let last = &values[values.len() - values.len().div_ceil(5)..];
-    Ok(last.iter().sum::<f64>() / last.len() as f64)
+    Ok(mean(&values[values.len() - values.len().div_ceil(5)..]))
 }
 
 fn weight(done: &FinishedRun) -> f64 {

@@ -11,17 +11,13 @@ pub(crate) static CASE: Case = case(crate::heads::SILO_PUSH, &claims, figures);
 
 static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
 
-/// Packing fractions of the prototype in the first bins of |I₀|, for the figure.
-static BINS: &[CitedNumber] =
-    &[prototype::PUSH_INERTIA_0, prototype::PUSH_INERTIA_1, prototype::PUSH_INERTIA_2, prototype::PUSH_INERTIA_3];
-
 fn silo() -> Silo {
     let run = Run::new("pushed", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
     Silo { flow: Flow::Pushed, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
 }
 
 fn full_size() -> PaperSize {
-    PaperSize { variant: "deep", label: "tall silo, pushed", bins: BINS, drained: None }
+    PaperSize { variant: "deep", label: "tall silo, pushed", bins: prototype::PUSH_INERTIA, drained: None }
 }
 
 fn claims() -> Vec<Claim> {
@@ -29,7 +25,7 @@ fn claims() -> Vec<Claim> {
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, BINS);
+    let mut all = crate::silo::figures::all(&runner.run(&silo().run)?, prototype::PUSH_INERTIA);
     all.extend(full_size().figures(runner));
     Ok(all)
 }

@@ -17,18 +17,7 @@ static DRAINED: DrainNumbers = DrainNumbers {
     onset: prototype::TALL_ONSET,
     angles: [prototype::TALL_LARGEST, prototype::TALL_WINDOW],
     correlations: [prototype::CRITERIA, prototype::TALL_RATES],
-    bins: &[
-        prototype::TALL_INERTIA_0,
-        prototype::TALL_INERTIA_1,
-        prototype::TALL_INERTIA_2,
-        prototype::TALL_INERTIA_3,
-        prototype::TALL_INERTIA_4,
-        prototype::TALL_INERTIA_5,
-        prototype::TALL_INERTIA_6,
-        prototype::TALL_INERTIA_7,
-        prototype::TALL_INERTIA_8,
-        prototype::TALL_INERTIA_9,
-    ],
+    bins: prototype::TALL_INERTIA,
 };
 
 fn silo() -> Silo {

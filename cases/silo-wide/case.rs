@@ -17,18 +17,7 @@ static DRAINED: DrainNumbers = DrainNumbers {
     onset: prototype::WIDE_ONSET,
     angles: [prototype::WIDE_LARGEST, prototype::WIDE_WINDOW],
     correlations: [prototype::CRITERIA, prototype::WIDE_RATES],
-    bins: &[
-        prototype::WIDE_INERTIA_0,
-        prototype::WIDE_INERTIA_1,
-        prototype::WIDE_INERTIA_2,
-        prototype::WIDE_INERTIA_3,
-        prototype::WIDE_INERTIA_4,
-        prototype::WIDE_INERTIA_5,
-        prototype::WIDE_INERTIA_6,
-        prototype::WIDE_INERTIA_7,
-        prototype::WIDE_INERTIA_8,
-        prototype::WIDE_INERTIA_9,
-    ],
+    bins: prototype::WIDE_INERTIA,
 };
 
 fn silo() -> Silo {

@@ -1,6 +1,6 @@
 //! Spread of a quantity over random packings, from a table with one row per packing and one column per quantity.
 
-use grainbench_harness::statistics::spread;
+use grainbench_harness::statistics::{mean, spread};
 
 /// Returns the half-width of the 99 % interval of the difference between the values of two further packings. Returns
 /// zero if the table lacks the quantity, so that the claim fails.
@@ -10,8 +10,7 @@ pub(crate) fn apart(table: &str, quantity: &str) -> f64 {
 
 /// Returns the absolute value of the mean of a quantity over packings. Returns NaN if the table lacks the quantity.
 pub(crate) fn mean_of(table: &str, quantity: &str) -> f64 {
-    let draws = draws_of(table, quantity);
-    (draws.iter().sum::<f64>() / draws.len() as f64).abs()
+    mean(&draws_of(table, quantity)).abs()
 }
 
 /// Returns the value of a quantity for each packing.

@@ -62,6 +62,7 @@ const FINE: Resolution = Resolution::CriticalFraction(0.0025);
 const STEPS_BEFORE_SLIP: [f64; 4] = [16.5, 32.5, 64.5, 128.5];
 /// Static overlaps of the sweep, divided by R.
 const OVERLAPS: [f64; 5] = [1e-3, 3e-4, 1e-4, 3e-5, NEARLY_RIGID];
+
 fn springs(case: &Case, slopes: &[Plane]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &slope in slopes {
