@@ -125,15 +125,25 @@ fn over_packings(
         .refuses(control)
 }
 
-fn chains_go_on(runs: Vec<Run>, words: &str, control: Control) -> Claim {
-    let quantity =
-        format!("part of the links of force chains that are gone after 7.5 % of shear, mean from 20 to 80 %{words}");
-    over_packings((&quantity, FIGURE_7), runs, VALUES, 0.4, control, |done| gone_in_the_mean(&done[0]))
-}
-
-fn chains_of_the_paper(runs: Vec<Run>, words: &str, control: Control) -> Claim {
-    let quantity = format!("part of the links of force chains that are gone from 63 to 71 % shear{words}, least");
-    over_packings((&quantity, FIGURE_7), runs, EACH, 0.2, control, |done| gone_in_the_paper(&done[0]))
+/// Returns the claims on motion near the moving side and on force chains, for runs with one kind of grains.
+fn motion_and_chains(words: &str, runs: &[Run], other_side: Control, staying: Control) -> [Claim; 3] {
+    const LINKS: &str = "part of the links of force chains that are gone";
+    let quantities = [
+        &format!("part of the displacement in the half at the moving side, 50 % shear{words}"),
+        &format!("{LINKS} after 7.5 % of shear, mean from 20 to 80 %{words}"),
+        &format!("{LINKS} from 63 to 71 % shear{words}, least"),
+    ];
+    let claim_on =
+        |at: usize, source, reduction, bound, control, read: fn(&FinishedRun) -> Result<f64, MissingData>| {
+            over_packings((quantities[at], source), runs.to_vec(), reduction, bound, control, move |done| {
+                read(&done[0])
+            })
+        };
+    [
+        claim_on(0, FIGURE_8, VALUES, 0.6, other_side, |done| Ok(at_the_moving_side(done, at(done, 0.5)?))),
+        claim_on(1, FIGURE_7, VALUES, 0.4, staying.clone(), gone_in_the_mean),
+        claim_on(2, FIGURE_7, EACH, 0.2, staying, gone_in_the_paper),
+    ]
 }
 
 /// Returns the band width at the end of the first run, divided by the band width at the end of the second run.
@@ -142,41 +152,27 @@ pub(super) fn bands(done: &[FinishedRun]) -> Result<f64, MissingData> {
 }
 
 fn on_springs() -> Vec<Claim> {
-    let runs = || PACKINGS.map(|packing| springs::to(packing, 0.8, FRAMES).slow()).to_vec();
+    let runs = PACKINGS.map(|packing| springs::to(packing, 0.8, FRAMES).slow());
     let staying =
-        || Control::scene("grains swollen by a hundredth, so that they press, between sides that stand still", swollen);
+        Control::scene("grains swollen by a hundredth, so that they press, between sides that stand still", swollen);
+    let other = Control::scene("the other side moves", other_side);
     let slower = prototype::BAND_AT_25.value / prototype::BAND_AT_100.value;
-    vec![
-        over_packings(
-            ("part of the displacement in the half at the moving side, 50 % shear, grains on springs", FIGURE_8),
-            runs(),
-            VALUES,
-            0.6,
-            Control::scene("the other side moves", other_side),
-            |done| Ok(at_the_moving_side(&done[0], at(&done[0], 0.5)?)),
-        ),
-        chains_go_on(runs(), ", grains on springs", staying()),
-        chains_of_the_paper(runs(), ", grains on springs", staying()),
-        claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
-            .runs([springs::to("slow", 0.25, 0).slow(), springs::to("seed-1", 0.25, 0).slow()])
-            .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::relative(bands(done)?, slower)))
-            .within(judged(
-                0.4,
-                "spread between packings, and another kind of contact: the grains of the prototype deform",
-            ))
-            .refuses(
-                Control::scene("grains of three hundredths of the mass", |scene| {
-                    for grain in &mut scene.grains {
-                        (grain.mass, grain.inertia) = (0.03 * grain.mass, 0.03 * grain.inertia);
-                    }
-                })
-                .coarser(Resolution::CriticalFraction(0.1)),
-            ),
-    ]
+    let width = claim("width of the band at 25 m/s over that at 100 m/s, 25 % shear, grains on springs", "1")
+        .runs([springs::to("slow", 0.25, 0).slow(), springs::to("seed-1", 0.25, 0).slow()])
+        .equals(prototype::BAND_AT_25.source(), move |done| Ok(Measurement::relative(bands(done)?, slower)))
+        .within(judged(0.4, "spread between packings, and another kind of contact: the grains of the prototype deform"))
+        .refuses(
+            Control::scene("grains of three hundredths of the mass", |scene| {
+                for grain in &mut scene.grains {
+                    (grain.mass, grain.inertia) = (0.03 * grain.mass, 0.03 * grain.inertia);
+                }
+            })
+            .coarser(Resolution::CriticalFraction(0.1)),
+        );
+    motion_and_chains(", grains on springs", &runs, other, staying).into_iter().chain([width]).collect()
 }
 
 fn yielding() -> Vec<Claim> {
-    let runs = || PACKINGS.map(|packing| whole(packing, "mpm")).to_vec();
     let beside = |pair: fn(&'static str) -> [Run; 2]| PACKINGS.into_iter().flat_map(pair).collect::<Vec<Run>>();
     let glued_first = |packing| [whole(packing, "mpm:no-slip"), whole(packing, "mpm")];
     let friction_first = |packing| [whole(packing, "mpm"), whole(packing, "mpm:no-slip")];
@@ -186,12 +182,14 @@ fn yielding() -> Vec<Claim> {
         [run.known(MAKES_ENERGY).up_to(1.0), whole(packing, "mpm:no-slip").aside()]
     };
     let glued = || Control::solver("contacts glued", "mpm:no-slip");
-    let staying = || {
-        Control::scene(
-            "grains swollen by a hundredth, so that they press, at rest between sides that stand still",
-            at_rest,
-        )
-    };
+    let staying = Control::scene(
+        "grains swollen by a hundredth, so that they press, at rest between sides that stand still",
+        at_rest,
+    );
+    let other = Control::scene("the other side moves", |scene| {
+        sheared(scene, 0.5, FRAMES);
+        other_side(scene);
+    });
     let mut claims: Vec<Claim> = [0.5, 0.8]
         .into_iter()
         .map(|shear| {
@@ -200,28 +198,16 @@ fn yielding() -> Vec<Claim> {
             over_packings((&quantity, FIGURE_6), beside(glued_first), RATIOS, 5.0, glued(), ratio)
         })
         .collect();
+    claims.push(over_packings(
+        ("plastic strain without slip over that with friction as contact on approach has it, 20 % shear", FIGURE_6),
+        beside(on_approach),
+        RATIOS,
+        3.0,
+        Control::without_the_error("springs between surfaces", "mpm", grid(75.0)),
+        |done| Ok(1.0 / over(done, 0.2, plastic_strain)?),
+    ));
+    claims.extend(motion_and_chains("", &PACKINGS.map(|packing| whole(packing, "mpm")), other, staying));
     claims.extend([
-        over_packings(
-            ("plastic strain without slip over that with friction as contact on approach has it, 20 % shear", FIGURE_6),
-            beside(on_approach),
-            RATIOS,
-            3.0,
-            Control::without_the_error("springs between surfaces", "mpm", grid(75.0)),
-            |done| Ok(1.0 / over(done, 0.2, plastic_strain)?),
-        ),
-        over_packings(
-            ("part of the displacement in the half at the moving side, 50 % shear", FIGURE_8),
-            runs(),
-            VALUES,
-            0.6,
-            Control::scene("the other side moves", |scene| {
-                sheared(scene, 0.5, FRAMES);
-                other_side(scene);
-            }),
-            |done| Ok(at_the_moving_side(&done[0], at(&done[0], 0.5)?)),
-        ),
-        chains_go_on(runs(), "", staying()),
-        chains_of_the_paper(runs(), "", staying()),
         over_packings(
             ("rotation of grains with friction over that without slip, 80 % shear", prototype::ROTATION_RATIO.source()),
             beside(friction_first),
