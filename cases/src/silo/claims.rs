@@ -56,11 +56,11 @@ pub(crate) const fn case(
 pub(crate) const LEVELS: &[Level] = &[time_step("dt=2.5e-4 s", 2.5e-4), time_step("dt=1e-4 s", 1e-4)];
 
 /// Limitations of these cases.
-const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and \
-                                   the spread between the ten gives the tolerances. At full size there is one deposit \
-                                   of each silo. The paper does not print the friction, which is assumed to be 0.5. \
-                                   `run` judges stored results. The tests repeat the runs at a tenth of the size, most \
-                                   of them in the long tier, and the full-size runs on request.";
+const WEAKNESS: &str = "The silo has a tenth of the published size. The claims use one of ten deposits, and the spread \
+                        between the ten gives the tolerances. At full size there is one deposit of each silo. The \
+                        paper does not print the friction, which is assumed to be 0.5. `run` judges stored results. \
+                        The tests repeat the runs at a tenth of the size, most of them in the long tier, and the \
+                        full-size runs on request.";
 
 /// Name and unit of the number of grains that have left the silo. The next constants name further quantities.
 pub(crate) const GONE: [&str; 2] = ["grains out after 14 τ", "1"];

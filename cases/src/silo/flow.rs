@@ -65,6 +65,7 @@ pub(crate) const INERTIA: [[f64; 2]; 10] = [
 pub(super) const ELEMENT: f64 = 2.5;
 /// Time from which the flow counts as steady (τ). The first window of frames begins at this time.
 pub(super) const STEADY: f64 = 6.0;
+
 /// Returns columns of a table as rows, without rows that contain NaN or infinite numbers.
 pub(super) fn rows<const N: usize>(
     done: &FinishedRun,

@@ -57,6 +57,7 @@ const PROTOTYPE: f64 = 14.0;
 const STRAINED: &str = "the prototype ends at 14 τ. Afterwards the packing fraction of slow elements is lower by 0.009 \
                         to 0.018, because these elements are strained further and φ is a function of |I₀| only in \
                         steady shear";
+
 /// Returns the claim that φ agrees with the prototype in each bin of |I₀|, for frames up to `until` (τ).
 fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity
