@@ -19,6 +19,14 @@ pub struct SceneError {
     pub help: Option<String>,
 }
 
+impl SceneError {
+    /// Creates an error about a file as a whole, or about a place in it that has no key.
+    #[must_use]
+    pub fn of_file(place: String, expected: &str, found: String) -> Self {
+        Self { place, key: String::new(), expected: expected.to_owned(), found, help: None }
+    }
+}
+
 /// Returns the error message, in which control characters from the scene file are not yet escaped.
 fn message(error: &SceneError) -> String {
     let SceneError { place, key, expected, found, help } = error;

@@ -1,10 +1,10 @@
-//! Reading of a scene file: text from the disk, and its keys as typed values.
+//! Keys of a scene file as typed values.
 
 use crate::dimension::Dimension;
 use crate::error::SceneError;
 use crate::file::SceneFile;
 use crate::shape;
-use crate::source::{SceneSource, describe, line_of, value_at, variant_names};
+use crate::source::{SceneSource, describe, value_at, variant_names};
 use crate::toml_error::expected_and_found;
 use std::path::Path;
 
@@ -14,32 +14,7 @@ impl SceneSource {
     /// # Errors
     /// When the file cannot be read or is not UTF-8, or a variant has an unknown key or a value of the wrong type.
     pub fn read(path: &Path) -> Result<Self, SceneError> {
-        let name = path.display().to_string();
-        let bytes = std::fs::read(path).map_err(|cause| SceneError {
-            place: name.clone(),
-            key: String::new(),
-            expected: "a readable scene file".to_owned(),
-            found: cause.to_string(),
-            help: None,
-        })?;
-        let text = String::from_utf8(bytes).map_err(|cause| SceneError {
-            place: name.clone(),
-            key: String::new(),
-            expected: "UTF-8 text".to_owned(),
-            found: format!("other bytes after byte {}", cause.utf8_error().valid_up_to()),
-            help: None,
-        })?;
-        if let Some(at) = text.find('\0') {
-            return Err(SceneError {
-                place: format!("{name}:{}", line_of(&text, at)),
-                key: String::new(),
-                expected: "a text file".to_owned(),
-                found: format!("a zero byte after byte {at}"),
-                help: None,
-            });
-        }
-        let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
-        let source = Self::from_text(&name, &directory, &text);
+        let source = Self::from_file(path)?;
         // All variants are checked, so that an error in an unused variant is found too.
         let table = source.parse()?;
         let mut varied = source.clone();

@@ -1,4 +1,4 @@
-//! Text of a scene file: parsing, variants, overrides, and line numbers of keys.
+//! Text of a scene file: reading, parsing, variants, overrides, and line numbers of keys.
 
 use crate::error::{SceneError, did_you_mean};
 use crate::toml_error::TomlError;
@@ -31,6 +31,23 @@ impl SceneSource {
             variant: None,
             overrides: Vec::new(),
         }
+    }
+
+    /// Reads the text of a scene file.
+    pub(crate) fn from_file(path: &Path) -> Result<Self, SceneError> {
+        let name = path.display().to_string();
+        let error = |expected: &str, found: String| SceneError::of_file(name.clone(), expected, found);
+        let bytes = std::fs::read(path).map_err(|cause| error("a readable scene file", cause.to_string()))?;
+        let text = String::from_utf8(bytes).map_err(|cause| {
+            let first = cause.utf8_error().valid_up_to();
+            error("UTF-8 text", format!("other bytes after byte {first}"))
+        })?;
+        if let Some(at) = text.find('\0') {
+            let place = format!("{name}:{}", line_of(&text, at));
+            return Err(SceneError::of_file(place, "a text file", format!("a zero byte after byte {at}")));
+        }
+        let directory = path.parent().map(Path::to_path_buf).unwrap_or_default();
+        Ok(Self::from_text(&name, &directory, &text))
     }
 
     /// Returns the text.
@@ -128,8 +145,7 @@ impl SceneSource {
         }
         let table = self.text.parse::<toml::Table>().map_err(|error| {
             let TomlError { line, column, expected, found } = TomlError::new(&self.text, &error);
-            let place = format!("{}:{line}:{column}", self.name);
-            SceneError { place, key: String::new(), expected, found, help: None }
+            SceneError::of_file(format!("{}:{line}:{column}", self.name), &expected, found)
         })?;
         Ok(self.read.get_or_init(|| table))
     }
@@ -286,6 +302,6 @@ fn merge(base: &mut toml::Table, overlay: toml::Table) {
     }
 }
 
-pub(crate) fn line_of(text: &str, offset: usize) -> usize {
+fn line_of(text: &str, offset: usize) -> usize {
     text.as_bytes().iter().take(offset).filter(|byte| **byte == b'\n').count() + 1
 }
