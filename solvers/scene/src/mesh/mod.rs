@@ -8,14 +8,12 @@ mod build;
 mod flaw;
 mod geometry;
 mod groups;
-mod place;
 pub mod stl;
 mod touch;
 mod tree;
 
 pub use build::{Reading, Surface};
-pub use flaw::Flaw;
-pub use place::Place;
+pub use flaw::{Flaw, Place};
 pub use touch::SphereContact;
 
 use crate::motion::{Displacement, Motion};

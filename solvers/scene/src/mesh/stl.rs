@@ -1,7 +1,6 @@
 //! Reader of STL files in text or binary form. It stores the position of each triangle in the file for error messages.
 
-use super::flaw::Flaw;
-use super::place::{EACH, HEAD, Place};
+use super::flaw::{EACH, Flaw, HEAD, Place};
 use nalgebra::Vector3;
 
 /// Triangle as stored in a file.

@@ -94,8 +94,8 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::mesh::Place;
     use crate::mesh::Reading;
-    use crate::mesh::place::Place;
     use crate::mesh::stl::Facet;
 
     fn surface(triangles: &[[[f64; 3]; 3]], open: bool) -> Surface {
