@@ -5,6 +5,7 @@ use crate::error::{SceneError, did_you_mean};
 use crate::shape;
 use crate::source::SceneSource;
 use nalgebra::{Matrix3, Vector3};
+use std::fmt::Display;
 
 /// Checker for the values of one scene.
 pub(crate) struct Checker<'a> {
@@ -13,43 +14,41 @@ pub(crate) struct Checker<'a> {
 }
 
 impl Checker<'_> {
-    pub(crate) fn error(&self, key: &str, expected: &str, found: &str) -> SceneError {
-        self.source.error(key, expected, found, None)
+    pub(crate) fn error(&self, key: &str, expected: impl Display, found: impl Display) -> SceneError {
+        self.source.error(key, &expected.to_string(), &found.to_string(), None)
+    }
+
+    /// Returns an error about a key unless a condition is true.
+    pub(crate) fn require(
+        &self,
+        is_met: bool,
+        key: &str,
+        expected: impl Display,
+        found: impl Display,
+    ) -> Result<(), SceneError> {
+        if is_met { Ok(()) } else { Err(self.error(key, expected, found)) }
     }
 
     pub(crate) fn positive(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
-        if value.is_finite() && value > 0.0 {
-            Ok(value)
-        } else {
-            Err(self.error(key, &format!("a positive{} {what}", and_finite(value)), &value.to_string()))
-        }
+        let expected = format_args!("a positive{} {what}", and_finite(value));
+        self.require(value.is_finite() && value > 0.0, key, expected, value).map(|()| value)
     }
 
     pub(crate) fn not_negative(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
-        if value.is_finite() && value >= 0.0 {
-            Ok(value)
-        } else {
-            Err(self.error(key, &format!("a {what} of zero or more{}", and_finite(value)), &value.to_string()))
-        }
+        let expected = format_args!("a {what} of zero or more{}", and_finite(value));
+        self.require(value.is_finite() && value >= 0.0, key, expected, value).map(|()| value)
     }
 
     pub(crate) fn finite(&self, key: &str, value: f64, what: &str) -> Result<f64, SceneError> {
-        if value.is_finite() {
-            Ok(value)
-        } else {
-            Err(self.error(key, &format!("a finite {what}"), &value.to_string()))
-        }
+        self.require(value.is_finite(), key, format_args!("a finite {what}"), value).map(|()| value)
     }
 
     /// Reads a vector with one finite component for each dimension of the scene.
     pub(crate) fn vector(&self, key: &str, values: &[f64]) -> Result<Vector3<f64>, SceneError> {
         let count = self.dimension.count();
-        if values.len() != count {
-            return Err(self.error(key, shape::vector(self.dimension), &format!("{values:?}")));
-        }
-        if values.iter().any(|value| !value.is_finite()) {
-            return Err(self.error(key, "finite components", &format!("{values:?}")));
-        }
+        self.require(values.len() == count, key, shape::vector(self.dimension), format_args!("{values:?}"))?;
+        let is_finite = values.iter().all(|value| value.is_finite());
+        self.require(is_finite, key, "finite components", format_args!("{values:?}"))?;
         Ok(Vector3::new(values[0], values[1], values.get(2).copied().unwrap_or(0.0)))
     }
 
@@ -60,20 +59,15 @@ impl Checker<'_> {
     /// Reads a symmetric tensor, row by row, with one row for each dimension of the scene.
     pub(crate) fn symmetric(&self, key: &str, rows: &[Vec<f64>]) -> Result<Matrix3<f64>, SceneError> {
         let count = self.dimension.count();
-        let found = || format!("{rows:?}");
-        if rows.len() != count || rows.iter().any(|row| row.len() != count) {
-            return Err(self.error(key, shape::symmetric(self.dimension), &found()));
-        }
+        let require = |is_met: bool, expected: &str| self.require(is_met, key, expected, format_args!("{rows:?}"));
+        let is_square = rows.len() == count && rows.iter().all(|row| row.len() == count);
+        require(is_square, shape::symmetric(self.dimension))?;
         let part = |row: usize, column: usize| rows[row][column];
         let inside = |at: usize| at < count;
         let tensor =
             Matrix3::from_fn(|row, column| if inside(row) && inside(column) { part(row, column) } else { 0.0 });
-        if !tensor.iter().all(|value| value.is_finite()) {
-            return Err(self.error(key, "finite components", &found()));
-        }
-        if tensor != tensor.transpose() {
-            return Err(self.error(key, "a symmetric tensor, the same above and below its diagonal", &found()));
-        }
+        require(tensor.iter().all(|value| value.is_finite()), "finite components")?;
+        require(tensor == tensor.transpose(), "a symmetric tensor, the same above and below its diagonal")?;
         Ok(tensor)
     }
 
@@ -101,11 +95,8 @@ impl Checker<'_> {
             given.iter().filter(|(_, is)| !wanted || *is).map(|(name, _)| *name).collect()
         };
         let there = names(true);
-        if there.len() == 1 {
-            return Ok(());
-        }
         let found = if there.is_empty() { "none of them".to_owned() } else { there.join(" and ") };
-        Err(self.error(key, &format!("exactly one of {}", names(false).join(", ")), &found))
+        self.require(there.len() == 1, key, format_args!("exactly one of {}", names(false).join(", ")), found)
     }
 }
 

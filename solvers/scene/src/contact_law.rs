@@ -196,15 +196,6 @@ impl Springs {
         }
     }
 
-    /// Returns the largest gap at which the springs act (m). It is zero for all present laws: bodies without overlap
-    /// exert no force.
-    #[must_use]
-    pub const fn range(&self) -> f64 {
-        match self {
-            Self::Absent | Self::Linear { .. } | Self::Hertz { .. } => 0.0,
-        }
-    }
-
     /// Returns the normal and tangential stiffness dF/dδ (N/m) at an overlap δ (m), for an effective radius R* =
     /// R₁R₂/(R₁+R₂) (m). The stiffnesses are k_n and k_s for linear laws, and S = 2E*√(R*δ) and 8G*√(R*δ) for Hertz and
     /// Mindlin.
@@ -316,17 +307,15 @@ impl ContactLaw {
     }
 }
 
-/// Parts of a scene file that a contact law needs.
-pub(crate) struct Surroundings<'a> {
-    pub(crate) check: &'a Checker<'a>,
-    pub(crate) materials: &'a IndexMap<String, MaterialSpec>,
-    pub(crate) grain_shape: GrainShape,
-}
-
 impl ContactSpec {
     /// Builds the law from the scene; `name` is its key in the table of contacts.
-    pub(crate) fn law(&self, name: &str, around: &Surroundings<'_>) -> Result<ContactLaw, SceneError> {
-        let check = around.check;
+    pub(crate) fn law(
+        &self,
+        name: &str,
+        check: &Checker<'_>,
+        materials: &IndexMap<String, MaterialSpec>,
+        grain_shape: GrainShape,
+    ) -> Result<ContactLaw, SceneError> {
         let key = |part: &str| format!("contacts.{name}.{part}");
         let number = |part: &str, value: f64, unit: &str| check.not_negative(&key(part), value, unit);
         let friction = match (self.friction, self.friction_angle_deg) {
@@ -334,18 +323,16 @@ impl ContactSpec {
                 return Err(check.error(&key("friction"), "one of `friction` and `friction_angle_deg`", "both"));
             }
             (Some(friction), None) => number("friction", friction, "coefficient of friction")?,
-            (None, Some(angle)) if (0.0..90.0).contains(&angle) => libm::tan(angle.to_radians()),
             (None, Some(angle)) => {
-                let key = key("friction_angle_deg");
-                return Err(check.error(&key, "an angle from 0 to below 90°", &angle.to_string()));
+                let (key, is_valid) = (key("friction_angle_deg"), (0.0..90.0).contains(&angle));
+                check.require(is_valid, &key, "an angle from 0 to below 90°", angle)?;
+                libm::tan(angle.to_radians())
             }
             (None, None) => 0.0,
         };
         let restitution = self.restitution.unwrap_or(1.0);
-        if !(restitution > 0.0 && restitution <= 1.0) {
-            let found = restitution.to_string();
-            return Err(check.error(&key("restitution"), "a coefficient above 0 and at most 1", &found));
-        }
+        let is_valid = restitution > 0.0 && restitution <= 1.0;
+        check.require(is_valid, &key("restitution"), "a coefficient above 0 and at most 1", restitution)?;
         let mut law = ContactLaw {
             springs: Springs::Absent,
             friction,
@@ -360,14 +347,18 @@ impl ContactSpec {
         law.set_restitution(restitution);
         let springs = match self.law {
             LawKind::Linear => self.linear(name, check, law.has_friction())?,
-            LawKind::Hertz => self.hertz(name, around)?,
-            LawKind::Coulomb if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 => {
-                let key = key("normal_stiffness");
-                return Err(check.error(&key, "no stiffness, because a `coulomb` contact has no spring", "one"));
+            LawKind::Hertz => self.hertz(name, check, materials, grain_shape)?,
+            LawKind::Coulomb => {
+                let expected = "no stiffness, because a `coulomb` contact has no spring";
+                check.require(self.has_no_stiffness(), &key("normal_stiffness"), expected, "one")?;
+                Springs::Absent
             }
-            LawKind::Coulomb => Springs::Absent,
         };
         Ok(ContactLaw { springs, ..law })
+    }
+
+    fn has_no_stiffness(&self) -> bool {
+        self.normal_stiffness.is_none() && self.tangential_stiffness == 0.0
     }
 
     fn linear(&self, name: &str, check: &Checker<'_>, has_friction: bool) -> Result<Springs, SceneError> {
@@ -378,38 +369,35 @@ impl ContactSpec {
             return Err(check.source.error(&key, "the key `normal_stiffness`", "none", Some(help.to_owned())));
         };
         let normal = check.positive(&key("normal_stiffness"), stiffness, "stiffness (N/m)")?;
+        let (key, tangential) = (key("tangential_stiffness"), self.tangential_stiffness);
         let tangential = if has_friction {
-            let what = "stiffness (N/m), because there is friction";
-            check.positive(&key("tangential_stiffness"), self.tangential_stiffness, what)?
+            check.positive(&key, tangential, "stiffness (N/m), because there is friction")?
         } else {
-            check.not_negative(&key("tangential_stiffness"), self.tangential_stiffness, "stiffness (N/m)")?
+            check.not_negative(&key, tangential, "stiffness (N/m)")?
         };
         Ok(Springs::Linear { normal, tangential })
     }
 
     /// Builds Hertz springs. 1/E* and 1/G* are sums over both materials; a rigid material adds nothing.
-    fn hertz(&self, name: &str, around: &Surroundings<'_>) -> Result<Springs, SceneError> {
-        let check = around.check;
+    fn hertz(
+        &self,
+        name: &str,
+        check: &Checker<'_>,
+        materials: &IndexMap<String, MaterialSpec>,
+        grain_shape: GrainShape,
+    ) -> Result<Springs, SceneError> {
         let key = |part: &str| format!("contacts.{name}.{part}");
-        if around.grain_shape == GrainShape::Disc {
-            return Err(check.error(
-                &key("law"),
-                "`linear` between discs, because Hertz's law is for spheres",
-                "`hertz`",
-            ));
-        }
-        if self.normal_stiffness.is_some() || self.tangential_stiffness != 0.0 {
-            let expected = "no stiffness, because a Hertz contact computes it from E and ν of the materials";
-            return Err(check.error(&key("normal_stiffness"), expected, "one"));
-        }
-        if self.stiffness_damping != 0.0 {
-            let expected = "`normal_damping` or `restitution`, because the stiffness of a Hertz contact varies";
-            return Err(check.error(&key("stiffness_damping"), expected, &self.stiffness_damping.to_string()));
-        }
+        let expected = "`linear` between discs, because Hertz's law is for spheres";
+        check.require(grain_shape != GrainShape::Disc, &key("law"), expected, "`hertz`")?;
+        let expected = "no stiffness, because a Hertz contact computes it from E and ν of the materials";
+        check.require(self.has_no_stiffness(), &key("normal_stiffness"), expected, "one")?;
+        let expected = "`normal_damping` or `restitution`, because the stiffness of a Hertz contact varies";
+        let damping = self.stiffness_damping;
+        check.require(damping == 0.0, &key("stiffness_damping"), expected, damping)?;
         let (mut compliance, mut shear_compliance) = (0.0, 0.0);
         for material in &self.between {
             let key_of = |part: &str| format!("materials.{material}.{part}");
-            let properties = &around.materials[material.as_str()];
+            let properties = &materials[material.as_str()];
             if properties.rigid {
                 continue;
             }
@@ -419,16 +407,13 @@ impl ContactSpec {
                 return Err(check.error(&format!("materials.{material}"), expected, "not both"));
             };
             check.positive(&key_of("young_modulus"), young, "modulus (Pa)")?;
-            if !(poisson > -1.0 && poisson <= 0.5) {
-                let found = poisson.to_string();
-                return Err(check.error(&key_of("poisson_ratio"), "a ratio above −1 and at most 1/2", &found));
-            }
+            let is_valid = poisson > -1.0 && poisson <= 0.5;
+            check.require(is_valid, &key_of("poisson_ratio"), "a ratio above −1 and at most 1/2", poisson)?;
             compliance += (1.0 - poisson * poisson) / young;
             shear_compliance += 2.0 * (2.0 - poisson) * (1.0 + poisson) / young;
         }
-        if compliance == 0.0 {
-            return Err(check.error(&key("between"), "at least one material that is not rigid", "two rigid materials"));
-        }
+        let expected = "at least one material that is not rigid";
+        check.require(compliance != 0.0, &key("between"), expected, "two rigid materials")?;
         Ok(Springs::Hertz { effective_modulus: 1.0 / compliance, effective_shear_modulus: 1.0 / shear_compliance })
     }
 }

@@ -129,13 +129,10 @@ impl MaterialSpec {
             ("yield_stress", self.yield_stress, ConstitutiveKind::VonMises),
             ("hardening_modulus", self.hardening_modulus, ConstitutiveKind::VonMises),
         ];
-        match keys_of_laws.into_iter().find(|(_, value, law)| value.is_some() && *law != kind) {
-            Some((part, _, law)) => {
-                let (expected, found) = (format!("`constitutive = \"{law}\"` beside it"), format!("`{kind}`"));
-                Err(check.error(&format!("materials.{name}.{part}"), &expected, &found))
-            }
-            None => Ok(()),
-        }
+        keys_of_laws.into_iter().try_for_each(|(part, value, law)| {
+            let (key, expected) = (format!("materials.{name}.{part}"), format!("`constitutive = \"{law}\"` beside it"));
+            check.require(value.is_none() || law == kind, &key, &expected, format_args!("`{kind}`"))
+        })
     }
 }
 

@@ -82,6 +82,12 @@ impl Motion {
             || self.functions.iter().any(|function| function.fastest() > 0.0)
     }
 
+    /// Returns true if the motion contains a rotation.
+    #[must_use]
+    pub fn rotates(&self) -> bool {
+        self.phases.iter().any(|phase| phase.spin.norm() > 0.0)
+    }
+
     /// Returns true if there are no phases and no functions. A phase of zero velocity counts as a phase.
     #[must_use]
     pub fn is_empty(&self) -> bool {

@@ -33,21 +33,6 @@ const VISITS_OF_A_GRAIN: u64 = 100;
 /// Relative increase of the radii while the last overlaps are removed, so that the result has gaps.
 const MARGIN: f64 = 1e-4;
 
-/// Returns the centres (m) of grains of the given radii (m), in the same order, in `domain`. Grains do not overlap
-/// images across periodic faces. Other faces are smooth walls. The result is `None` if overlaps remain, because the
-/// grains do not fit or need too much work. The same seed gives the same packing on every machine.
-#[must_use]
-pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
-    packed(radii, seed, domain, dimension, false)
-}
-
-/// Returns a packing as [`pack`] does, but only the centres must lie within the non-periodic faces, so that grains may
-/// cross these faces.
-#[must_use]
-pub fn pack_cut(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension) -> Option<Vec<Vector3<f64>>> {
-    packed(radii, seed, domain, dimension, true)
-}
-
 /// Inputs of a packing as bits: radii, seed, domain, periodic axes, number of dimensions and `cut`.
 type Recipe = (Vec<u64>, u64, [u64; 6], [bool; 3], usize, bool);
 /// Packing in the cache. The first thread that needs it computes it.
@@ -55,9 +40,14 @@ type Place = Arc<OnceLock<Option<Vec<Vector3<f64>>>>>;
 /// Largest number of packings in the cache. A packing takes at most half a megabyte.
 const REMEMBERED: usize = 32;
 
-/// Returns a packing from the cache, or computes it. The cache saves time because variants and controls of a scene
-/// start from the same packing.
-fn packed(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
+/// Returns the centres (m) of grains of the given radii (m), in the same order, in `domain`. Grains do not overlap
+/// images across periodic faces. Other faces are smooth walls; with `cut`, only the centres must lie within them, so that
+/// grains may cross these faces. The result is `None` if overlaps remain, because the grains do not fit or need too much
+/// work. The same seed gives the same packing on every machine.
+///
+/// Packings are cached, because variants and controls of a scene start from the same packing.
+#[must_use]
+pub fn pack(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension, cut: bool) -> Option<Vec<Vector3<f64>>> {
     static MADE: Mutex<VecDeque<(Recipe, Place)>> = Mutex::new(VecDeque::new());
     let bits = |at: usize| if at < 3 { domain.low[at] } else { domain.high[at - 3] }.to_bits();
     let recipe: Recipe = (
@@ -317,7 +307,7 @@ mod tests {
         for (fraction, periodic) in [(0.82, true), (0.78, false)] {
             let length = edge(&radii, fraction);
             let domain = domain(length, periodic);
-            let centres = pack(&radii, 3, &domain, Dimension::Two).unwrap_or_default();
+            let centres = pack(&radii, 3, &domain, Dimension::Two, false).unwrap_or_default();
             assert_eq!(centres.len(), radii.len());
             for a in 0..radii.len() {
                 for b in 0..a {
@@ -332,7 +322,7 @@ mod tests {
                     assert!(inside(centres[a].x) && inside(centres[a].y));
                 }
             }
-            assert_eq!(Some(centres), pack(&radii, 3, &domain, Dimension::Two));
+            assert_eq!(Some(centres), pack(&radii, 3, &domain, Dimension::Two, false));
         }
     }
 
@@ -340,7 +330,7 @@ mod tests {
     fn more_than_fits_is_not_packed() {
         for fraction in [0.9, 1.1, 100.0] {
             let edge = edge(&radii(60), fraction);
-            assert_eq!(pack(&radii(60), 1, &domain(edge, false), Dimension::Two), None, "{fraction}");
+            assert_eq!(pack(&radii(60), 1, &domain(edge, false), Dimension::Two, false), None, "{fraction}");
         }
     }
 
@@ -349,8 +339,8 @@ mod tests {
     #[test]
     fn absurd_grains_end_the_search() {
         let far = domain(1e200, false);
-        assert_eq!(pack(&vec![1e200; 3000], 1, &far, Dimension::Two), None);
-        assert_eq!(pack(&vec![f64::MAX; 3000], 1, &domain(1e-200, true), Dimension::Two), None);
+        assert_eq!(pack(&vec![1e200; 3000], 1, &far, Dimension::Two, false), None);
+        assert_eq!(pack(&vec![f64::MAX; 3000], 1, &domain(1e-200, true), Dimension::Two, false), None);
         let many: Vec<f64> = (0..5000).map(|number| libm::pow(2.0, -f64::from(number % 900))).collect();
         let edge = edge(&many, 0.9);
         assert_eq!(made(&many, 1, &domain(edge, false), Dimension::Two, false, SWEEPS, 20_000_000), None);
@@ -364,7 +354,7 @@ mod tests {
             let share = reachable(&radii(60), 1, &domain, Dimension::Two, false).unwrap_or_default();
             assert!((0.7..0.9).contains(&share), "{share}");
             let shrunk: Vec<f64> = radii(60).iter().map(|radius| radius * (share / asked).sqrt()).collect();
-            assert!(pack(&shrunk, 1, &domain, Dimension::Two).is_some());
+            assert!(pack(&shrunk, 1, &domain, Dimension::Two, false).is_some());
         }
     }
 
@@ -373,18 +363,18 @@ mod tests {
     fn another_recipe_is_another_packing() {
         let all = radii(60);
         let wide = domain(edge(&all, 0.6), true);
-        let first = pack(&all, 1, &wide, Dimension::Two);
-        assert!(first.is_some() && first == pack(&all, 1, &wide, Dimension::Two));
+        let first = pack(&all, 1, &wide, Dimension::Two, false);
+        assert!(first.is_some() && first == pack(&all, 1, &wide, Dimension::Two, false));
         let shorter = Domain { high: wide.high - Vector3::new(1e-9, 0.0, 0.0), ..wide };
         let walled = domain(edge(&all, 0.6), false);
         for other in [
-            pack(&all, 2, &wide, Dimension::Two),
-            pack(&all, 1, &shorter, Dimension::Two),
-            pack(&all, 1, &walled, Dimension::Two),
-            pack_cut(&all, 1, &walled, Dimension::Two),
+            pack(&all, 2, &wide, Dimension::Two, false),
+            pack(&all, 1, &shorter, Dimension::Two, false),
+            pack(&all, 1, &walled, Dimension::Two, false),
+            pack(&all, 1, &walled, Dimension::Two, true),
         ] {
             assert!(other.is_some() && other != first);
         }
-        assert_ne!(pack(&all, 1, &walled, Dimension::Two), pack_cut(&all, 1, &walled, Dimension::Two));
+        assert_ne!(pack(&all, 1, &walled, Dimension::Two, false), pack(&all, 1, &walled, Dimension::Two, true));
     }
 }

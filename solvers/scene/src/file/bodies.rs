@@ -116,3 +116,10 @@ pub enum SideSpec {
     /// The side at the largest z.
     ZHigh,
 }
+
+impl SideSpec {
+    /// Returns the axis (0 to 2), and 0 for the lower or 1 for the upper side along it.
+    pub(crate) const fn axis_and_end(self) -> [usize; 2] {
+        [self as usize / 2, self as usize % 2]
+    }
+}

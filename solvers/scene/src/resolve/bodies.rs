@@ -4,7 +4,7 @@ use super::Resolver;
 use crate::body::{Block, BlockShape, Hold, InitialStress, Sides, Wave};
 use crate::dimension::Dimension;
 use crate::error::SceneError;
-use crate::file::{BodySpec, SideSpec};
+use crate::file::BodySpec;
 use crate::scene::Grain;
 use nalgebra::Matrix3;
 use std::f64::consts::PI;
@@ -18,9 +18,7 @@ impl Resolver<'_> {
         let check = &self.check;
         let key = |part: &str| format!("bodies.{name}.{part}");
         let material = self.material(&key("material"), &spec.material)?;
-        let Some(density) = self.file.materials[usize::from(material)].density else {
-            return Err(check.error(&format!("materials.{}", spec.material), "the key `density`", "none"));
-        };
+        let density = self.density(material)?;
         check.exactly_one(
             &format!("bodies.{name}"),
             &[("box", spec.cuboid.is_some()), ("annulus", spec.annulus.is_some())],
@@ -55,12 +53,15 @@ impl Resolver<'_> {
             (None, None) => return Ok(None),
             (_, gradient) => gradient.clone().unwrap_or_default(),
         };
-        if self.file.initial_pressure.is_some() {
-            return Err(check.error(&key("stress"), "one of `stress` and `initial_pressure`", "both"));
-        }
+        let is_only = self.file.initial_pressure.is_none();
+        check.require(is_only, &key("stress"), "one of `stress` and `initial_pressure`", "both")?;
         let of_material = &self.file.materials[usize::from(material)];
         let Some(moduli) = of_material.deformable(&spec.material, check)? else {
-            return Err(check.error(&key("stress"), "a material with elastic moduli", &format!("`{}`", spec.material)));
+            return Err(check.error(
+                &key("stress"),
+                "a material with elastic moduli",
+                format_args!("`{}`", spec.material),
+            ));
         };
         // In two dimensions there is no strain along z (plane strain), so σ_zz = ν (σ_xx + σ_yy).
         let tensor = |part: &str, rows: Option<&Vec<Vec<f64>>>| -> Result<Matrix3<f64>, SceneError> {
@@ -70,9 +71,8 @@ impl Resolver<'_> {
             }
             Ok(stress)
         };
-        if gradient.z.is_some() && check.dimension == Dimension::Two {
-            return Err(check.error(&key("stress_gradient.z"), "axes of the scene, `x` or `y`", "`z`"));
-        }
+        let is_of_scene = gradient.z.is_none() || check.dimension == Dimension::Three;
+        check.require(is_of_scene, &key("stress_gradient.z"), "axes of the scene, `x` or `y`", "`z`")?;
         Ok(Some(InitialStress {
             centre: tensor("stress", spec.stress.as_ref())?,
             gradient: [
@@ -87,30 +87,23 @@ impl Resolver<'_> {
         let check = &self.check;
         let key = |part: &str| format!("bodies.{name}.{part}");
         if let Some(ring) = &spec.annulus {
-            if check.dimension == Dimension::Three {
-                return Err(check.error(&key("annulus"), "a `box` in three dimensions", "a ring"));
-            }
+            let is_flat = check.dimension == Dimension::Two;
+            check.require(is_flat, &key("annulus"), "a `box` in three dimensions", "a ring")?;
             let inner = check.positive(&key("annulus.inner"), ring.inner, "radius (m)")?;
             let outer = check.positive(&key("annulus.outer"), ring.outer, "radius (m)")?;
-            if outer <= inner {
-                let found = format!("{inner} to {outer}");
-                return Err(check.error(&key("annulus.outer"), "a radius above `inner`", &found));
-            }
-            return Ok(BlockShape::Annulus {
-                centre: check.vector(&key("annulus.centre"), &ring.centre)?,
-                inner,
-                outer,
-            });
+            let found = format_args!("{inner} to {outer}");
+            check.require(outer > inner, &key("annulus.outer"), "a radius above `inner`", found)?;
+            let centre = check.vector(&key("annulus.centre"), &ring.centre)?;
+            return Ok(BlockShape::Annulus { centre, inner, outer });
         }
         let Some(corners) = &spec.cuboid else {
             return Err(check.error(&format!("bodies.{name}"), "a shape", "none"));
         };
         let low = check.vector(&key("box.low"), &corners.low)?;
         let high = check.vector(&key("box.high"), &corners.high)?;
-        if (0..check.dimension.count()).any(|axis| high[axis] <= low[axis]) {
-            let found = format!("{:?} to {:?}", corners.low, corners.high);
-            return Err(check.error(&key("box.high"), "a corner above `low`", &found));
-        }
+        let is_above = (0..check.dimension.count()).all(|axis| high[axis] > low[axis]);
+        let found = format_args!("{:?} to {:?}", corners.low, corners.high);
+        check.require(is_above, &key("box.high"), "a corner above `low`", found)?;
         Ok(BlockShape::Box { low, high })
     }
 
@@ -118,18 +111,10 @@ impl Resolver<'_> {
         let mut sides = Sides::default();
         for (list, held, what) in [(&spec.sliding, Hold::Sliding, "sliding"), (&spec.fixed, Hold::Fixed, "fixed")] {
             for side in list {
-                let (axis, end) = match side {
-                    SideSpec::XLow => (0, 0),
-                    SideSpec::XHigh => (0, 1),
-                    SideSpec::YLow => (1, 0),
-                    SideSpec::YHigh => (1, 1),
-                    SideSpec::ZLow => (2, 0),
-                    SideSpec::ZHigh => (2, 1),
-                };
-                if spec.annulus.is_some() || axis >= self.check.dimension.count() {
-                    let key = format!("bodies.{name}.{what}");
-                    return Err(self.check.error(&key, "sides that the body has", &format!("{side:?}")));
-                }
+                let [axis, end] = side.axis_and_end();
+                let has_side = spec.annulus.is_none() && axis < self.check.dimension.count();
+                let key = format!("bodies.{name}.{what}");
+                self.check.require(has_side, &key, "sides that the body has", format_args!("{side:?}"))?;
                 sides[axis][end] = held;
             }
         }

@@ -20,29 +20,23 @@ impl Resolver<'_> {
         for (name, spec) in &self.file.driven {
             let key = format!("driven.{name}");
             let members = self.members(&key, spec, grains, groups, domain)?;
-            if members.is_empty() {
-                return Err(self.check.error(&key, "at least one grain", "none"));
-            }
+            self.check.require(!members.is_empty(), &key, "at least one grain", "none")?;
             let span = self.span(&key, spec)?;
             let velocity = self.check.vector_or_zero(&format!("{key}.velocity"), spec.velocity.as_ref())?;
             for &grain in &members {
-                if taken[grain] {
-                    let found = format!("grain {} in two groups", grain + 1);
-                    return Err(self.check.error(&key, "grains that are in only one driven group", &found));
-                }
-                taken[grain] = true;
+                let is_taken = std::mem::replace(&mut taken[grain], true);
+                let found = format_args!("grain {} in two groups", grain + 1);
+                self.check.require(!is_taken, &key, "grains that are in only one driven group", found)?;
             }
             let spin = self.spin(&format!("{key}.spin"), spec.spin.as_ref())?;
-            let motion = self.motion(&format!("{key}.motion"), &spec.motion)?;
-            if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
-                let expected = "a motion without spin (the key `spin` next to `motion` rotates each grain about its \
-                                own centre)";
-                return Err(self.check.error(&format!("{key}.motion"), expected, "a motion with spin"));
-            }
+            let key = format!("{key}.motion");
+            let motion = self.motion(&key, &spec.motion)?;
+            let expected =
+                "a motion without spin (the key `spin` next to `motion` rotates each grain about its own centre)";
+            self.check.require(!motion.rotates(), &key, expected, "a motion with spin")?;
             let in_cycles = |moment: Moment| matches!(moment, Moment::Cycle(_));
-            if motion.phases.iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop)) {
-                return Err(self.check.error(&format!("{key}.motion"), "times in seconds", "a time in cycles"));
-            }
+            let is_in_cycles = motion.phases.iter().any(|phase| in_cycles(phase.start) || in_cycles(phase.stop));
+            self.check.require(!is_in_cycles, &key, "times in seconds", "a time in cycles")?;
             let driven = Driven { name: name.clone(), grains: members, velocity, span, spin, motion };
             if driven.is_moved_at(0.0) {
                 for &grain in &driven.grains {
@@ -60,9 +54,7 @@ impl Resolver<'_> {
         let Some(stop) = spec.stop else { return Ok([start, f64::INFINITY]) };
         let key = format!("{key}.stop");
         let stop = self.check.positive(&key, stop, "time (s)")?;
-        if stop <= start {
-            return Err(self.check.error(&key, &format!("a time after the start at {start} s"), &format!("{stop}")));
-        }
+        self.check.require(stop > start, &key, &format!("a time after the start at {start} s"), stop)?;
         Ok([start, stop])
     }
 
@@ -101,18 +93,10 @@ impl Resolver<'_> {
         let Some(domain) = domain else {
             return Err(check.error(&key, "a `domain` that has faces", "none"));
         };
-        let (axis, high) = match spec.face {
-            Some(SideSpec::XHigh) => (0, true),
-            Some(SideSpec::YLow) => (1, false),
-            Some(SideSpec::YHigh) => (1, true),
-            Some(SideSpec::ZLow) => (2, false),
-            Some(SideSpec::ZHigh) => (2, true),
-            Some(SideSpec::XLow) | None => (0, false),
-        };
-        if axis >= check.dimension.count() || domain.periodic[axis] {
-            return Err(check.error(&key, "a face that is not periodic", &format!("{:?}", spec.face)));
-        }
-        let place = if high { domain.high[axis] } else { domain.low[axis] };
+        let [axis, end] = spec.face.map_or([0, 0], SideSpec::axis_and_end);
+        let is_open = axis < check.dimension.count() && !domain.periodic[axis];
+        check.require(is_open, &key, "a face that is not periodic", format_args!("{:?}", spec.face))?;
+        let place = [domain.low, domain.high][end][axis];
         let is_cut = |grain: &Grain| (grain.position[axis] - place).abs() < grain.radius;
         Ok((0..grains.len()).filter(|&at| is_cut(&grains[at])).collect())
     }

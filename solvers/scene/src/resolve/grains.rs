@@ -4,7 +4,7 @@ use super::{Groups, Resolver};
 use crate::dimension::GrainShape;
 use crate::end_state::Springs;
 use crate::error::SceneError;
-use crate::file::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, PouredSpec, RandomSpec, SpacingSpec, StateSpec};
+use crate::file::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, RandomSpec, SpacingSpec};
 use crate::generate::{self, NoRoom};
 use crate::memory;
 use crate::overlap::{self, DeepestOverlap};
@@ -26,17 +26,6 @@ pub(super) struct PlacedGrains {
     pub(super) entries: Vec<Entry>,
     /// Initial contact history.
     pub(super) springs: Option<Arc<Springs>>,
-}
-
-/// Placement of a group of grains.
-enum Placement<'a> {
-    Position(&'a [f64]),
-    Lattice(&'a LatticeSpec),
-    Random(&'a RandomSpec),
-    Packed(&'a PackedSpec),
-    Poured(&'a PouredSpec),
-    State(&'a StateSpec),
-    File(&'a FileSpec),
 }
 
 /// Group of grains, with the properties that all its grains have in common.
@@ -83,65 +72,64 @@ impl Resolver<'_> {
     ) -> Result<(), SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("grains.{name}.{part}");
-        let placement = self.placement(name, spec)?;
+        self.check_keys(name, spec)?;
         let material = self.material(&key("material"), &spec.material)?;
         let velocity = check.vector_or_zero(&key("velocity"), spec.velocity.as_ref())?;
         let spin = self.spin(&key("spin"), spec.spin.as_ref())?;
         let group = Group { name, spec, shape, material, velocity, spin };
-        match placement {
-            Placement::Position(position) => {
-                let position = check.vector(&key("position"), position)?;
-                grains.push(group.grain(position, self.radius(&group)?, self.density(&group)?, velocity));
+        if let Some(position) = &spec.position {
+            let position = check.vector(&key("position"), position)?;
+            grains.push(group.grain(position, self.radius(&group)?, self.density(material)?, velocity));
+        } else if let Some(lattice) = &spec.lattice {
+            grains.extend(self.on_lattice(&group, lattice)?);
+        } else if let Some(random) = &spec.random {
+            grains.extend(self.at_random(&group, random, domain)?);
+        } else if let Some(packed) = &spec.packed {
+            let density = self.density(material)?;
+            let places = self.packed(name, packed, domain)?;
+            grains.extend(places.into_iter().map(|(centre, radius)| group.grain(centre, radius, density, velocity)));
+        } else if let Some(poured) = &spec.poured {
+            self.refuse_too_many(&key("poured.count"), u128::from(poured.count))?;
+            let (radius, density) = (self.radius(&group)?, self.density(material)?);
+            for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
+                entries.push(Entry { grain: grains.len(), time });
+                grains.push(group.grain(centre, radius, density, velocity));
             }
-            Placement::Lattice(lattice) => grains.extend(self.on_lattice(&group, lattice)?),
-            Placement::Random(random) => grains.extend(self.at_random(&group, random, domain)?),
-            Placement::Packed(packed) => {
-                let density = self.density(&group)?;
-                let places = self.packed(name, packed, domain)?;
-                grains
-                    .extend(places.into_iter().map(|(centre, radius)| group.grain(centre, radius, density, velocity)));
-            }
-            Placement::Poured(poured) => {
-                self.refuse_too_many(&key("poured.count"), u128::from(poured.count))?;
-                let (radius, density) = (self.radius(&group)?, self.density(&group)?);
-                for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
-                    entries.push(Entry { grain: grains.len(), time });
-                    grains.push(group.grain(centre, radius, density, velocity));
-                }
-            }
-            Placement::State(state) => self.grains_from_state(name, state, material, (grains, springs))?,
-            Placement::File(file) => self.grains_from_file(name, file, shape, material, grains)?,
+        } else if let Some(state) = &spec.state {
+            self.grains_from_state(name, state, material, (grains, springs))?;
+        } else if let Some(file) = &spec.file {
+            self.grains_from_file(name, file, shape, material, grains)?;
         }
         Ok(())
     }
 
-    /// Returns the placement of a group, after checking that there is exactly one. The grains of a state or of a data
-    /// file have their own size and motion.
-    fn placement<'s>(&self, name: &str, spec: &'s GrainsSpec) -> Result<Placement<'s>, SceneError> {
-        let GrainsSpec { position, lattice, random, packed, poured, state, file, .. } = spec;
-        let placements = [
-            ("position", position.as_ref().map(|position| Placement::Position(position))),
-            ("lattice", lattice.as_ref().map(Placement::Lattice)),
-            ("random", random.as_ref().map(Placement::Random)),
-            ("packed", packed.as_ref().map(Placement::Packed)),
-            ("poured", poured.as_ref().map(Placement::Poured)),
-            ("state", state.as_ref().map(Placement::State)),
-            ("file", file.as_ref().map(Placement::File)),
-        ];
+    /// Checks that a group has exactly one placement. The grains of a state or of a data file have their own size and
+    /// motion.
+    fn check_keys(&self, name: &str, spec: &GrainsSpec) -> Result<(), SceneError> {
         let key = format!("grains.{name}");
-        let given: Vec<_> = placements.iter().map(|(word, placement)| (*word, placement.is_some())).collect();
-        self.check.exactly_one(&key, &given)?;
+        self.check.exactly_one(
+            &key,
+            &[
+                ("position", spec.position.is_some()),
+                ("lattice", spec.lattice.is_some()),
+                ("random", spec.random.is_some()),
+                ("packed", spec.packed.is_some()),
+                ("poured", spec.poured.is_some()),
+                ("state", spec.state.is_some()),
+                ("file", spec.file.is_some()),
+            ],
+        )?;
+        let source = match (&spec.state, &spec.file) {
+            (None, None) => return Ok(()),
+            (Some(_), _) => "state",
+            (None, Some(_)) => "file",
+        };
         let keys =
             [("radius", spec.radius.is_some()), ("velocity", spec.velocity.is_some()), ("spin", spec.spin.is_some())];
-        let first_key = keys.into_iter().find(|(_, is_given)| *is_given);
-        match (placements.into_iter().find_map(|(word, placement)| Some((word, placement?))), first_key) {
-            (Some((source, Placement::State(_) | Placement::File(_))), Some((part, _))) => {
-                let expected = format!("none, because `{source}` contains it");
-                Err(self.check.error(&format!("{key}.{part}"), &expected, "one"))
-            }
-            (Some((_, placement)), _) => Ok(placement),
-            (None, _) => Err(self.check.error(&key, "a placement", "none")),
-        }
+        keys.into_iter().try_for_each(|(part, is_given)| {
+            let expected = format_args!("none, because `{source}` contains it");
+            self.check.require(!is_given, &format!("{key}.{part}"), expected, "one")
+        })
     }
 
     /// Returns the radius of the grains of a group (m).
@@ -152,26 +140,18 @@ impl Resolver<'_> {
         }
     }
 
-    /// Returns the density of the material of a group (kg/m³).
-    fn density(&self, group: &Group<'_>) -> Result<f64, SceneError> {
-        let key = || format!("materials.{}", group.spec.material);
-        let density = self.file.materials[usize::from(group.material)].density;
-        density.ok_or_else(|| self.check.error(&key(), "the key `density`", "none"))
-    }
-
     fn on_lattice(&self, group: &Group<'_>, lattice: &LatticeSpec) -> Result<Vec<Grain>, SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("grains.{}.lattice.{part}", group.name);
         let origin = check.vector(&key("origin"), &lattice.origin)?;
         let dimensions = check.dimension.count();
-        if lattice.count.len() != dimensions || lattice.count.contains(&0) {
-            let expected = format!("{dimensions} counts of at least one");
-            return Err(check.error(&key("count"), &expected, &format!("{:?}", lattice.count)));
-        }
+        let is_valid = lattice.count.len() == dimensions && !lattice.count.contains(&0);
+        let expected = format_args!("{dimensions} counts of at least one");
+        check.require(is_valid, &key("count"), expected, format_args!("{:?}", lattice.count))?;
         let total = lattice.count.iter().fold(1_u128, |total, &count| total * u128::from(count));
         self.refuse_too_many(&key("count"), total)?;
         let count = [lattice.count[0], lattice.count[1], lattice.count.get(2).copied().unwrap_or(1)];
-        let (radius, density) = (self.radius(group)?, self.density(group)?);
+        let (radius, density) = (self.radius(group)?, self.density(group.material)?);
         let mut centres = match (&lattice.spacing, lattice.close_packed) {
             (SpacingSpec::Along(spacing), false) => {
                 generate::lattice(origin, check.vector(&key("spacing"), spacing)?, count)
@@ -180,12 +160,12 @@ impl Resolver<'_> {
                 generate::close_packed(origin, check.positive(&key("spacing"), *spacing, "distance (m)")?, count)
             }
             (SpacingSpec::Nearest(found), false) => {
-                let expected = format!("{dimensions} distances, or `close_packed = true`");
-                return Err(check.error(&key("spacing"), &expected, &found.to_string()));
+                let expected = format_args!("{dimensions} distances, or `close_packed = true`");
+                return Err(check.error(&key("spacing"), expected, found));
             }
             (SpacingSpec::Along(found), true) => {
                 let expected = "one number, the distance of nearest neighbours";
-                return Err(check.error(&key("spacing"), expected, &format!("{found:?}")));
+                return Err(check.error(&key("spacing"), expected, format_args!("{found:?}")));
             }
         };
         let perturbation = check.not_negative(&key("perturbation"), lattice.perturbation, "length (m)")?;
@@ -210,7 +190,8 @@ impl Resolver<'_> {
                 Some(_) => ("region", "that contains the region"),
                 None => ("count", "to place grains in"),
             };
-            return Err(check.error(&key(part), &format!("a `domain` with `low` and `high` {purpose}"), "no domain"));
+            let expected = format_args!("a `domain` with `low` and `high` {purpose}");
+            return Err(check.error(&key(part), expected, "no domain"));
         };
         let radii = self.radii(&table, random, group.shape, &|| self.radius(group))?;
         let part = match &random.region {
@@ -218,7 +199,7 @@ impl Resolver<'_> {
             None => *domain,
         };
         let speed = check.not_negative(&key("speed"), random.speed, "speed (m/s)")?;
-        let density = self.density(group)?;
+        let density = self.density(group.material)?;
         let no_room = |NoRoom { share, is_costly }| {
             let place = if random.region.is_some() { "region" } else { "domain" };
             let found = format!("{} that would fill {share:.2} of it", random.count);
@@ -251,16 +232,14 @@ impl Resolver<'_> {
             return Err(check.error(&key, "a `domain` with `low` and `high` to pack grains into", "no domain"));
         };
         let total: u64 = packed.radii.iter().map(|&(_, count)| u64::from(count)).sum();
-        if !(1..=u64::from(packing::MOST)).contains(&total) {
-            return Err(check.error(&key, &format!("1 to {} grains", packing::MOST), &total.to_string()));
-        }
+        let is_possible = (1..=u64::from(packing::MOST)).contains(&total);
+        check.require(is_possible, &key, format_args!("1 to {} grains", packing::MOST), total)?;
         let mut radii = Vec::new();
         for &(radius, count) in &packed.radii {
             let radius = check.positive(&key, radius, "radius (m)")?;
             radii.extend(std::iter::repeat_n(radius, count as usize));
         }
-        let pack = if packed.cut { packing::pack_cut } else { packing::pack };
-        let centres = pack(&radii, packed.seed, domain, check.dimension).ok_or_else(|| {
+        let centres = packing::pack(&radii, packed.seed, domain, check.dimension, packed.cut).ok_or_else(|| {
             let asked = packing::filled(radii.iter().copied(), domain, check.dimension);
             let expected = match packing::reachable(&radii, packed.seed, domain, check.dimension, packed.cut) {
                 Some(share) => {
@@ -278,13 +257,11 @@ impl Resolver<'_> {
     fn refuse_beyond_numbers(&self, group: &str, grains: &[Grain]) -> Result<(), SceneError> {
         let key = format!("grains.{group}");
         for grain in grains {
-            if !(grain.inertia > 0.0 && grain.inertia.is_finite()) {
-                let found = format!("mass {:e} and moment of inertia {:e}", grain.mass, grain.inertia);
-                return Err(self.check.error(&key, "a positive, finite mass and moment of inertia", &found));
-            }
-            if grain.position.iter().any(|value| !value.is_finite()) {
-                return Err(self.check.error(&key, "finite positions", &format!("{:?}", grain.position.as_slice())));
-            }
+            let found = format_args!("mass {:e} and moment of inertia {:e}", grain.mass, grain.inertia);
+            let is_valid = grain.inertia > 0.0 && grain.inertia.is_finite();
+            self.check.require(is_valid, &key, "a positive, finite mass and moment of inertia", found)?;
+            let is_finite = grain.position.iter().all(|value| value.is_finite());
+            self.check.require(is_finite, &key, "finite positions", format_args!("{:?}", grain.position.as_slice()))?;
         }
         Ok(())
     }
@@ -299,14 +276,15 @@ impl Resolver<'_> {
                     let letter = ['x', 'y', 'z'][axis];
                     if domain.periodic[axis] && 2.0 * grain.radius > high - low {
                         let expected =
-                            format!("a period along {letter} no shorter than a grain, {} m", 2.0 * grain.radius);
-                        return Err(self.check.error("domain", &expected, &format!("{} m", high - low)));
+                            format_args!("a period along {letter} no shorter than a grain, {} m", 2.0 * grain.radius);
+                        return Err(self.check.error("domain", expected, format_args!("{} m", high - low)));
                     }
                     let slack = 1e-9 * (high - low);
                     if !domain.periodic[axis] && !(low - slack..=high + slack).contains(&centre) {
                         let key = format!("grains.{name}");
-                        let expected = format!("grain {} within the domain, {letter} from {low} to {high} m", at + 1);
-                        return Err(self.check.error(&key, &expected, &format!("{letter} = {centre} m")));
+                        let expected =
+                            format_args!("grain {} within the domain, {letter} from {low} to {high} m", at + 1);
+                        return Err(self.check.error(&key, expected, format_args!("{letter} = {centre} m")));
                     }
                 }
             }
@@ -316,13 +294,9 @@ impl Resolver<'_> {
 
     /// Rejects a number of grains that exceeds 100 million or the available memory.
     fn refuse_too_many(&self, key: &str, count: u128) -> Result<(), SceneError> {
-        if count > 100_000_000 {
-            return Err(self.check.error(key, "at most 100 million grains", &count.to_string()));
-        }
-        match memory::beyond(count as f64, "grains", BYTES_OF_A_GRAIN) {
-            Some(found) => Err(self.check.error(key, "grains that fit into memory", &found)),
-            None => Ok(()),
-        }
+        self.check.require(count <= 100_000_000, key, "at most 100 million grains", count)?;
+        let excess = memory::beyond(count as f64, "grains", BYTES_OF_A_GRAIN);
+        excess.map_or(Ok(()), |found| Err(self.check.error(key, "grains that fit into memory", found)))
     }
 
     fn grains_from_file(
@@ -348,16 +322,9 @@ impl Resolver<'_> {
             let material = if types.is_empty() {
                 material
             } else {
-                *usize::try_from(atom.type_number)
-                    .ok()
-                    .and_then(|number| types.get(number.wrapping_sub(1)))
-                    .ok_or_else(|| {
-                        self.check.error(
-                            &key,
-                            &format!("atom types 1 to {}", types.len()),
-                            &atom.type_number.to_string(),
-                        )
-                    })?
+                let expected = format_args!("atom types 1 to {}", types.len());
+                let found = types.get((atom.type_number as usize).wrapping_sub(1)).copied();
+                found.ok_or_else(|| self.check.error(&key, expected, atom.type_number))?
             };
             grains.push(Grain {
                 material,

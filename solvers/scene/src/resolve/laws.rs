@@ -1,7 +1,7 @@
 //! Table of contact laws between materials.
 
 use super::Resolver;
-use crate::contact_law::{ContactLaw, Surroundings};
+use crate::contact_law::ContactLaw;
 use crate::error::SceneError;
 use crate::scene::{Block, Grain, Wall};
 use std::collections::BTreeSet;
@@ -20,16 +20,14 @@ impl Resolver<'_> {
         let mut table = vec![None; count * count];
         let mut stated = BTreeSet::new();
         let grain_shape = self.grain_shape()?;
-        let around = Surroundings { check: &self.check, materials: &self.file.materials, grain_shape };
         for (name, spec) in &self.file.contacts {
             let key = format!("contacts.{name}.between");
             let a = usize::from(self.material(&key, &spec.between[0])?);
             let b = usize::from(self.material(&key, &spec.between[1])?);
-            if !stated.insert((a.min(b), a.max(b))) {
-                let pair = format!("a second law for {} and {}", spec.between[0], spec.between[1]);
-                return Err(self.check.error(&key, "one law for each pair of materials", &pair));
-            }
-            let law = spec.law(name, &around)?;
+            let found = format_args!("a second law for {} and {}", spec.between[0], spec.between[1]);
+            let is_first = stated.insert((a.min(b), a.max(b)));
+            self.check.require(is_first, &key, "one law for each pair of materials", found)?;
+            let law = spec.law(name, &self.check, &self.file.materials, grain_shape)?;
             if let (Ok(a), Ok(b)) = (materials.binary_search(&a), materials.binary_search(&b)) {
                 table[a * count + b] = Some(law);
                 table[b * count + a] = Some(law);
@@ -37,9 +35,8 @@ impl Resolver<'_> {
         }
         let mut kinds = table.iter().flatten().map(|law| law.springs.kind());
         let first = kinds.next();
-        if kinds.any(|kind| Some(kind) != first) {
-            return Err(self.check.error("contacts", "laws of one kind, all `linear` or all `hertz`", "both"));
-        }
+        let is_one_kind = kinds.all(|kind| Some(kind) == first);
+        self.check.require(is_one_kind, "contacts", "laws of one kind, all `linear` or all `hertz`", "both")?;
         self.require_laws(materials, &table, grains, bodies, walls)?;
         Ok(table)
     }

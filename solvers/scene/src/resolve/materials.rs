@@ -24,10 +24,8 @@ impl Resolver<'_> {
         };
         named().for_each(|material| used[usize::from(material)] = true);
         let kept: Vec<usize> = (0..used.len()).filter(|&place| used[place]).collect();
-        if kept.len() > MOST_MATERIALS {
-            let expected = format!("at most {MOST_MATERIALS} materials that are in use");
-            return Err(self.check.error("materials", &expected, &kept.len().to_string()));
-        }
+        let expected = format!("at most {MOST_MATERIALS} materials that are in use");
+        self.check.require(kept.len() <= MOST_MATERIALS, "materials", &expected, kept.len())?;
         let mut now = vec![0_u16; used.len()];
         (0..).zip(&kept).for_each(|(place, &before)| now[before] = place);
         let renamed = |material: &mut u16| *material = now[usize::from(*material)];
@@ -40,6 +38,14 @@ impl Resolver<'_> {
     /// Returns the name of a material, by index in the file.
     pub(super) fn material_name(&self, place: usize) -> &str {
         self.file.materials.get_index(place).map_or("", |(name, _)| name.as_str())
+    }
+
+    /// Returns the density of a material (kg/m³), by index in the file.
+    pub(super) fn density(&self, material: u16) -> Result<f64, SceneError> {
+        let place = usize::from(material);
+        let missing =
+            || self.check.error(&format!("materials.{}", self.material_name(place)), "the key `density`", "none");
+        self.file.materials[place].density.ok_or_else(missing)
     }
 
     /// Returns the deformable properties of each material; `None` if the file gives none.

@@ -19,13 +19,11 @@ impl Resolver<'_> {
     pub(super) fn mesh(&self, wall: &str, spec: &MeshSpec) -> Result<WallShape, SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("walls.{wall}.mesh{part}");
-        if check.dimension == Dimension::Two {
-            return Err(check.error(&key(""), "a `segment` or `plane` in two dimensions", "a mesh"));
-        }
+        let is_solid = check.dimension == Dimension::Three;
+        check.require(is_solid, &key(""), "a `segment` or `plane` in two dimensions", "a mesh")?;
         let merge = check.not_negative(&key(".merge"), spec.merge, "length (m)")?;
-        if spec.open && spec.inward {
-            return Err(check.error(&key(".inward"), "a mesh that encloses a volume", "a mesh that is `open`"));
-        }
+        let has_inside = !(spec.open && spec.inward);
+        check.require(has_inside, &key(".inward"), "a mesh that encloses a volume", "a mesh that is `open`")?;
         let path = check.source.directory.join(&spec.file);
         let unreadable = |found: String| check.error(&key(".file"), "a file of triangles (STL)", &found);
         let length = std::fs::metadata(&path).map_err(|error| unreadable(error.to_string()))?;

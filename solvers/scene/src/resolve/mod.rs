@@ -57,13 +57,7 @@ pub type ReadGrains<'a> = &'a dyn Fn(&Path) -> Result<Vec<FileGrain>, SceneError
 /// # Errors
 /// Always.
 pub fn no_data_file(path: &Path) -> Result<Vec<FileGrain>, SceneError> {
-    Err(SceneError {
-        place: path.display().to_string(),
-        key: String::new(),
-        expected: "a scene without data files".to_owned(),
-        found: "a data file".to_owned(),
-        help: None,
-    })
+    Err(SceneError::of_file(path.display().to_string(), "a scene without data files", "a data file".to_owned()))
 }
 
 impl SceneSource {
@@ -111,9 +105,8 @@ impl Resolver<'_> {
         let driven = self.driven(&mut grains, &groups, domain.as_ref())?;
         let mut deformable = self.deformable()?;
         let mut bodies = self.bodies()?;
-        if grains.is_empty() && bodies.is_empty() {
-            return Err(check.error("grains", "at least one grain or body", "none"));
-        }
+        let has_bodies = !(grains.is_empty() && bodies.is_empty());
+        check.require(has_bodies, "grains", "at least one grain or body", "none")?;
         let mut walls: Vec<Wall> =
             file.walls.iter().map(|(name, wall)| self.wall(name, wall)).collect::<Result<_, _>>()?;
         let materials = self.used_materials(&mut grains, &mut bodies, &mut walls)?;
@@ -163,9 +156,8 @@ impl Resolver<'_> {
 
     fn grain_shape(&self) -> Result<GrainShape, SceneError> {
         match (self.file.grain_shape, self.check.dimension) {
-            (None, Dimension::Two) => Ok(GrainShape::Disc),
+            (None | Some(GrainShape::Disc), Dimension::Two) => Ok(GrainShape::Disc),
             (None, Dimension::Three) | (Some(GrainShape::Sphere), _) => Ok(GrainShape::Sphere),
-            (Some(GrainShape::Disc), Dimension::Two) => Ok(GrainShape::Disc),
             (Some(GrainShape::Disc), Dimension::Three) => {
                 Err(self.check.error("grain_shape", "`sphere` in three dimensions", "`disc`"))
             }
@@ -208,9 +200,8 @@ impl Resolver<'_> {
             let length = check.positive("manufactured.axis-aligned.length", wave.length, "length (m)")?;
             let key = "manufactured.axis-aligned.amplitude";
             let amplitude = check.not_negative(key, wave.amplitude, "amplitude (m)")?;
-            if amplitude * 2.0 * std::f64::consts::PI >= length {
-                return Err(check.error(key, "an amplitude below 1/2π of the length", &amplitude.to_string()));
-            }
+            let is_small = amplitude * 2.0 * std::f64::consts::PI < length;
+            check.require(is_small, key, "an amplitude below 1/2π of the length", amplitude)?;
             return Ok(Manufactured::AxisAligned { amplitude, length });
         }
         let (amplitude, rate) = motion.vortex.as_ref().map_or((0.0, 0.0), |vortex| (vortex.amplitude, vortex.rate));
@@ -233,16 +224,8 @@ impl Resolver<'_> {
     }
 
     fn domain(&self, spec: &DomainSpec) -> Result<Domain, SceneError> {
-        let check = &self.check;
-        let mut low = check.vector("domain.low", &spec.low)?;
-        let mut high = check.vector("domain.high", &spec.high)?;
-        for axis in 0..check.dimension.count() {
-            if high[axis] <= low[axis] {
-                let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
-                return Err(check.error("domain.high", "a corner above `low`", &found));
-            }
-        }
-        if check.dimension == Dimension::Two {
+        let [mut low, mut high] = self.corners("domain", &spec.low, &spec.high)?;
+        if self.check.dimension == Dimension::Two {
             (low.z, high.z) = (-0.5, 0.5);
         }
         Ok(Domain { low, high, periodic: self.periodic(&spec.periodic)? })
@@ -250,18 +233,17 @@ impl Resolver<'_> {
 
     fn periodic(&self, spec: &PeriodicSpec) -> Result<[bool; 3], SceneError> {
         let dimensions = self.check.dimension.count();
-        let wrong = |expected: String, found: String| Err(self.check.error("domain.periodic", &expected, &found));
+        let (check, key) = (&self.check, "domain.periodic");
         let mut periodic = [false; 3];
         match spec {
-            PeriodicSpec::Each(each) if each.is_empty() || each.len() == dimensions => {
+            PeriodicSpec::Each(each) => {
+                let is_whole = each.is_empty() || each.len() == dimensions;
+                check.require(is_whole, key, &format!("{dimensions} values"), format_args!("{each:?}"))?;
                 periodic[..each.len()].copy_from_slice(each);
             }
-            PeriodicSpec::Each(each) => return wrong(format!("{dimensions} values"), format!("{each:?}")),
             PeriodicSpec::Named(names) => {
                 for &name in names {
-                    if name as usize >= dimensions {
-                        return wrong("axes of the scene, `x` or `y`".to_owned(), "`z`".to_owned());
-                    }
+                    check.require((name as usize) < dimensions, key, "axes of the scene, `x` or `y`", "`z`")?;
                     periodic[name as usize] = true;
                 }
             }
@@ -298,7 +280,7 @@ impl Resolver<'_> {
         let times = &self.file.output.snapshot_times;
         if let Some(outside) = times.iter().find(|&&time| !(time.is_finite() && (0.0..=end).contains(&time))) {
             let expected = format!("times (s) between 0 and the end of the run at {end}");
-            return Err(self.check.error("output.snapshot_times", &expected, &outside.to_string()));
+            return Err(self.check.error("output.snapshot_times", &expected, outside));
         }
         Ok(times.clone())
     }
@@ -306,25 +288,19 @@ impl Resolver<'_> {
     fn columns(&self) -> Result<Columns, SceneError> {
         let (check, output) = (&self.check, &self.file.output);
         let chosen = output.columns.clone().unwrap_or_else(|| Columns::USUAL.to_vec());
-        if let Some(digits) = output.digits.filter(|digits| !(1..=15).contains(digits)) {
-            return Err(check.error("output.digits", "1 to 15 digits", &digits.to_string()));
+        if let Some(digits) = output.digits {
+            check.require((1..=15).contains(&digits), "output.digits", "1 to 15 digits", digits)?;
         }
-        if output.mean_every_cycles.is_some() && !chosen.contains(&Chosen::MeanVirial) {
-            return Err(check.error(
-                "output.mean_every_cycles",
-                "`mean-virial` among the columns",
-                "no column with a mean",
-            ));
-        }
+        let (key, has_mean) = ("output.mean_every_cycles", chosen.contains(&Chosen::MeanVirial));
+        let is_used = output.mean_every_cycles.is_none() || has_mean;
+        check.require(is_used, key, "`mean-virial` among the columns", "no column with a mean")?;
         let mean_every = output.mean_every_cycles.unwrap_or(1);
-        if mean_every == 0 {
-            return Err(check.error("output.mean_every_cycles", "at least one cycle", "0"));
-        }
+        check.require(mean_every > 0, key, "at least one cycle", "0")?;
         Ok(Columns { chosen, digits: output.digits, mean_every })
     }
 
     fn material(&self, key: &str, name: &str) -> Result<u16, SceneError> {
         let place = self.check.place_of(key, name, "a material of this scene", self.file.materials.keys())?;
-        u16::try_from(place).map_err(|_| self.check.error(key, "at most 65535 materials", &place.to_string()))
+        u16::try_from(place).map_err(|_| self.check.error(key, "at most 65535 materials", place))
     }
 }

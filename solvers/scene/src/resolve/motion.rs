@@ -18,10 +18,10 @@ impl Resolver<'_> {
             }
             (Some(SpinSpec::Vector(rates)), Dimension::Three) => self.check.vector(key, rates),
             (Some(SpinSpec::About(rate)), Dimension::Three) => {
-                Err(self.check.error(key, "a vector of three numbers", &rate.to_string()))
+                Err(self.check.error(key, "a vector of three numbers", rate))
             }
             (Some(SpinSpec::Vector(rates)), Dimension::Two) => {
-                Err(self.check.error(key, "one number, the spin about z", &format!("{rates:?}")))
+                Err(self.check.error(key, "one number, the spin about z", format_args!("{rates:?}")))
             }
         }
     }
@@ -42,12 +42,11 @@ impl Resolver<'_> {
                     return Err(check.error(&key("centre"), "a centre to rotate about", "none"));
                 };
                 let centre = check.vector(&key("centre"), centre)?;
-                if centre_of.is_some_and(|other| other != centre) {
-                    return Err(check.error(&key("centre"), "one centre for all phases of a wall", "another one"));
-                }
-                if motion.phases.iter().any(|phase: &Phase| phase.spin.cross(&spin).norm() > 0.0) {
-                    return Err(check.error(&key("spin"), "one axis for all phases of a wall", "another one"));
-                }
+                let is_same = centre_of.is_none_or(|other| other == centre);
+                check.require(is_same, &key("centre"), "one centre for all phases of a wall", "another one")?;
+                let is_other = |phase: &Phase| phase.spin.cross(&spin).norm() > 0.0;
+                let is_same = !motion.phases.iter().any(is_other);
+                check.require(is_same, &key("spin"), "one axis for all phases of a wall", "another one")?;
                 centre_of = Some(centre);
             }
             let start = self.moment(&key("start"), spec.start, spec.start_cycle, Moment::Seconds(0.0))?;
@@ -73,20 +72,18 @@ impl Resolver<'_> {
         }
         let check = &self.check;
         check.exactly_one(key, &forms)?;
-        if spec.velocity.is_some() != spec.ramp.is_some() {
-            let expected =
-                if spec.ramp.is_some() { "the final `velocity` of the ramp" } else { "a ramp without `velocity`" };
-            let found = if spec.ramp.is_some() { "none" } else { "one" };
-            return Err(check.error(&format!("{key}.velocity"), expected, found));
-        }
-        if spec.start_cycle.is_some() || spec.stop_cycle.is_some() || spec.centre.is_some() {
-            let found = "`start_cycle`, `stop_cycle` or `centre`";
-            return Err(check.error(key, "a `start` and a `stop` in seconds", found));
-        }
+        let (expected, found) = match spec.ramp {
+            Some(_) => ("the final `velocity` of the ramp", "none"),
+            None => ("a ramp without `velocity`", "one"),
+        };
+        let is_fitting = spec.velocity.is_some() == spec.ramp.is_some();
+        check.require(is_fitting, &format!("{key}.velocity"), expected, found)?;
+        let is_in_seconds = spec.start_cycle.is_none() && spec.stop_cycle.is_none() && spec.centre.is_none();
+        let found = "`start_cycle`, `stop_cycle` or `centre`";
+        check.require(is_in_seconds, key, "a `start` and a `stop` in seconds", found)?;
         if let Some(rows) = &spec.table {
-            if spec.start.is_some() || spec.stop.is_some() {
-                return Err(check.error(key, "only the times of the table", "`start` or `stop`"));
-            }
+            let has_no_times = spec.start.is_none() && spec.stop.is_none();
+            check.require(has_no_times, key, "only the times of the table", "`start` or `stop`")?;
             motion.phases.extend(self.table(&format!("{key}.table"), rows)?);
             return Ok(true);
         }
@@ -121,19 +118,16 @@ impl Resolver<'_> {
         for row in rows {
             let wrong = row.len() != check.dimension.count() + 1 || row.iter().any(|value| !value.is_finite());
             let rises = |(before, _): &(f64, Vector3<f64>)| row[0] > *before;
-            if wrong || row[0] < 0.0 || !places.last().is_none_or(rises) {
-                let expected = format!("at least two rows {shape}, with increasing times from 0 on");
-                return Err(check.error(key, &expected, &format!("{row:?}")));
-            }
+            let is_valid = !wrong && row[0] >= 0.0 && places.last().is_none_or(rises);
+            let expected = format!("at least two rows {shape}, with increasing times from 0 on");
+            check.require(is_valid, key, &expected, format_args!("{row:?}"))?;
             places.push((row[0], check.vector(key, &row[1..])?));
         }
         let Some(first) = places.first().filter(|_| places.len() > 1) else {
-            return Err(check.error(key, &format!("at least two rows {shape}"), &format!("{}", places.len())));
+            return Err(check.error(key, &format!("at least two rows {shape}"), places.len()));
         };
-        if first.1 != Vector3::zeros() {
-            let expected = "a first row with zeros after its time, because displacements are relative to the start";
-            return Err(check.error(key, expected, &format!("{:?}", rows[0])));
-        }
+        let expected = "a first row with zeros after its time, because displacements are relative to the start";
+        check.require(first.1 == Vector3::zeros(), key, expected, format_args!("{:?}", rows[0]))?;
         let mut phases: Vec<Phase> = Vec::new();
         for pair in places.windows(2) {
             let [(from, before), (to, after)] = [pair[0], pair[1]];

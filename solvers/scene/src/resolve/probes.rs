@@ -46,8 +46,8 @@ impl Resolver<'_> {
             };
             let at = check.vector(&key("point.at"), &point.at)?;
             if let Some(away) = names.outside(&body, at, check.dimension.count()) {
-                let expected = "a position inside the body at the start";
-                return Err(check.error(&key("point.at"), expected, &format!("{:?}, {away:.3e} m outside", point.at)));
+                let found = format_args!("{:?}, {away:.3e} m outside", point.at);
+                return Err(check.error(&key("point.at"), "a position inside the body at the start", found));
             }
             spots.push(Spot { body, at });
             ProbeTarget::Point(spots.len() - 1)
@@ -78,21 +78,19 @@ impl Resolver<'_> {
             ProbeTarget::System
         };
         let of_a_grain = matches!(target, ProbeTarget::Grain(_) | ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..));
-        if !names.stays.is_always() && (of_a_grain || target == ProbeTarget::Budget) {
-            let expected =
-                "a probe of a wall, the system or a count, because grains are inserted or removed in this scene";
-            let found = match target {
-                ProbeTarget::Grain(_) => "a probe of a grain",
-                ProbeTarget::Budget => "a probe of the budget",
-                _ => "a probe of a contact",
-            };
-            return Err(check.error(&format!("probes.{name}"), expected, found));
-        }
-        if names.walls.iter().any(|wall| wall.piston.is_some()) && target == ProbeTarget::Budget {
-            let expected = "no budget in a scene with a piston, because the budget does not include the energy of the \
-                            piston";
-            return Err(check.error(&format!("probes.{name}.budget"), expected, "one"));
-        }
+        let is_budget = target == ProbeTarget::Budget;
+        let expected = "a probe of a wall, the system or a count, because grains are inserted or removed in this scene";
+        let found = match target {
+            ProbeTarget::Grain(_) => "a probe of a grain",
+            ProbeTarget::Budget => "a probe of the budget",
+            _ => "a probe of a contact",
+        };
+        let is_possible = names.stays.is_always() || !(of_a_grain || is_budget);
+        check.require(is_possible, &format!("probes.{name}"), expected, found)?;
+        let expected =
+            "no budget in a scene with a piston, because the budget does not include the energy of the piston";
+        let is_possible = !is_budget || names.walls.iter().all(|wall| wall.piston.is_none());
+        check.require(is_possible, &key("budget"), expected, "one")?;
         Ok(Probe { name: name.to_owned(), target })
     }
 }
@@ -150,10 +148,13 @@ impl Names<'_> {
         let range = &self.groups[place];
         match number {
             Some(number) if (1..=range.len()).contains(&number) => Ok(range.start + number - 1),
-            Some(_) => Err(check.error(key, &format!("{group}.1 to {group}.{}", range.len()), &format!("`{name}`"))),
-            None if range.len() == 1 => Ok(range.start),
+            Some(_) => {
+                let expected = format_args!("{group}.1 to {group}.{}", range.len());
+                Err(check.error(key, expected, format_args!("`{name}`")))
+            }
             None => {
-                Err(check.error(key, &format!("{group}.k, with k from 1 to {}", range.len()), &format!("`{name}`")))
+                let expected = format_args!("{group}.k, with k from 1 to {}", range.len());
+                check.require(range.len() == 1, key, expected, format_args!("`{name}`")).map(|()| range.start)
             }
         }
     }

@@ -42,9 +42,8 @@ impl Resolver<'_> {
             });
         }
         if spec.springs {
-            if springs.is_some() {
-                return Err(check.error(&key, "springs of one state (`springs = false` for further states)", "two"));
-            }
+            let expected = "springs of one state (`springs = false` for further states)";
+            check.require(springs.is_none(), &key, expected, "two")?;
             *springs = Some(state.springs.later_by(first));
         }
         Ok(())

@@ -23,16 +23,13 @@ impl Resolver<'_> {
         let key = |part: &str| format!("grains.{name}.poured.{part}");
         let low = check.vector(&key("low"), &spec.low)?;
         let high = check.vector(&key("high"), &spec.high)?;
-        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] > high[axis]) {
-            let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
-            return Err(check.error(&key("high"), "a corner not below `low`", &found));
+        for axis in 0..check.dimension.count() {
+            let found = along(low[axis], high[axis], axis);
+            check.require(low[axis] <= high[axis], &key("high"), "a corner not below `low`", found)?;
         }
-        if spec.count == 0 {
-            return Err(check.error(&key("count"), "at least one grain", "0"));
-        }
-        if group.spin.is_some() {
-            return Err(check.error(&format!("grains.{name}.spin"), "no spin, because the grains are poured", "one"));
-        }
+        check.require(spec.count > 0, &key("count"), "at least one grain", "0")?;
+        let expected = "no spin, because the grains are poured";
+        check.require(group.spin.is_none(), &format!("grains.{name}.spin"), expected, "one")?;
         let pour = Pour {
             count: spec.count,
             rate: check.positive(&key("rate"), spec.rate, "rate (1/s)")?,
@@ -61,9 +58,7 @@ impl Resolver<'_> {
         let Some(spec) = &self.file.removal else { return Ok(None) };
         let check = &self.check;
         let [low, high] = self.corners("removal", &spec.low, &spec.high)?;
-        if spec.every_cycles == 0 {
-            return Err(check.error("removal.every_cycles", "at least one cycle", "0"));
-        }
+        check.require(spec.every_cycles > 0, "removal.every_cycles", "at least one cycle", "0")?;
         Ok(Some(Removal { low, high, every: spec.every_cycles }))
     }
 
@@ -74,9 +69,9 @@ impl Resolver<'_> {
         let is_lost = |entry: &&Entry| removal.takes(grains[entry.grain].position, dimension);
         let Some(lost) = stays.entries.iter().find(is_lost) else { return Ok(()) };
         let group = groups.iter().find(|(_, range)| range.contains(&lost.grain)).map_or("", |(name, _)| name);
-        let place = &grains[lost.grain].position.as_slice()[..dimension];
+        let found = format_args!("a grain inserted at {:?}", &grains[lost.grain].position.as_slice()[..dimension]);
         let expected = "a box within the box of `removal`, because grains outside it are removed";
-        Err(self.check.error(&format!("grains.{group}.poured"), expected, &format!("a grain inserted at {place:?}")))
+        Err(self.check.error(&format!("grains.{group}.poured"), expected, found))
     }
 
     /// Returns the corners of the box with the keys `low` and `high` below `key`. Each edge must have a positive
@@ -85,30 +80,25 @@ impl Resolver<'_> {
         let check = &self.check;
         let (of_low, of_high) = (format!("{key}.low"), format!("{key}.high"));
         let (low, high) = (check.vector(&of_low, low)?, check.vector(&of_high, high)?);
-        if let Some(axis) = (0..check.dimension.count()).find(|&axis| low[axis] >= high[axis]) {
-            let found = format!("{} to {} along {}", low[axis], high[axis], ["x", "y", "z"][axis]);
-            return Err(check.error(&of_high, "a corner above `low`", &found));
+        for axis in 0..check.dimension.count() {
+            let found = along(low[axis], high[axis], axis);
+            check.require(low[axis] < high[axis], &of_high, "a corner above `low`", found)?;
         }
         Ok([low, high])
     }
 
     /// Rejects insertion or removal of grains in scenes with `driven` grains or with deformable bodies.
     pub(super) fn refuse_passing(&self, stays: &Stays, driven: &[Driven], bodies: &[Block]) -> Result<(), SceneError> {
+        let (check, is_always) = (&self.check, stays.is_always());
+        let expected = "no driven grains in a scene that inserts or removes grains";
+        check.require(is_always || driven.is_empty(), "driven", expected, "some")?;
         let key = if stays.entries.is_empty() { "removal" } else { "grains" };
-        if !stays.is_always() && !driven.is_empty() {
-            return Err(self.check.error(
-                "driven",
-                "no driven grains in a scene that inserts or removes grains",
-                "some",
-            ));
-        }
-        if !stays.is_always() && !bodies.is_empty() {
-            return Err(self.check.error(
-                key,
-                "no insertion or removal of grains in a scene with deformable bodies",
-                "some",
-            ));
-        }
-        Ok(())
+        let expected = "no insertion or removal of grains in a scene with deformable bodies";
+        check.require(is_always || bodies.is_empty(), key, expected, "some")
     }
+}
+
+/// Returns a range along an axis (m) as text for errors.
+pub(super) fn along(low: f64, high: f64, axis: usize) -> String {
+    format!("{low} to {high} along {}", ["x", "y", "z"][axis])
 }

@@ -11,6 +11,7 @@ impl Resolver<'_> {
     pub(super) fn wall(&self, name: &str, spec: &WallSpec) -> Result<Wall, SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("walls.{name}.{part}");
+        let is_flat = check.dimension == Dimension::Two;
         check.exactly_one(
             &format!("walls.{name}"),
             &[
@@ -25,34 +26,23 @@ impl Resolver<'_> {
         let shape = if let Some(plane) = &spec.plane {
             let normal = check.vector(&key("plane.normal"), &plane.normal)?;
             let length = normal.norm();
-            if !(length > 0.0 && length.is_finite()) {
-                let found = format!("a vector of length {length}");
-                return Err(check.error(&key("plane.normal"), "a direction", &found));
-            }
+            let found = format_args!("a vector of length {length}");
+            check.require(length > 0.0 && length.is_finite(), &key("plane.normal"), "a direction", found)?;
             WallShape::Plane { point: check.vector(&key("plane.point"), &plane.point)?, normal: normal.normalize() }
         } else if let Some([from, to]) = &spec.segment {
-            if check.dimension == Dimension::Three {
-                return Err(check.error(&key("segment"), "a `rectangle` or `plane` in three dimensions", "a segment"));
-            }
-            let ends = [check.vector(&key("segment"), from)?, check.vector(&key("segment"), to)?];
-            if ends[0] == ends[1] {
-                return Err(check.error(&key("segment"), "two different points", "the same point twice"));
-            }
+            let key = key("segment");
+            check.require(is_flat, &key, "a `rectangle` or `plane` in three dimensions", "a segment")?;
+            let ends = [check.vector(&key, from)?, check.vector(&key, to)?];
+            check.require(ends[0] != ends[1], &key, "two different points", "the same point twice")?;
             WallShape::Segment { ends }
         } else if let Some(rectangle) = &spec.rectangle {
-            if check.dimension == Dimension::Two {
-                return Err(check.error(&key("rectangle"), "a `segment` or `plane` in two dimensions", "a rectangle"));
-            }
+            check.require(!is_flat, &key("rectangle"), "a `segment` or `plane` in two dimensions", "a rectangle")?;
             let corner = check.vector(&key("rectangle.corner"), &rectangle.corner)?;
-            let edges = [
-                check.vector(&key("rectangle.edges"), &rectangle.edges[0])?,
-                check.vector(&key("rectangle.edges"), &rectangle.edges[1])?,
-            ];
+            let (key, [u, v]) = (key("rectangle.edges"), &rectangle.edges);
+            let edges = [check.vector(&key, u)?, check.vector(&key, v)?];
             let lengths = edges[0].norm() * edges[1].norm();
-            if lengths == 0.0 || edges[0].dot(&edges[1]).abs() > 1e-9 * lengths {
-                let found = format!("{:?} and {:?}", rectangle.edges[0], rectangle.edges[1]);
-                return Err(check.error(&key("rectangle.edges"), "two perpendicular edges", &found));
-            }
+            let is_square = lengths != 0.0 && edges[0].dot(&edges[1]).abs() <= 1e-9 * lengths;
+            check.require(is_square, &key, "two perpendicular edges", format_args!("{u:?} and {v:?}"))?;
             WallShape::Rectangle { corner, edges }
         } else if let Some(cylinder) = &spec.cylinder {
             let radius = check.positive(&key("cylinder.radius"), cylinder.radius, "radius (m)")?;
@@ -61,10 +51,9 @@ impl Resolver<'_> {
             for radius in cone.radii {
                 check.not_negative(&key("cone.radii"), radius, "radius (m)")?;
             }
-            if cone.radii[0] == cone.radii[1] {
-                let found = format!("{} twice", cone.radii[0]);
-                return Err(check.error(&key("cone.radii"), "two different radii (a `cylinder` has one)", &found));
-            }
+            let [first, last] = cone.radii;
+            let expected = "two different radii (a `cylinder` has one)";
+            check.require(first != last, &key("cone.radii"), expected, format_args!("{first} twice"))?;
             self.round(&key("cone"), &cone.axis, cone.radii)?
         } else if let Some(mesh) = &spec.mesh {
             self.mesh(name, mesh)?
@@ -81,12 +70,9 @@ impl Resolver<'_> {
     fn piston(&self, wall: &str, spec: &PistonSpec, shape: &WallShape, motion: &Motion) -> Result<Piston, SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("walls.{wall}.piston{part}");
-        if !matches!(shape, WallShape::Plane { .. }) {
-            return Err(check.error(&key(""), "a `plane` as piston", "another wall"));
-        }
-        if motion.phases.iter().any(|phase| phase.spin.norm() > 0.0) {
-            return Err(check.error(&key(""), "a plane that does not rotate", "a rotating plane"));
-        }
+        let is_plane = matches!(shape, WallShape::Plane { .. });
+        check.require(is_plane, &key(""), "a `plane` as piston", "another wall")?;
+        check.require(!motion.rotates(), &key(""), "a plane that does not rotate", "a rotating plane")?;
         Ok(Piston {
             force: check.finite(&key(".force"), spec.force, "force (N)")?,
             mass: check.positive(&key(".mass"), spec.mass, "mass (kg)")?,
@@ -96,15 +82,13 @@ impl Resolver<'_> {
 
     fn round(&self, key: &str, axis: &[Vec<f64>; 2], radii: [f64; 2]) -> Result<WallShape, SceneError> {
         let check = &self.check;
-        if check.dimension == Dimension::Two {
-            return Err(check.error(key, "a `segment` or `plane` in two dimensions", "a round wall"));
-        }
-        let of_axis = format!("{key}.axis");
-        let axis = [check.vector(&of_axis, &axis[0])?, check.vector(&of_axis, &axis[1])?];
+        let is_solid = check.dimension == Dimension::Three;
+        check.require(is_solid, key, "a `segment` or `plane` in two dimensions", "a round wall")?;
+        let key = format!("{key}.axis");
+        let axis = [check.vector(&key, &axis[0])?, check.vector(&key, &axis[1])?];
         let length = (axis[1] - axis[0]).norm();
-        if !(length > 0.0 && length.is_finite()) {
-            return Err(check.error(&of_axis, "two different points", &format!("{length} m between them")));
-        }
+        let found = format_args!("{length} m between them");
+        check.require(length > 0.0 && length.is_finite(), &key, "two different points", found)?;
         Ok(WallShape::Round { axis, radii })
     }
 }
