@@ -1,6 +1,7 @@
 //! Generation of grains on lattices and at random positions from a seed.
 
 use crate::dimension::Dimension;
+use crate::near::images;
 use crate::packing::filled;
 use crate::radii::Radii;
 use crate::scene::Domain;
@@ -108,9 +109,10 @@ fn random_within(
     for &radius in &sizes {
         let position = (0..TRIES).take_while(|_| taken.visits.get() < most).find_map(|_| {
             let centre = somewhere(&mut generator, radius, domain, dimension);
-            // Most positions are not free, so periodic images are tested only if the position itself is free.
+            // Most positions are not free, so periodic images are tested only if the position itself is free. An image at
+            // least one cell width outside the domain overlaps nothing.
             let is_free = taken.is_free(centre, radius)
-                && images(centre, domain, cell)[1..].iter().all(|&image| taken.is_free(image, radius));
+                && images(centre, Some(domain), cell)[1..].iter().all(|&image| taken.is_free(image, radius));
             is_free.then_some(centre)
         });
         let position = position.ok_or_else(|| NoRoom {
@@ -144,26 +146,6 @@ fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {
             Vector3::new(across * cosine, across * sine, height)
         }
     }
-}
-
-/// Returns the centre, and its periodic images that lie less than one cell width outside the domain.
-fn images(centre: Vector3<f64>, domain: &Domain, cell: f64) -> Vec<Vector3<f64>> {
-    let mut images = vec![centre];
-    for axis in 0..3 {
-        if domain.periodic[axis] {
-            let length = domain.high[axis] - domain.low[axis];
-            for image in images.clone() {
-                for shift in [-length, length] {
-                    let mut shifted = image;
-                    shifted[axis] += shift;
-                    if shifted[axis] > domain.low[axis] - cell && shifted[axis] < domain.high[axis] + cell {
-                        images.push(shifted);
-                    }
-                }
-            }
-        }
-    }
-    images
 }
 
 /// Spheres placed so far, in a hash table of cells. A cell is as wide as the largest diameter. Distant cells may share

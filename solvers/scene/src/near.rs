@@ -108,7 +108,7 @@ fn wrapped(mut place: Vector3<f64>, domain: Option<&Domain>) -> Vector3<f64> {
 }
 
 /// Returns a position in the domain, and its periodic images at most `reach` (m) outside the periodic faces.
-fn images(place: Vector3<f64>, domain: Option<&Domain>, reach: f64) -> Vec<Vector3<f64>> {
+pub(crate) fn images(place: Vector3<f64>, domain: Option<&Domain>, reach: f64) -> Vec<Vector3<f64>> {
     let mut images = vec![place];
     if let Some(domain) = domain {
         for axis in (0..3).filter(|&axis| domain.periodic[axis]) {

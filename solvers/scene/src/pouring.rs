@@ -2,6 +2,7 @@
 //! from a seed, so that every solver inserts the same grains.
 
 use crate::dimension::Dimension;
+use crate::overlap::nearest_image;
 use crate::scene::Domain;
 use nalgebra::Vector3;
 use rand::{RngExt, SeedableRng};
@@ -75,14 +76,7 @@ pub fn poured(
         }
         let places: Vec<Vector3<f64>> = near.iter().map(now).collect();
         let is_free = |centre: &Vector3<f64>| {
-            places.iter().all(|place| {
-                let mut between = place - centre;
-                for axis in (0..dimension.count()).filter(|&axis| domain.is_some_and(|domain| domain.periodic[axis])) {
-                    let length = domain.map_or(1.0, |domain| domain.high[axis] - domain.low[axis]);
-                    between[axis] -= (between[axis] / length).round() * length;
-                }
-                between.norm_squared() >= reach * reach
-            })
+            places.iter().all(|place| nearest_image(place - centre, domain).norm_squared() >= reach * reach)
         };
         let centre = (0..TRIES).find_map(|_| {
             let mut centre = Vector3::zeros();
