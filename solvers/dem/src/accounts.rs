@@ -53,8 +53,8 @@ impl EnergyBudget {
 /// Returns the reason why the energy budget of a scene cannot be computed; `None` if it can.
 pub(crate) fn reason(scene: &Scene) -> Option<String> {
     let effects = Effects::from_scene(scene);
-    let lossy = effects.contact_damping || effects.global_damping || effects.rolling_resistance;
-    let turning = scene.walls.iter().any(|wall| wall.motion.phases.iter().any(|phase| phase.spin.norm() > 0.0));
+    let lossy = effects.contact_damping || effects.rolling_resistance || scene.global_damping != 0.0;
+    let turning = scene.walls.iter().any(|wall| wall.motion.rotates());
     let what = if lossy {
         "damping and rolling resistance"
     } else if scene.driven.iter().any(Driven::is_for_a_while) {

@@ -1,6 +1,6 @@
 //! Scenes that a rigid-body engine does not support, each with its reason.
 
-use grainbench_scene::effects::Effects;
+use grainbench_scene::effect::Effect;
 use grainbench_scene::motion::Moment;
 use grainbench_scene::overlap;
 use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
@@ -30,14 +30,13 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
              engine separates them at its own rate"
         ));
     }
-    let effects = Effects::from_scene(scene);
-    if effects.periodic {
+    if scene.is_periodic() {
         return Some("rapier has no periodic axes".to_owned());
     }
     if scene.laws.iter().flatten().any(|law| law.cohesion != 0.0) {
         return Some("the contacts of rapier can only push, so it has no cohesion".to_owned());
     }
-    if effects.rolling_resistance {
+    if Effect::RollingResistance.is_on(scene) {
         return Some("rapier has no rolling resistance".to_owned());
     }
     if scene.laws.iter().flatten().any(|law| law.is_hertz() && law.normal_damping != 0.0) {

@@ -61,61 +61,40 @@ impl Effect {
         Self::ALL.into_iter().filter(|effect| !matches!(effect, Self::Hertz | Self::Restitution))
     }
 
+    /// Returns the name of the effect for users, its name in files, and the title of a negative control without it.
+    const fn names(self) -> [&'static str; 3] {
+        match self {
+            Self::Friction => ["friction and rotation", "friction", "without friction and rotation"],
+            Self::Cohesion => ["cohesion", "cohesion", "without cohesion"],
+            Self::Hertz => ["Hertz contacts", "hertz", "with linear springs"],
+            Self::ContactDamping => ["contact damping", "contact-damping", "without contact damping"],
+            Self::Restitution => ["restitution", "restitution", "without restitution"],
+            Self::RollingResistance => ["rolling resistance", "rolling-resistance", "without rolling resistance"],
+            Self::GlobalDamping => ["global damping", "global-damping", "without global damping"],
+            Self::Gravity => ["gravity", "gravity", "without gravity"],
+            Self::PeriodicAxes => ["periodic axes", "periodic-axes", "without periodic axes"],
+            Self::MovingWalls => ["moving walls", "moving-walls", "with walls at rest"],
+            Self::Plasticity => ["plasticity", "plasticity", "without plasticity"],
+            Self::Viscosity => ["viscosity", "viscosity", "without viscosity"],
+        }
+    }
+
     /// Returns the name of the effect for users.
     #[must_use]
     pub const fn word(self) -> &'static str {
-        match self {
-            Self::Friction => "friction and rotation",
-            Self::Cohesion => "cohesion",
-            Self::Hertz => "Hertz contacts",
-            Self::ContactDamping => "contact damping",
-            Self::Restitution => "restitution",
-            Self::RollingResistance => "rolling resistance",
-            Self::GlobalDamping => "global damping",
-            Self::Gravity => "gravity",
-            Self::PeriodicAxes => "periodic axes",
-            Self::MovingWalls => "moving walls",
-            Self::Plasticity => "plasticity",
-            Self::Viscosity => "viscosity",
-        }
+        self.names()[0]
     }
 
     /// Returns the name of the effect in files.
     #[must_use]
     pub const fn key_word(self) -> &'static str {
-        match self {
-            Self::Friction => "friction",
-            Self::Cohesion => "cohesion",
-            Self::Hertz => "hertz",
-            Self::ContactDamping => "contact-damping",
-            Self::Restitution => "restitution",
-            Self::RollingResistance => "rolling-resistance",
-            Self::GlobalDamping => "global-damping",
-            Self::Gravity => "gravity",
-            Self::PeriodicAxes => "periodic-axes",
-            Self::MovingWalls => "moving-walls",
-            Self::Plasticity => "plasticity",
-            Self::Viscosity => "viscosity",
-        }
+        self.names()[1]
     }
 
     /// Returns the title of a negative control without the effect.
     #[must_use]
     pub const fn absence(self) -> &'static str {
-        match self {
-            Self::Friction => "without friction and rotation",
-            Self::Cohesion => "without cohesion",
-            Self::Hertz => "with linear springs",
-            Self::ContactDamping => "without contact damping",
-            Self::Restitution => "without restitution",
-            Self::RollingResistance => "without rolling resistance",
-            Self::GlobalDamping => "without global damping",
-            Self::Gravity => "without gravity",
-            Self::PeriodicAxes => "without periodic axes",
-            Self::MovingWalls => "with walls at rest",
-            Self::Plasticity => "without plasticity",
-            Self::Viscosity => "without viscosity",
-        }
+        self.names()[2]
     }
 
     /// Returns the scene key that switches the effect on, with its value; `None` if the effect is off.

@@ -17,14 +17,6 @@ pub struct Effects {
     pub hertz: bool,
     /// Moments against rolling: at least one law has rolling resistance.
     pub rolling_resistance: bool,
-    /// Mass-proportional damping of every grain.
-    pub global_damping: bool,
-    /// True if the scene has gravity.
-    pub gravity: bool,
-    /// Periodic axes.
-    pub periodic: bool,
-    /// Walls or grains with prescribed motion.
-    pub moving_walls: bool,
 }
 
 impl Effects {
@@ -38,10 +30,6 @@ impl Effects {
             restitution: on(Effect::Restitution),
             hertz: on(Effect::Hertz),
             rolling_resistance: on(Effect::RollingResistance),
-            global_damping: on(Effect::GlobalDamping),
-            gravity: on(Effect::Gravity),
-            periodic: on(Effect::PeriodicAxes),
-            moving_walls: on(Effect::MovingWalls),
         }
     }
 
