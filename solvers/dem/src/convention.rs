@@ -157,59 +157,39 @@ impl Convention {
     /// Returns the options as text, for a record.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
-        vec![
-            format!(
-                "Coulomb limit on {}",
-                match self.coulomb_cap {
-                    CoulombCap::Spring => "the spring",
-                    CoulombCap::SpringAndDashpot => "spring and dashpot",
-                }
-            ),
-            format!(
-                "limit ∝ {}",
-                match self.cap_normal {
-                    CapNormal::Spring => "normal spring force",
-                    CapNormal::Total => "total normal force",
-                    CapNormal::Pushing => "total normal force where it pushes",
-                }
-            ),
-            format!(
-                "lever arm {}",
-                match self.torque_arm {
-                    TorqueArm::Radius => "R",
-                    TorqueArm::ContactPoint => "R − overlap/2",
-                }
-            ),
-            format!(
-                "tension {}",
-                match self.tension {
-                    Tension::Allowed => "allowed",
-                    Tension::Clipped => "clipped",
-                }
-            ),
-            format!(
-                "tangential spring {}",
-                match self.history {
-                    History::Turned => "turned with the contact",
-                    History::Projected => "projected on the tangent",
-                }
-            ),
-            format!(
-                "velocities on the normal at {}",
-                match self.velocity_normal {
-                    VelocityNormal::MidStep => "mid-step",
-                    VelocityNormal::EndOfStep => "the end of the step",
-                }
-            ),
-            format!(
-                "rolling at walls from {}",
-                match self.wall_rolling {
-                    WallRolling::RelativeSpin => "the spin relative to the wall",
-                    WallRolling::Spin => "the spin",
-                    WallRolling::Surface => "the surface",
-                }
-            ),
-        ]
+        let words = [
+            match self.coulomb_cap {
+                CoulombCap::Spring => "Coulomb limit on the spring",
+                CoulombCap::SpringAndDashpot => "Coulomb limit on spring and dashpot",
+            },
+            match self.cap_normal {
+                CapNormal::Spring => "limit ∝ normal spring force",
+                CapNormal::Total => "limit ∝ total normal force",
+                CapNormal::Pushing => "limit ∝ total normal force where it pushes",
+            },
+            match self.torque_arm {
+                TorqueArm::Radius => "lever arm R",
+                TorqueArm::ContactPoint => "lever arm R − overlap/2",
+            },
+            match self.tension {
+                Tension::Allowed => "tension allowed",
+                Tension::Clipped => "tension clipped",
+            },
+            match self.history {
+                History::Turned => "tangential spring turned with the contact",
+                History::Projected => "tangential spring projected on the tangent",
+            },
+            match self.velocity_normal {
+                VelocityNormal::MidStep => "velocities on the normal at mid-step",
+                VelocityNormal::EndOfStep => "velocities on the normal at the end of the step",
+            },
+            match self.wall_rolling {
+                WallRolling::RelativeSpin => "rolling at walls from the spin relative to the wall",
+                WallRolling::Spin => "rolling at walls from the spin",
+                WallRolling::Surface => "rolling at walls from the surface",
+            },
+        ];
+        words.map(str::to_owned).to_vec()
     }
 }
 
