@@ -3,21 +3,7 @@
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
 use crate::walls::MovingWall;
-use grainbench_scene::contact_law::ContactLaw;
 use grainbench_solver::failure::{Cause, SimulationFailure};
-
-/// Contact whose critical time step is checked.
-struct CheckedContact<'a> {
-    law: Option<&'a ContactLaw>,
-    /// Slot of the grain that the error message names.
-    slot: usize,
-    /// Overlap (m).
-    overlap: f64,
-    /// Effective radius R₁R₂/(R₁+R₂), or R at a wall (m).
-    radius: f64,
-    /// Inverse mass of the lighter body (1/kg).
-    inverse_mass: f64,
-}
 
 impl<S: Geometry> DemSimulation<S> {
     /// Returns an error if the critical time step 2√(m/k) of a contact is below the time step. m is the smaller mass of
@@ -33,13 +19,9 @@ impl<S: Geometry> DemSimulation<S> {
                     let [first, second] = [one, other].map(|slot| grains.radius(slot));
                     let reach = first + second;
                     if apart < reach * reach {
-                        self.refuse_stiff(&CheckedContact {
-                            law: self.scene.law(grains.material[one], grains.material[other]),
-                            slot: one,
-                            overlap: reach - apart.sqrt(),
-                            radius: first * second / reach,
-                            inverse_mass: grains.inverse_mass(one).max(grains.inverse_mass(other)),
-                        })?;
+                        let inverse_mass = grains.inverse_mass(one).max(grains.inverse_mass(other));
+                        let (overlap, radius) = (reach - apart.sqrt(), first * second / reach);
+                        self.refuse_stiff(one, grains.material[other], overlap, radius, inverse_mass)?;
                     }
                 }
             }
@@ -51,30 +33,33 @@ impl<S: Geometry> DemSimulation<S> {
         for (slot, distance) in wall.distances(&self.grains) {
             let radius = self.grains.radius(slot);
             if distance < radius {
-                self.refuse_stiff(&CheckedContact {
-                    law: self.scene.law(self.grains.material[slot], wall.material()),
-                    slot,
-                    overlap: radius - distance,
-                    radius,
-                    inverse_mass: self.grains.inverse_mass(slot),
-                })?;
+                self.refuse_stiff(slot, wall.material(), radius - distance, radius, self.grains.inverse_mass(slot))?;
             }
         }
         Ok(())
     }
 
-    fn refuse_stiff(&self, look: &CheckedContact<'_>) -> Result<(), Box<SimulationFailure>> {
-        let Some(law) = look.law else { return Ok(()) };
-        let (normal, tangential) = law.springs.stiffness(look.overlap, look.radius);
+    /// Checks a contact of the grain in a slot with a body of the material `other`. `radius` is the effective radius
+    /// R₁R₂/(R₁+R₂), or R at a wall (m), and `inverse_mass` that of the lighter body (1/kg).
+    fn refuse_stiff(
+        &self,
+        slot: usize,
+        other: u16,
+        overlap: f64,
+        radius: f64,
+        inverse_mass: f64,
+    ) -> Result<(), Box<SimulationFailure>> {
+        let Some(law) = self.scene.law(self.grains.material[slot], other) else { return Ok(()) };
+        let (normal, tangential) = law.springs.stiffness(overlap, radius);
         let stiffness = normal.max(if law.has_friction() { tangential } else { 0.0 });
         let time_step = self.motion.time_step;
-        if time_step * time_step * stiffness * look.inverse_mass <= 4.0 {
+        if time_step * time_step * stiffness * inverse_mass <= 4.0 {
             return Ok(());
         }
-        let critical = 2.0 / (stiffness * look.inverse_mass).sqrt();
+        let critical = 2.0 / (stiffness * inverse_mass).sqrt();
         let tenth = 0.1 * critical;
         let advice = format!("a step of at most {tenth:.4e} s, a tenth of the critical one, resolves the contact");
-        let position = self.grains.position(look.slot);
-        Err(self.failure(look.slot, position, Cause::StiffContact { stiffness }, critical, advice))
+        let position = self.grains.position(slot);
+        Err(self.failure(slot, position, Cause::StiffContact { stiffness }, critical, advice))
     }
 }
