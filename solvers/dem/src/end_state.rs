@@ -39,13 +39,13 @@ impl<S: Geometry> DemSimulation<S> {
             walls: self
                 .walls
                 .iter()
-                .flat_map(|wall| wall.near.iter().map(move |near| (wall.name(), near)))
+                .flat_map(|wall| wall.kept.near.iter().map(move |near| (wall.name(), near)))
                 .filter(|(_, (_, memory))| memory[..numbers].iter().any(|&number| number != 0.0))
                 .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
                 .chain(
                     self.walls
                         .iter()
-                        .flat_map(|wall| wall.at_mesh.held.iter().map(move |held| (wall.name(), held)))
+                        .flat_map(|wall| wall.kept.at_mesh.held.iter().map(move |held| (wall.name(), held)))
                         .map(|(name, held)| {
                             (of_slot(held.slot), format!("{name}{PART}{}", held.group), held.memory[..numbers].to_vec())
                         }),
@@ -100,9 +100,9 @@ impl<S: Geometry> DemSimulation<S> {
                 self.walls.iter_mut().find(|wall| wall.name() == name && wall.mesh().is_some() == part.is_some());
             let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
             match part {
-                None => wall.near.push((slot, memory(numbers))),
+                None => wall.kept.near.push((slot, memory(numbers))),
                 // The infinite contact point prevents the contact from continuing on another part.
-                Some(group) => wall.at_mesh.held.push(PreviousContact {
+                Some(group) => wall.kept.at_mesh.held.push(PreviousContact {
                     slot,
                     group,
                     point: Vector3::repeat(f64::INFINITY),

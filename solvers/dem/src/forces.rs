@@ -89,7 +89,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
         grains.load[at + 1].add(&Quad(torque));
     }
     let force = S::whole(answer.force, 0.0);
-    (0..3).for_each(|axis| wall.force[axis] -= force[axis]);
+    (0..3).for_each(|axis| wall.kept.force[axis] -= force[axis]);
     if let Some(seen) = seen {
         let (id, partner) = (grains.id[slot] + 1, Partner::Wall(number));
         seen.add(&answer, id, partner, position, radius);
@@ -120,12 +120,12 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> 
         mut seen: Option<&mut RecordedContacts>,
     ) -> u64 {
         let Some(mesh) = wall.mesh().cloned() else { return 0 };
-        let mut at_mesh = std::mem::take(&mut wall.at_mesh);
+        let mut at_mesh = std::mem::take(&mut wall.kept.at_mesh);
         let touching = at_mesh.evaluate(&mesh, grains, |grains, slot, touched, memory| {
             let facing = wall.facing_part(&mesh, grains.position(slot), touched);
             at_contact::<S, N, T, R>(terms, grains, wall, (slot, number), &facing, memory, &mut seen);
         });
-        wall.at_mesh = at_mesh;
+        wall.kept.at_mesh = at_mesh;
         touching
     }
 }
@@ -155,11 +155,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
         number: u16,
         mut seen: Option<&mut RecordedContacts>,
     ) -> u64 {
-        wall.force = Default::default();
+        wall.kept.force = Default::default();
         if wall.mesh().is_some() {
             return self.at_mesh(terms, grains, wall, number, seen);
         }
-        let mut near = std::mem::take(&mut wall.near);
+        let mut near = std::mem::take(&mut wall.kept.near);
         let mut touching = 0;
         for (entry, (slot, memory)) in near.iter_mut().enumerate() {
             let slot = *slot as usize;
@@ -172,7 +172,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Forces<S> for Chai
             touching += 1;
             at_contact::<S, N, T, R>(terms, grains, wall, (slot, number), &facing, memory, &mut seen);
         }
-        wall.near = near;
+        wall.kept.near = near;
         touching
     }
 

@@ -43,7 +43,7 @@ impl Joints {
     /// wall, so that a grain keeps its springs when it moves over a joint.
     pub(crate) fn look<S: Geometry>(&self, walls: &mut [MovingWall], grains: &Grains<S>) {
         for (number, edges) in self.of.iter().enumerate().filter(|(_, edges)| !edges.is_empty()) {
-            let mut near = std::mem::take(&mut walls[number].near);
+            let mut near = std::mem::take(&mut walls[number].kept.near);
             let mut covered = std::mem::take(&mut walls[number].covered);
             covered.clear();
             for (slot, memory) in &mut near {
@@ -51,13 +51,13 @@ impl Joints {
                 let owner = owner(walls, number, edges, at);
                 covered.push(owner.is_some());
                 let Some(owner) = owner.filter(|_| *memory != [0.0; MEMORY]) else { continue };
-                let theirs = walls[owner].near.iter_mut().find(|(other, _)| other == slot);
+                let theirs = walls[owner].kept.near.iter_mut().find(|(other, _)| other == slot);
                 if let Some((_, theirs)) = theirs.filter(|(_, theirs)| *theirs == [0.0; MEMORY]) {
                     *theirs = *memory;
                 }
                 *memory = [0.0; MEMORY];
             }
-            (walls[number].near, walls[number].covered) = (near, covered);
+            (walls[number].kept.near, walls[number].covered) = (near, covered);
         }
     }
 }

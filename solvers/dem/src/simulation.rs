@@ -221,18 +221,14 @@ impl<S: Geometry> DemSimulation<S> {
     fn account(&mut self) {
         let (driven, walls) = (&self.scene.driven, &self.walls);
         let mut forces = self.forces_on_driven();
-        forces.extend(walls.iter().map(|wall| wall.force));
+        forces.extend(walls.iter().map(|wall| wall.kept.force));
         let velocities = driven.iter().map(|driven| driven.velocity).chain(walls.iter().map(MovingWall::velocity));
         let energies = || self.recording.energies(&self.neighbours.list.shares);
-        self.budget.accounts.add(Step {
-            forces,
-            velocities: velocities.collect(),
-            gravity: self.scene.gravity,
-            free_mass: self.budget.free_mass,
-            friction: energies().map(|energies| energies.rubbed).sum(),
-            released: energies().map(|energies| energies.released).sum(),
-            time_step: self.motion.time_step,
-        });
+        let EnergyBudget { accounts, free_mass, .. } = &mut self.budget;
+        accounts.add_work(forces, velocities, self.motion.time_step);
+        accounts.impulse += self.scene.gravity * (*free_mass * self.motion.time_step);
+        accounts.friction += energies().map(|energies| energies.rubbed).sum::<f64>();
+        accounts.released += energies().map(|energies| energies.released).sum::<f64>();
     }
 
     /// Returns true if grains are due for insertion at a time (s).
@@ -281,7 +277,7 @@ impl<S: Geometry> DemSimulation<S> {
         let by_wall: Vec<WallNeighbours> = self
             .walls
             .iter()
-            .map(|wall| wall.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
+            .map(|wall| wall.kept.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
             .collect();
         let any_mesh = self.walls.iter().any(|wall| wall.mesh().is_some());
         let ids = if any_mesh { self.grains.id.clone() } else { Vec::new() };

@@ -21,8 +21,6 @@ pub(crate) struct MovingWall {
     /// Shape at the present position.
     pub(crate) shape: WallShape,
     centre: Vector3<f64>,
-    displacement: Displacement,
-    at_list: Displacement,
     /// Mean velocity of the centre over the last step (m/s).
     velocity: Vector3<f64>,
     /// Angular velocity about the centre over the last step (rad/s).
@@ -32,18 +30,10 @@ pub(crate) struct MovingWall {
     /// Factors c₁ (dimensionless) and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) of a point at r from the centre,
     /// with velocity V of the centre and angular velocity Ω.
     swing: [f64; 2],
-    /// Slots of the grains near the wall, with contact history.
-    pub(crate) near: WallNeighbours,
     /// True for each entry of `near` whose contact belongs to a joined wall; empty without joints.
     pub(crate) covered: Vec<bool>,
-    /// Nearby grains and contacts of a mesh. A mesh uses them instead of `near`.
-    pub(crate) at_mesh: MeshContacts,
-    /// Force of the grains on the wall in the last force evaluation (N).
-    pub(crate) force: Vector3<f64>,
-    /// For a piston: displacement along its normal (m), and speed half a step earlier (m/s).
-    pressed: [f64; 2],
-    /// True if the wall has been removed.
-    gone: bool,
+    /// State between two steps.
+    pub(crate) kept: WallMemory,
 }
 
 /// State of a wall between two steps. All other data of the wall follow from its prescribed motion.
@@ -51,10 +41,15 @@ pub(crate) struct MovingWall {
 pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
-    near: WallNeighbours,
-    at_mesh: MeshContacts,
-    force: Vector3<f64>,
+    /// Slots of the grains near the wall, with contact history.
+    pub(crate) near: WallNeighbours,
+    /// Nearby grains and contacts of a mesh. A mesh uses them instead of `near`.
+    pub(crate) at_mesh: MeshContacts,
+    /// Force of the grains on the wall in the last force evaluation (N).
+    pub(crate) force: Vector3<f64>,
+    /// For a piston: displacement along its normal (m), and speed half a step earlier (m/s).
     pressed: [f64; 2],
+    /// True if the wall has been removed.
     gone: bool,
 }
 
@@ -87,18 +82,20 @@ impl MovingWall {
         Self {
             shape: wall.shape.clone(),
             centre: wall.motion.centre,
-            displacement: rest,
-            at_list: rest,
             velocity: Vector3::zeros(),
             spin: Vector3::zeros(),
             mid_step,
             swing: [1.0, 0.0],
-            near: Vec::new(),
             covered: Vec::new(),
-            at_mesh: MeshContacts::default(),
-            force: Vector3::zeros(),
-            pressed: [0.0; 2],
-            gone: false,
+            kept: WallMemory {
+                displacement: rest,
+                at_list: rest,
+                near: Vec::new(),
+                at_mesh: MeshContacts::default(),
+                force: Vector3::zeros(),
+                pressed: [0.0; 2],
+                gone: false,
+            },
             wall: wall.clone(),
         }
     }
@@ -119,52 +116,36 @@ impl MovingWall {
 
     /// Returns the number of listed pairs of a grain and the wall, or of a grain and a triangle.
     pub(crate) fn pairs(&self) -> usize {
-        self.near.len() + self.at_mesh.pairs()
+        self.kept.near.len() + self.kept.at_mesh.pairs()
     }
 
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
-        self.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
-        self.at_mesh.forget();
+        self.kept.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
+        self.kept.at_mesh.forget();
     }
 
     pub(crate) fn name(&self) -> &str {
         &self.wall.name
     }
 
-    /// Returns the state between two steps.
-    pub(crate) fn memory(&self) -> WallMemory {
-        WallMemory {
-            displacement: self.displacement,
-            at_list: self.at_list,
-            near: self.near.clone(),
-            at_mesh: self.at_mesh.clone(),
-            force: self.force,
-            pressed: self.pressed,
-            gone: self.gone,
-        }
-    }
-
     /// Restores the state between two steps.
     pub(crate) fn recall(&mut self, memory: WallMemory) {
-        if self.displacement != memory.displacement {
+        if self.kept.displacement != memory.displacement {
             self.displaced_to(memory.displacement);
         }
-        self.at_list = memory.at_list;
-        (self.near, self.at_mesh) = (memory.near, memory.at_mesh);
-        self.force = memory.force;
-        (self.pressed, self.gone) = (memory.pressed, memory.gone);
+        self.kept = memory;
     }
 
     /// Returns true if the wall has been removed.
     pub(crate) fn is_gone(&self) -> bool {
-        self.gone
+        self.kept.gone
     }
 
     /// Removes the wall if `time` (s) has reached its removal time. Returns true if this call removes it.
     pub(crate) fn take_away(&mut self, time: f64) -> bool {
-        let now = !self.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
-        self.gone |= now;
+        let now = !self.kept.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
+        self.kept.gone |= now;
         now
     }
 
@@ -172,13 +153,13 @@ impl MovingWall {
     /// grains (m/s²), and its normal. Returns `None` for a wall without piston.
     fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
         let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, &self.shape) else { return None };
-        Some((piston, (piston.force + self.force.dot(normal)) / piston.mass, *normal))
+        Some((piston, (piston.force + self.kept.force.dot(normal)) / piston.mass, *normal))
     }
 
     /// Sets the speed of a piston to its value half a step before the start. A piston is at rest at the start.
     pub(crate) fn step_back_half(&mut self, time_step: f64) {
         if let Some((_, acceleration, _)) = self.pressure() {
-            self.pressed[1] = -0.5 * acceleration * time_step;
+            self.kept.pressed[1] = -0.5 * acceleration * time_step;
         }
     }
 
@@ -193,20 +174,20 @@ impl MovingWall {
         let mut now = motion.displacement(time, time_step);
         if let Some((piston, acceleration, normal)) = pressure {
             let half = 0.5 * piston.damping * time_step;
-            let [way, speed] = &mut self.pressed;
+            let [way, speed] = &mut self.kept.pressed;
             *speed = (*speed * (1.0 - half) + acceleration * time_step) / (1.0 + half);
             *way += *speed * time_step;
             now.translation += normal * *way;
         }
-        self.velocity = (now.translation - self.displacement.translation) / time_step;
-        self.spin = (now.rotation - self.displacement.rotation) / time_step;
+        self.velocity = (now.translation - self.kept.displacement.translation) / time_step;
+        self.spin = (now.rotation - self.kept.displacement.rotation) / time_step;
         self.swing = swing(self.spin.norm() * time_step, time_step, self.mid_step);
         self.displaced_to(now);
     }
 
     fn displaced_to(&mut self, displacement: Displacement) {
         let motion = &self.wall.motion;
-        self.displacement = displacement;
+        self.kept.displacement = displacement;
         self.centre = motion.centre + displacement.translation;
         self.shape = self.wall.shape.moved(motion, &displacement);
     }
@@ -214,14 +195,14 @@ impl MovingWall {
     /// Returns an upper bound of the displacement since the neighbour list was built (m), for points within `extent` (m) of
     /// the centre of rotation.
     pub(crate) fn moved_since_list(&self, extent: f64) -> f64 {
-        let translation = (self.displacement.translation - self.at_list.translation).norm();
-        translation + (self.displacement.rotation - self.at_list.rotation).norm() * extent
+        let translation = (self.kept.displacement.translation - self.kept.at_list.translation).norm();
+        translation + (self.kept.displacement.rotation - self.kept.at_list.rotation).norm() * extent
     }
 
     /// Starts a new list of nearby grains at the present position.
     pub(crate) fn begin_list(&mut self) {
-        self.at_list = self.displacement;
-        self.near.clear();
+        self.kept.at_list = self.kept.displacement;
+        self.kept.near.clear();
     }
 
     /// Lists the triangles near each grain, and moves the contacts of the last force evaluation to the new slots of their
@@ -231,13 +212,13 @@ impl MovingWall {
             return false;
         }
         self.begin_list();
-        let mut held = self.at_mesh.begin_list();
+        let mut held = self.kept.at_mesh.begin_list();
         let WallShape::Mesh(mesh) = &self.shape else { return false };
-        if self.gone {
+        if self.kept.gone {
             return true;
         }
         for slot in 0..grains.len() {
-            self.at_mesh.list(mesh, slot, grains.position(slot), grains.radius(slot) + skin);
+            self.kept.at_mesh.list(mesh, slot, grains.position(slot), grains.radius(slot) + skin);
         }
         held.retain_mut(|held| {
             let id = ids[held.slot as usize];
@@ -246,19 +227,19 @@ impl MovingWall {
         });
         // The sort is stable, so contacts of a grain keep their order.
         held.sort_by_key(|held| held.slot);
-        self.at_mesh.held = held;
+        self.kept.at_mesh.held = held;
         true
     }
 
     /// Returns the slot of each nearby grain and its distance from the wall (m). For a mesh, it returns the grains in
     /// contact in the last force evaluation.
     pub(crate) fn distances<S: Geometry>(&self, grains: &Grains<S>) -> impl Iterator<Item = (usize, f64)> {
-        let near = self.near.iter().map(|&(slot, _)| {
+        let near = self.kept.near.iter().map(|&(slot, _)| {
             let slot = slot as usize;
             (slot, self.facing(grains.position(slot)).distance)
         });
         let held = self.mesh().into_iter().flat_map(move |mesh| {
-            self.at_mesh.held.iter().map(move |held| {
+            self.kept.at_mesh.held.iter().map(move |held| {
                 let slot = held.slot as usize;
                 (slot, (mesh.within(grains.position(slot)) - held.point).norm())
             })
