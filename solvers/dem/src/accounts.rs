@@ -20,11 +20,11 @@ pub(crate) struct Accounts {
     /// Work of walls and grains with prescribed motion (J).
     work: f64,
     /// Frictional work (J).
-    friction: f64,
+    pub(crate) friction: f64,
     /// Energy released by tangential springs whose stiffness changed (J).
-    released: f64,
+    pub(crate) released: f64,
     /// Impulse of walls, of grains with prescribed motion, and of gravity (N s).
-    impulse: Vector3<f64>,
+    pub(crate) impulse: Vector3<f64>,
     /// Forces on groups of grains with prescribed motion, then on walls, at the last evaluation (N).
     forces: Vec<Vector3<f64>>,
 }
@@ -69,36 +69,21 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
     Some(format!("a probe requests the energy budget, which does not include the energy of {what}"))
 }
 
-/// Forces, velocities and energies of a step, which [`Accounts::add`] adds to the budget.
-pub(crate) struct Step {
-    /// Forces on groups of grains with prescribed motion, then on walls (N).
-    pub(crate) forces: Vec<Vector3<f64>>,
-    /// Velocities of groups of grains with prescribed motion, then of walls (m/s).
-    pub(crate) velocities: Vec<Vector3<f64>>,
-    /// Gravity g (m/s²).
-    pub(crate) gravity: Vector3<f64>,
-    /// Mass of the grains without prescribed motion (kg).
-    pub(crate) free_mass: f64,
-    /// Frictional work (J).
-    pub(crate) friction: f64,
-    /// Energy released by tangential springs whose stiffness changed (J).
-    pub(crate) released: f64,
-    /// Time step Δt (s).
-    pub(crate) time_step: f64,
-}
-
 impl Accounts {
-    /// Adds the contribution of a step.
-    pub(crate) fn add(&mut self, step: Step) {
-        for ((before, now), velocity) in self.forces.iter().zip(&step.forces).zip(&step.velocities) {
-            let impulse = (before + now) * (-0.5 * step.time_step);
+    /// Adds the work and the impulse in a step Δt = `time_step` (s). `forces` (N) and `velocities` (m/s) belong to the groups
+    /// of grains with prescribed motion, then to the walls.
+    pub(crate) fn add_work(
+        &mut self,
+        forces: Vec<Vector3<f64>>,
+        velocities: impl Iterator<Item = Vector3<f64>>,
+        time_step: f64,
+    ) {
+        for ((before, now), velocity) in self.forces.iter().zip(&forces).zip(velocities) {
+            let impulse = (before + now) * (-0.5 * time_step);
             self.impulse += impulse;
-            self.work += impulse.dot(velocity);
+            self.work += impulse.dot(&velocity);
         }
-        self.impulse += step.gravity * (step.free_mass * step.time_step);
-        self.friction += step.friction;
-        self.released += step.released;
-        self.forces = step.forces;
+        self.forces = forces;
     }
 
     /// Returns the budget at the time of the positions. `grains` holds the states at that time, `springs` the energy of

@@ -4,7 +4,7 @@
 //! the neighbour list if necessary ([`crate::neighbours`]). Then it computes the forces for the next cycle
 //! ([`crate::forces`]).
 
-use crate::accounts::{EnergyBudget, Step};
+use crate::accounts::EnergyBudget;
 use crate::contact::MEMORY;
 use crate::contact::options::Options;
 use crate::forces::Forces;
@@ -70,6 +70,7 @@ impl<S: Geometry> DemSimulation<S> {
             step: 0,
             cost: Counts::default(),
             budget: EnergyBudget::new(scene),
+            defect: None,
             entered: scene.stays.entered_by(0.0),
             scene: scene.clone(),
         };
