@@ -4,23 +4,10 @@
 
 use crate::record::Record;
 use grainbench_scene::sealed;
-use serde::{Deserialize, Serialize};
 
 const MAGIC: &[u8] = b"grainbench record ";
 /// Format that this program writes. It must be increased whenever the meaning or the position of stored data changes.
 const FORMAT: u32 = 1;
-
-#[derive(Serialize)]
-struct BorrowedRecord<'a> {
-    name: &'a str,
-    record: &'a Record,
-}
-
-#[derive(Deserialize)]
-struct OwnedRecord {
-    name: String,
-    record: Record,
-}
 
 /// Returns the bytes of a file with a record and its name.
 ///
@@ -36,13 +23,13 @@ pub fn to_bytes(name: &str, record: &Record) -> Result<Vec<u8>, String> {
 /// # Errors
 /// When the record cannot be serialised.
 pub fn body(name: &str, record: &Record) -> Result<Vec<u8>, String> {
-    postcard::to_allocvec(&BorrowedRecord { name, record }).map_err(|error| error.to_string())
+    postcard::to_allocvec(&(name, record)).map_err(|error| error.to_string())
 }
 
 /// Reads the record from the bytes of a file; `None` if the bytes are damaged, or have another format or another name.
 #[must_use]
 pub fn from_bytes(name: &str, bytes: &[u8]) -> Option<Record> {
     let body = sealed::open(MAGIC, FORMAT, bytes).ok()?;
-    let read: OwnedRecord = postcard::from_bytes(body).ok()?;
-    (read.name == name).then_some(read.record)
+    let (found, record): (String, Record) = postcard::from_bytes(body).ok()?;
+    (found == name).then_some(record)
 }
