@@ -60,26 +60,18 @@ fn values(probe: &Probe, scene: &Scene, look: &StepState) -> Vec<f64> {
     let snapshot = &look.snapshot;
     let vector = |v: &Vector3<f64>| v.iter().copied().take(count).collect::<Vec<f64>>();
     let spin = |v: &Vector3<f64>| if flat { vec![v.z] } else { v.iter().copied().collect() };
+    let moving = |position: &Vector3<f64>, velocity: &Vector3<f64>, turning: &Vector3<f64>, angle: f64| {
+        let angle = if flat { vec![angle] } else { Vec::new() };
+        [vector(position), vector(velocity), spin(turning), angle].concat()
+    };
     match probe.target {
         ProbeTarget::Grain(grain) => {
             let grain = &snapshot.grains[grain];
-            let mut all = vector(&grain.position);
-            all.extend(vector(&grain.velocity));
-            all.extend(spin(&grain.spin));
-            if flat {
-                all.push(grain.angle.unwrap_or(f64::NAN));
-            }
-            all
+            moving(&grain.position, &grain.velocity, &grain.spin, grain.angle.unwrap_or(f64::NAN))
         }
         ProbeTarget::Body(body) => {
             let body = &snapshot.bodies[body];
-            let mut all = vector(&body.position);
-            all.extend(vector(&body.velocity));
-            all.extend(spin(&body.spin));
-            if flat {
-                all.push(body.angle);
-            }
-            all
+            moving(&body.position, &body.velocity, &body.spin, body.angle)
         }
         ProbeTarget::Point(at) => {
             let point = &look.spots[at];
