@@ -20,6 +20,7 @@ pub trait Linear:
     Copy
     + Debug
     + PartialEq
+    + Default
     + Add<Output = Self>
     + Sub<Output = Self>
     + Mul<f64, Output = Self>
@@ -34,26 +35,13 @@ pub trait Linear:
 {
 }
 
-impl<T> Linear for T where
-    T: Copy
-        + Debug
-        + PartialEq
-        + Add<Output = Self>
-        + Sub<Output = Self>
-        + Mul<f64, Output = Self>
-        + Neg<Output = Self>
-        + AddAssign
-        + SubAssign
-        + Serialize
-        + DeserializeOwned
-        + Send
-        + Sync
-        + 'static
-{
-}
+impl Linear for Vector2<f64> {}
+impl Linear for Vector3<f64> {}
+impl Linear for Matrix2<f64> {}
+impl Linear for Matrix3<f64> {}
 
 /// Space of two or three dimensions.
-pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
+pub trait Space: sealed::Sealed + Copy + Debug + Default + Send + Sync + 'static {
     /// Number of dimensions.
     const DIMENSION: usize;
     /// Vector, such as a position, velocity or force.
@@ -116,11 +104,11 @@ pub trait Space: sealed::Sealed + Copy + Debug + Send + Sync + 'static {
 }
 
 /// Two dimensions: vectors (x, y), spin about z.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Plane;
 
 /// Three dimensions.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Solid;
 
 impl Space for Plane {

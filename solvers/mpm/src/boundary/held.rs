@@ -162,6 +162,7 @@ mod tests {
     use crate::options::{Basis, Setting, Transfer};
     use crate::simulation::Simulation;
     use crate::trial::prepared;
+    use grainbench_solver::drive::Stepper;
     use grainbench_solver::space::Plane;
     use nalgebra::Vector2;
 

@@ -193,7 +193,7 @@ fn apply<S: Space, C: Condition, F: Field<S>, A: Ledger>(
     field: &mut F,
 ) {
     let ReactionReceivers { walls, driven, ledger } = felt;
-    for group in shared.groups() {
+    for group in &shared.groups {
         let members = &shared.members[group.members.clone()];
         let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
         for member in members {
@@ -369,7 +369,7 @@ mod tests {
             discs[0], discs[1], discs[2]
         );
         let (simulation, _) = prepared::<Plane>(Setting::classic(Contact::Gap), &text, 2.0, 2);
-        let mut shared = SharedNodes::<Plane>::new();
+        let mut shared = SharedNodes::<Plane>::default();
         shared.faces = vec![Face { normal: Vector2::zeros(), stress: nalgebra::Matrix2::zeros() }; 3];
         let masses = [1.0, 2.0, 3.0];
         shared.meetings = [0_usize, 1]

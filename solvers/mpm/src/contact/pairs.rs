@@ -16,7 +16,7 @@ pub(crate) struct Pair<S: Space> {
 }
 
 /// Search for pairs with a coarse grid of cells. The work grows almost linearly with the number of bodies.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Pairs<S: Space> {
     /// Cell number and body index for every cell that a body intersects.
     reached: Vec<(u64, u32)>,
@@ -27,10 +27,6 @@ pub(crate) struct Pairs<S: Space> {
 }
 
 impl<S: Space> Pairs<S> {
-    pub(crate) const fn new() -> Self {
-        Self { reached: Vec::new(), found: Vec::new(), tests: 0 }
-    }
-
     pub(crate) fn clear(&mut self) {
         self.found.clear();
         self.tests = 0;

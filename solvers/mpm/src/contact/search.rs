@@ -45,18 +45,12 @@ pub(crate) struct PenetratingPoint<S: Space> {
 }
 
 /// Results and working memory of the search in a subrange of pairs.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SearchResults<S: Space> {
     /// Penetrating tracers in the order of the pairs.
     pub(crate) gone: Vec<PenetratingPoint<S>>,
     /// Tracer chunks of the second body near the current tracers.
     near: Vec<usize>,
-}
-
-impl<S: Space> SearchResults<S> {
-    pub(crate) const fn new() -> Self {
-        Self { gone: Vec::new(), near: Vec::new() }
-    }
 }
 
 /// Read-only data for the contact search of tracers.

@@ -95,6 +95,7 @@ pub(crate) struct NodalContact<S: Space> {
 }
 
 /// Shared node with the bodies that share it.
+#[derive(Clone, Debug)]
 pub(crate) struct Group<S: Space> {
     pub(crate) members: Range<usize>,
     /// Index of the wall that contains the node, if any.
@@ -103,10 +104,10 @@ pub(crate) struct Group<S: Space> {
 }
 
 /// All shared nodes of a step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct SharedNodes<S: Space> {
     pub(crate) members: Vec<Member>,
-    groups: Vec<(Range<usize>, Option<usize>, S::Vector)>,
+    pub(crate) groups: Vec<Group<S>>,
     pub(crate) faces: Vec<Face<S>>,
     pub(crate) meetings: Vec<NodalContact<S>>,
     densities: Vec<f64>,
@@ -122,17 +123,6 @@ fn key(node: [i32; 3]) -> u64 {
 }
 
 impl<S: Space> SharedNodes<S> {
-    pub(crate) const fn new() -> Self {
-        Self {
-            members: Vec::new(),
-            groups: Vec::new(),
-            faces: Vec::new(),
-            meetings: Vec::new(),
-            densities: Vec::new(),
-            touching: Vec::new(),
-        }
-    }
-
     /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         size_of_val(&*self.members)
@@ -141,14 +131,6 @@ impl<S: Space> SharedNodes<S> {
             + size_of_val(&*self.meetings)
             + size_of_val(&*self.densities)
             + size_of_val(&*self.touching)
-    }
-
-    pub(crate) fn groups(&self) -> impl Iterator<Item = Group<S>> + '_ {
-        self.groups.iter().map(|(members, wall, position)| Group {
-            members: members.clone(),
-            wall: *wall,
-            position: *position,
-        })
     }
 
     /// Finds the nodes that bodies share with each other or with a wall.
@@ -197,7 +179,7 @@ impl<S: Space> SharedNodes<S> {
             let first = &group[0];
             let window = &bodies[first.body as usize].part.window;
             let position = lattice.place::<S>(window.node(first.slot - window.start));
-            self.groups.push((start..start + group.len(), behind(position), position));
+            self.groups.push(Group { members: start..start + group.len(), wall: behind(position), position });
             start += group.len();
         }
     }

@@ -51,7 +51,8 @@ impl<S: Space> Contacts<S> {
     pub(crate) fn new(scene: &Scene, contact: Contact, tracers: Tracers<S>) -> Self {
         let friction = FrictionTable::from_scene(scene);
         let springs = Springs::new(friction.acts() && contact == Contact::Penalty, tracers.len());
-        Self { tracers, springs, touches: Vec::new(), friction, pairs: Pairs::new(), shared: SharedNodes::new() }
+        let (pairs, shared) = (Pairs::default(), SharedNodes::default());
+        Self { tracers, springs, touches: Vec::new(), friction, pairs, shared }
     }
 
     /// Returns the memory in use (bytes).
@@ -80,7 +81,7 @@ impl<S: Space> Contacts<S> {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;
         }
-        (self.tracers, self.springs) = (Tracers::new(), Springs::new(false, 0));
+        (self.tracers, self.springs) = (Tracers::default(), Springs::new(false, 0));
         for body in &mut state.bodies {
             (body.tracers, body.chunks) = (0..0, 0..0);
         }
@@ -151,7 +152,7 @@ impl<S: Space> Contacts<S> {
         pairs.find(bodies, lattice, 0.0);
         let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
         let shares = if state.team.members() > 1 { SHARES * state.team.members() } else { 1 };
-        springs.found.resize(shares, SearchResults::new());
+        springs.found.resize(shares, SearchResults::default());
         let (all, tracers) = (&pairs.found[..], &*tracers);
         state.team.each(springs.found.iter_mut(), |number, found| {
             let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
@@ -205,25 +206,13 @@ impl<S: Space> Contacts<S> {
         let Grid { lattice, nodes, .. } = grid;
         let Self { friction, shared, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
-        let (walls, driven, field) =
-            (&mut *boundary.walls, &mut *boundary.driven.groups, &mut SteppedVelocities(nodes));
-        match accounts {
-            None => nodal::meet(
-                &rules,
-                &state.bodies,
-                shared,
-                &mut ReactionReceivers { walls, driven, ledger: AbsentEffect },
-                field,
-            ),
-            Some(Accounts { tally, .. }) => {
-                nodal::meet(
-                    &rules,
-                    &state.bodies,
-                    shared,
-                    &mut ReactionReceivers { walls, driven, ledger: tally },
-                    field,
-                );
-            }
+        let (walls, driven, bodies) = (&mut *boundary.walls, &mut *boundary.driven.groups, &state.bodies);
+        let mut field = SteppedVelocities(nodes);
+        if let Some(Accounts { tally, .. }) = accounts {
+            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: tally }, &mut field);
+        } else {
+            let mut felt = ReactionReceivers { walls, driven, ledger: AbsentEffect };
+            nodal::meet(&rules, bodies, shared, &mut felt, &mut field);
         }
     }
 

@@ -7,7 +7,7 @@ use serde::{Deserialize, Serialize};
 use std::ops::Range;
 
 /// All material points of a run.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 #[serde(bound = "")]
 pub(crate) struct Points<S: Space> {
     /// Initial index, which identifies the point.
@@ -47,23 +47,6 @@ impl<S: Space> Points<S> {
     /// Returns the memory of all points (bytes).
     pub(crate) fn bytes(&self) -> usize {
         self.len() * Self::BYTES + size_of_val(&*self.affine) + size_of_val(&*self.plastic_strain)
-    }
-
-    pub(crate) const fn new() -> Self {
-        Self {
-            id: Vec::new(),
-            start: Vec::new(),
-            position: Vec::new(),
-            next: Vec::new(),
-            velocity: Vec::new(),
-            affine: Vec::new(),
-            mass: Vec::new(),
-            reference_volume: Vec::new(),
-            volume: Vec::new(),
-            deformation: Vec::new(),
-            stress: Vec::new(),
-            plastic_strain: Vec::new(),
-        }
     }
 
     pub(crate) fn len(&self) -> usize {

@@ -76,7 +76,7 @@ pub(crate) fn seed<S: Space>(
             held: held.filter(|(sides, _)| *sides != Sides::default()),
         })
     });
-    let (mut points, mut tracers) = (Points::new(), Tracers::new());
+    let (mut points, mut tracers) = (Points::default(), Tracers::default());
     let half = 0.5 / f64::from(per_cell);
     let driven = scene.driven_group_of_grains();
     let bodies: Vec<Body> = grains

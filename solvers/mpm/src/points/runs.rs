@@ -322,7 +322,7 @@ mod tests {
     /// the longest batch.
     fn found_as_by_whoever_knows_nothing<B: Basis>(spread: f64) {
         let mut state = 7;
-        let mut points = Points::<Plane>::new();
+        let mut points = Points::<Plane>::default();
         for _ in 0..900 {
             points.push(Vector2::new(spread * draw(&mut state), spread * draw(&mut state)), 1.0, 1.0);
         }

@@ -9,7 +9,7 @@ use nalgebra::Vector3;
 use std::ops::Range;
 
 /// Tracers of all bodies, as a structure of arrays.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Tracers<S: Space> {
     /// Position (m).
     pub(crate) position: Vec<S::Vector>,
@@ -87,10 +87,6 @@ impl<S: Space> Tracers<S> {
     /// Memory of a tracer with its share of a chunk (bytes).
     pub(crate) const BYTES: usize =
         2 * size_of::<S::Vector>() + size_of::<[u32; 2]>() + size_of::<Chunk<S>>().div_ceil(RUN);
-
-    pub(crate) const fn new() -> Self {
-        Self { position: Vec::new(), area: Vec::new(), neighbours: Vec::new(), chunks: Vec::new() }
-    }
 
     pub(crate) fn len(&self) -> usize {
         self.position.len()
@@ -358,7 +354,7 @@ mod tests {
         let mut worst = Vec::new();
         for count in [24_u32, 48, 96] {
             let chord = TAU * radius / f64::from(count);
-            let mut tracers = Tracers::<Plane>::new();
+            let mut tracers = Tracers::<Plane>::default();
             tracers.add(&elements::circle(centre, radius, 1.000_001 * chord, 1.0));
             assert_eq!(tracers.len(), count as usize);
             let chunks = tracers.cut(0..tracers.len());
