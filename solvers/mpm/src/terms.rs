@@ -25,40 +25,36 @@ const OWN_NORMALS: &str = "each body is stopped along its own normal, so the imp
 const OPPOSED: &str = "each body is stopped along its own normal before surfaces touch: impulses that are not opposite \
                        add energy if several bodies meet";
 
-const fn less(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Limitation {
-    Limitation { property, quantity, at_most, because }
-}
-
 /// Limits for points with spin and quadratic splines.
 const BEST: &[Limitation] = &[
-    less("momentum", "angular", 1e-3, ANGULAR),
-    less("galilean-invariance", "", 0.1, GRID_AT_REST),
-    less("rotation-invariance", "", 0.05, GRID_HAS_AXES),
-    less("free-flight", "", 1e-3, SPINNING),
+    Limitation::new("momentum", "angular", 1e-3, ANGULAR),
+    Limitation::new("galilean-invariance", "", 0.1, GRID_AT_REST),
+    Limitation::new("rotation-invariance", "", 0.05, GRID_HAS_AXES),
+    Limitation::new("free-flight", "", 1e-3, SPINNING),
 ];
 
 /// Limits for hat functions.
 const HATS: &[Limitation] = &[
-    less("momentum", "angular", 0.1, ANGULAR),
-    less("galilean-invariance", "", 0.8, GRID_AT_REST),
-    less("mirror-invariance", "", 0.01, KINK),
-    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
-    less("free-flight", "", 0.2, NO_AFFINE_PART),
-    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
-    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
+    Limitation::new("momentum", "angular", 0.1, ANGULAR),
+    Limitation::new("galilean-invariance", "", 0.8, GRID_AT_REST),
+    Limitation::new("mirror-invariance", "", 0.01, KINK),
+    Limitation::new("rotation-invariance", "", 0.8, GRID_HAS_AXES),
+    Limitation::new("free-flight", "", 0.2, NO_AFFINE_PART),
+    Limitation::new("objectivity", "size", 2e-3, NO_AFFINE_PART),
+    Limitation::new("objectivity", "spin", 0.5, NO_AFFINE_PART),
 ];
 
 /// Limits for hat functions with the contacts of the original papers.
 const PAPERS: &[Limitation] = &[
-    less("momentum", "momentum", 0.6, OWN_NORMALS),
-    less("momentum", "angular", 1.0, OWN_NORMALS),
-    less("galilean-invariance", "", 0.8, GRID_AT_REST),
-    less("mirror-invariance", "", 0.3, KINK),
-    less("rotation-invariance", "", 0.8, GRID_HAS_AXES),
-    less("free-flight", "", 0.2, NO_AFFINE_PART),
-    less("objectivity", "size", 2e-3, NO_AFFINE_PART),
-    less("objectivity", "spin", 0.5, NO_AFFINE_PART),
-    less("passivity", "energy gained, largest of the run", 1.5, OPPOSED),
+    Limitation::new("momentum", "momentum", 0.6, OWN_NORMALS),
+    Limitation::new("momentum", "angular", 1.0, OWN_NORMALS),
+    Limitation::new("galilean-invariance", "", 0.8, GRID_AT_REST),
+    Limitation::new("mirror-invariance", "", 0.3, KINK),
+    Limitation::new("rotation-invariance", "", 0.8, GRID_HAS_AXES),
+    Limitation::new("free-flight", "", 0.2, NO_AFFINE_PART),
+    Limitation::new("objectivity", "size", 2e-3, NO_AFFINE_PART),
+    Limitation::new("objectivity", "spin", 0.5, NO_AFFINE_PART),
+    Limitation::new("passivity", "energy gained, largest of the run", 1.5, OPPOSED),
 ];
 
 impl Mpm {

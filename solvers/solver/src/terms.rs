@@ -41,6 +41,14 @@ pub struct Limitation {
     pub because: &'static str,
 }
 
+impl Limitation {
+    /// Creates a limitation.
+    #[must_use]
+    pub const fn new(property: &'static str, quantity: &'static str, at_most: f64, because: &'static str) -> Self {
+        Self { property, quantity, at_most, because }
+    }
+}
+
 impl Terms {
     /// Properties of central differences, which are of second order in the time step. The time steps suit contact
     /// springs.
