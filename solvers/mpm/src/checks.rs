@@ -3,7 +3,7 @@
 //! first step.
 
 use crate::contact::ContactPartner;
-use crate::energy::guard::EnergyGuard;
+use crate::energy::ledger::EnergyGuard;
 use crate::failure::Failure;
 use crate::material::{Law, with_law};
 use crate::options::Contact;

@@ -7,7 +7,7 @@
 use crate::boundary::Boundary;
 use crate::contact::stages::{ContactRequest, Contacts};
 use crate::energy::accounts::Accounts;
-use crate::energy::guard::EnergyGuard;
+use crate::energy::ledger::EnergyGuard;
 use crate::energy::ledger::Tally;
 use crate::failure::Failure;
 use crate::grid::basis::{Basis, with_basis};

@@ -47,3 +47,14 @@ pub(crate) struct Flow {
     /// Work against viscosity, from the mean of the viscous stresses before and after the step (J).
     pub(crate) viscous: f64,
 }
+
+/// Energy of a closed run (J; J/m for discs), which the checks compare with its initial value.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+pub(crate) struct EnergyGuard {
+    /// Initial kinetic, elastic and gravitational energy, without the energy of the springs.
+    pub(crate) start: f64,
+    /// Initial energy of springs; known after the first step.
+    pub(crate) springs: Option<f64>,
+    /// Largest kinetic and elastic energy so far.
+    pub(crate) largest: f64,
+}

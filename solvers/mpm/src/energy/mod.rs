@@ -1,5 +1,4 @@
 //! Energies of a run: the requested budget, and the check of a closed run.
 
 pub(crate) mod accounts;
-pub(crate) mod guard;
 pub(crate) mod ledger;
