@@ -23,7 +23,6 @@ use crate::points::state::State;
 use crate::scheme::{Scheme, Surroundings};
 use crate::transfer::gather::gather;
 use crate::transfer::scatter::scatter;
-use crate::transfer::schemes;
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::SimulationFailure;
@@ -200,7 +199,12 @@ impl<S: Space> Simulation<S> {
         nodes[..*used].iter_mut().for_each(|node| node.change = S::ORIGIN);
         for body in &state.bodies {
             let points = &state.points;
-            with_basis!(scheme.setting.basis, B => schemes::scatter_force::<S, B>(lattice, &body.part, points, nodes));
+            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
+                let (stress, volume) = (points.stress[at], -points.volume[at]);
+                stencil.each::<S, B>(&body.part.window, |node| {
+                    nodes[node.slot].change += S::apply(stress, stencil.gradient(&node)) * volume;
+                });
+            }));
         }
         Ok(())
     }
@@ -215,15 +219,13 @@ impl<S: Space> Simulation<S> {
     /// Adds the body force of a manufactured solution.
     fn body_force(&mut self, time: f64) {
         let Some(motion) = self.scene.start.manufactured.filter(|_| !self.settling) else { return };
-        let Self { scheme, state, grid, .. } = self;
-        let State { bodies, points, .. } = state;
+        let Self { scheme, state: State { bodies, points, .. }, grid: Grid { lattice, nodes, .. }, .. } = self;
         for body in bodies.iter() {
             let medium = body.medium();
-            let force =
-                |at: usize| S::restrict(motion.body_force(&medium, S::embed(points.start[at]), time)) * points.mass[at];
-            with_basis!(scheme.setting.basis, B => {
-                schemes::scatter_body_force::<S, B>(&grid.lattice, &body.part, points, force, &mut grid.nodes);
-            });
+            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
+                let force = S::restrict(motion.body_force(&medium, S::embed(points.start[at]), time)) * points.mass[at];
+                stencil.each::<S, B>(&body.part.window, |node| nodes[node.slot].change += force * node.weight);
+            }));
         }
     }
 

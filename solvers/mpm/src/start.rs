@@ -7,7 +7,6 @@ use crate::points::state::State;
 use crate::points::stress_at_start;
 use crate::scheme::Surroundings;
 use crate::simulation::Simulation;
-use crate::transfer::schemes;
 use grainbench_solver::failure::SimulationFailure;
 use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
@@ -124,9 +123,12 @@ impl<S: Space> Simulation<S> {
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         let Grid { lattice, nodes, .. } = grid;
         for body in &state.bodies {
-            with_basis!(scheme.setting.basis, B => {
-                schemes::gather_changes::<S, B>(lattice, &body.part, &state.points, nodes, &mut accelerations);
-            });
+            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, &state.points, |at, stencil| {
+                accelerations[at] = S::ORIGIN;
+                stencil.each::<S, B>(&body.part.window, |node| {
+                    accelerations[at] += nodes[node.slot].change * node.weight;
+                });
+            }));
         }
         Ok(accelerations)
     }

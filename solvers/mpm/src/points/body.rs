@@ -1,8 +1,9 @@
 //! Deformable body of a simulation.
 
 use crate::grid::basis::Basis;
-use crate::grid::lattice::Window;
+use crate::grid::lattice::{Lattice, Stencil, Window};
 use crate::material::Material;
+use crate::points::arrays::Points;
 use grainbench_scene::body::Sides;
 use grainbench_scene::manufactured::Medium;
 use grainbench_scene::material::Deformable;
@@ -60,6 +61,20 @@ pub(crate) struct Part {
 }
 
 impl Part {
+    /// Calls `visit` with the index and the stencil of each point.
+    #[inline(always)]
+    pub(crate) fn each_stencil<S: Space, B: Basis>(
+        &self,
+        lattice: &Lattice,
+        points: &Points<S>,
+        mut visit: impl FnMut(usize, &Stencil<f64>),
+    ) {
+        for at in self.points.clone() {
+            let extent = self.extent::<S, B>(points.deformation[at]);
+            visit(at, &Stencil::new::<S, B>(lattice, points.position[at], extent));
+        }
+    }
+
     /// Returns the half extent of a point along each axis (cells).
     ///
     /// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if

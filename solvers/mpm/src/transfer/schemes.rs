@@ -1,9 +1,6 @@
-//! Transfer of velocities between points and nodes, and separate transfer of forces to nodes.
+//! Transfer of velocities between points and nodes.
 
-use crate::grid::basis::Basis;
-use crate::grid::lattice::{Lattice, Node, Stencil};
-use crate::points::arrays::Points;
-use crate::points::body::Part;
+use crate::grid::lattice::Stencil;
 use grainbench_lanes::Number;
 use grainbench_solver::space::Space;
 
@@ -115,57 +112,12 @@ impl Transfer for Spin {
     }
 }
 
-/// Adds internal forces to the nodes, after the stress has changed.
-pub(crate) fn scatter_force<S: Space, B: Basis>(
-    lattice: &Lattice,
-    part: &Part,
-    points: &Points<S>,
-    nodes: &mut [Node<S>],
-) {
-    for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let (stress, volume) = (points.stress[at], -points.volume[at]);
-        stencil.each::<S, B>(&part.window, |node| {
-            nodes[node.slot].change += S::apply(stress, stencil.gradient(&node)) * volume;
-        });
-    }
-}
-
-/// Adds a force (N) of each point, such as the body force of a manufactured solution, to the nodes.
-pub(crate) fn scatter_body_force<S: Space, B: Basis>(
-    lattice: &Lattice,
-    part: &Part,
-    points: &Points<S>,
-    force: impl Fn(usize) -> S::Vector,
-    nodes: &mut [Node<S>],
-) {
-    for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        let force = force(at);
-        stencil.each::<S, B>(&part.window, |node| nodes[node.slot].change += force * node.weight);
-    }
-}
-
-/// Sets a vector of each point of a body to Σ N_i c_i, with the vectors c_i = `change` of the nodes.
-pub(crate) fn gather_changes<S: Space, B: Basis>(
-    lattice: &Lattice,
-    part: &Part,
-    points: &Points<S>,
-    nodes: &[Node<S>],
-    changes: &mut [S::Vector],
-) {
-    for at in part.points.clone() {
-        let stencil = Stencil::new::<S, B>(lattice, points.position[at], part.extent::<S, B>(points.deformation[at]));
-        changes[at] = S::ORIGIN;
-        stencil.each::<S, B>(&part.window, |node| changes[at] += nodes[node.slot].change * node.weight);
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::grid::basis::{Gimp, Quadratic};
-    use crate::grid::lattice::Window;
+    use crate::grid::lattice::{Lattice, Window};
+    use crate::points::body::Part;
     use grainbench_solver::space::Plane;
     use nalgebra::{Matrix2, Vector2};
 
