@@ -1,7 +1,5 @@
 //! Options of the method, and named settings.
 
-use std::fmt;
-
 /// Basis functions of the grid.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Basis {
@@ -124,11 +122,36 @@ impl Setting {
     /// Returns a description of the setting.
     #[must_use]
     pub fn words(&self) -> Vec<String> {
-        let mut words = vec![self.basis.to_string(), self.transfer.to_string(), self.stress_update.to_string()];
+        let basis = match self.basis {
+            Basis::Linear => "linear basis",
+            Basis::Quadratic => "quadratic B-splines",
+            Basis::Gimp => "GIMP basis",
+        };
+        let transfer = match self.transfer {
+            Transfer::Flip { pic: 0.0 } => "FLIP".to_owned(),
+            Transfer::Flip { pic } => format!("FLIP with {pic} PIC"),
+            Transfer::Apic => "APIC".to_owned(),
+            Transfer::Spin => "FLIP with spin".to_owned(),
+        };
+        let update = match self.stress_update {
+            StressUpdate::First => "stress updated first",
+            StressUpdate::Last => "stress updated last",
+            StressUpdate::ModifiedLast => "stress updated last from reprojected velocities (MUSL)",
+        };
+        let contact = match self.contact {
+            Contact::NoSlip => "no slip: one velocity field",
+            Contact::Kinematic => "nodal contact on approach (2000)",
+            Contact::Traction => {
+                "nodal contact under compressive traction (2001), which keeps no Coulomb limit at walls"
+            }
+            Contact::Gap => "nodal contact where surfaces have met",
+            Contact::Penalty => "springs between surfaces",
+        };
+        let mut words = vec![basis.to_owned(), transfer, update.to_owned()];
         if self.moves_with_stress && self.stress_update == StressUpdate::ModifiedLast {
             words.push("points move with the reprojected velocities of the stress update".to_owned());
         }
-        words.push(self.contact.to_string());
+        words.push(contact.to_owned());
         if self.contact == Contact::Penalty {
             words.push(format!("contact stiffness {} E'/h per area", self.penalty));
         }
@@ -139,48 +162,5 @@ impl Setting {
             words.push(format!("grid shifted by {:?} cells", self.phase));
         }
         words
-    }
-}
-
-impl fmt::Display for Basis {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::Linear => "linear basis",
-            Self::Quadratic => "quadratic B-splines",
-            Self::Gimp => "GIMP basis",
-        })
-    }
-}
-
-impl fmt::Display for Transfer {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::Flip { pic: 0.0 } => formatter.write_str("FLIP"),
-            Self::Flip { pic } => write!(formatter, "FLIP with {pic} PIC"),
-            Self::Apic => formatter.write_str("APIC"),
-            Self::Spin => formatter.write_str("FLIP with spin"),
-        }
-    }
-}
-
-impl fmt::Display for StressUpdate {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::First => "stress updated first",
-            Self::Last => "stress updated last",
-            Self::ModifiedLast => "stress updated last from reprojected velocities (MUSL)",
-        })
-    }
-}
-
-impl fmt::Display for Contact {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(match self {
-            Self::NoSlip => "no slip: one velocity field",
-            Self::Kinematic => "nodal contact on approach (2000)",
-            Self::Traction => "nodal contact under compressive traction (2001), which keeps no Coulomb limit at walls",
-            Self::Gap => "nodal contact where surfaces have met",
-            Self::Penalty => "springs between surfaces",
-        })
     }
 }

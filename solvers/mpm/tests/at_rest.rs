@@ -66,7 +66,10 @@ fn stress_of_the_weight_keeps_soil_at_rest() {
                     *setting = Setting { basis, stress_update, transfer, ..*setting };
                 };
                 let (found, steps) = moved(change, &soft, cells, 3);
-                assert!(found <= steps * f64::EPSILON * HEIGHT, "{basis}, {stress_update:?}, {cells} cells: {found} m");
+                assert!(
+                    found <= steps * f64::EPSILON * HEIGHT,
+                    "{basis:?}, {stress_update:?}, {cells} cells: {found} m"
+                );
             }
         }
     }

@@ -43,7 +43,7 @@ fn a_bar_under_tension_rests() {
         let record = try_run("mpm", change, &bar(tension, 0.1), AT).unwrap();
         let kinetic = column(&record, "all.kinetic_energy");
         let most = kinetic.iter().copied().fold(0.0, f64::max);
-        assert!(most < 1.04 * kinetic[0], "{tension}, {basis}: {most} J of {}", kinetic[0]);
+        assert!(most < 1.04 * kinetic[0], "{tension}, {basis:?}: {most} J of {}", kinetic[0]);
     }
 }
 
