@@ -6,16 +6,16 @@
 
 use criterion::{BenchmarkId, Criterion, Throughput, criterion_group, criterion_main};
 use grainbench::cases::registry;
-use grainbench::dem::Simulation;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::contact_law::ContactLaw;
 use grainbench::scene::scene::Scene;
 use grainbench::scene::source::SceneSource;
+use grainbench::solver::drive::Stepper;
 use std::hint::black_box;
 use std::path::Path;
 
-fn start(scene: &Scene, convention: Convention, time_step: f64) -> Box<dyn Simulation> {
+fn start(scene: &Scene, convention: Convention, time_step: f64) -> Box<dyn Stepper> {
     Dem::new(convention).start(scene, time_step).expect("the scene runs")
 }
 

@@ -71,10 +71,10 @@ pub(crate) fn watch(
     let (time_step, _) = RUNG.steps(scene)?;
     let mut simulation = Dem::new(Convention::CUNDALL_STRACK).start(scene, time_step)?;
     let (steps, stride) = ((time / time_step).round() as u64, (every / time_step).round().max(1.0) as u64);
-    let mut snapshot = simulation.look().snapshot;
+    let mut snapshot = simulation.look(false).snapshot;
     while simulation.step() < steps {
         simulation.advance(stride.min(steps - simulation.step()))?;
-        snapshot = simulation.look().snapshot;
+        snapshot = simulation.look(false).snapshot;
         if !go_on(&snapshot) {
             break;
         }

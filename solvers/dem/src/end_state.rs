@@ -23,7 +23,7 @@ pub(crate) fn words([tangential, rolling, dimension]: [usize; 3]) -> String {
 
 impl<S: Geometry> DemSimulation<S> {
     /// Returns the state after the last step, with the name of the solver. Absent grains are not included.
-    pub(crate) fn end_state(&self, solver: &str) -> EndState {
+    pub(crate) fn final_state(&self, solver: &str) -> EndState {
         let scene = &self.scene;
         let states: Vec<_> = grain_states(self).collect();
         let place: BTreeMap<u32, u32> = states.iter().map(|grain| grain.id - 1).zip(0..).collect();

@@ -12,7 +12,6 @@ mod contact;
 pub mod convention;
 mod critical;
 mod driving;
-mod edge;
 mod end_state;
 mod forces;
 mod geometry;
@@ -35,9 +34,7 @@ mod simulation;
 mod skin;
 pub mod solver;
 pub mod stability;
-mod state;
+mod stepper;
 mod terms;
 mod touching;
 mod walls;
-
-pub use edge::Simulation;

@@ -6,13 +6,12 @@ use crate::grains::ABSENT;
 use crate::neighbours::wrapped;
 use crate::simulation::DemSimulation;
 use grainbench_scene::scene::{Driven, Scene};
-use grainbench_solver::brief::Brief;
-use grainbench_solver::record::{self, GrainState, Snapshot, StepState, WallState};
+use grainbench_solver::record::{GrainState, Snapshot, StepState, WallState};
 use nalgebra::Vector3;
 
 /// Returns the state at this step: grains, contacts, walls and energies. It moves out the recorded contacts, so a
 /// second call at the same step returns none.
-pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState {
+pub(crate) fn observed<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState {
     let DemSimulation { recording, neighbours, step, .. } = simulation;
     let touching = recording.touching(*step, &neighbours.list.shares);
     let contacts = recording.take_contacts(*step, &mut neighbours.list.shares);
@@ -27,32 +26,16 @@ pub(crate) fn look<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepState 
         .iter()
         .map(|wall| {
             let (corners, infinite) = if wall.is_gone() { (Vec::new(), false) } else { wall.shape.corners() };
-            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(wall.force) }
+            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(wall.kept.force) }
         })
         .collect();
-    let snapshot = Snapshot {
-        step: simulation.step,
-        time: simulation.time(),
-        bounds: record::bounds(scene, &grains),
-        periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
-        grains,
-        contacts,
-        walls,
-        bodies: Vec::new(),
-        points: Vec::new(),
-    };
+    let snapshot = Snapshot::new(scene, simulation.step, simulation.time(), grains, walls, contacts);
     StepState {
         touching,
         driven: simulation.forces_on_driven(),
         budget,
         ..StepState::of_rigid(snapshot, elastic_energy)
     }
-}
-
-/// Summarises the state at this step.
-pub(crate) fn brief<S: Geometry>(simulation: &DemSimulation<S>) -> Brief {
-    let touching = simulation.recording.touching(simulation.step, &simulation.neighbours.list.shares);
-    Brief::of_grains((simulation.step, simulation.time()), grain_states(simulation), touching)
 }
 
 /// Returns the grains that are present, sorted by id.

@@ -21,6 +21,7 @@ use crate::walls::{MovingWall, WallNeighbours};
 use grainbench_lanes::Team;
 use grainbench_scene::overlap::nearest_image;
 use grainbench_scene::scene::Scene;
+use grainbench_solver::Defect;
 use grainbench_solver::failure::{Cause, FailedParticle, LARGEST_ENTRY_OVERLAP, SimulationFailure};
 use grainbench_solver::record::Counts;
 use nalgebra::Vector3;
@@ -42,6 +43,8 @@ pub(crate) struct DemSimulation<S: Geometry> {
     pub(crate) step: u64,
     pub(crate) cost: Counts,
     pub(crate) budget: EnergyBudget,
+    /// Defect, for negative controls only.
+    pub(crate) defect: Option<Defect>,
     /// Number of grains inserted so far.
     pub(crate) entered: usize,
 }
@@ -308,7 +311,7 @@ impl<S: Geometry> DemSimulation<S> {
             for slot in 0..self.grains.len() {
                 let position = self.grains.position(slot);
                 if wall.facing(position).distance < self.grains.radius(slot) + skin {
-                    wall.near.push((slot as u32, remembered[self.grains.id[slot] as usize]));
+                    wall.kept.near.push((slot as u32, remembered[self.grains.id[slot] as usize]));
                 }
                 extent = extent.max(wall.distance_to_centre(position));
             }

@@ -9,6 +9,7 @@ use grainbench_dem::solver::Dem;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::observer::RunOptions;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
@@ -318,15 +319,18 @@ fn a_contact_that_stiffens_beyond_the_step_is_refused() {
          walls.low = {{ material = 'm', plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }} }}\n\
          [probes]\nall = {{ system = true }}\n"
     ));
-    let run = |dem: Dem, fraction: f64| dem.run(&scene, &Resolution::CriticalFraction(fraction), &mut ());
-    let dem = Dem::new(Convention::DEFAULT);
-    let RunError::Broken(broken) = run(dem, 0.95).unwrap_err() else { panic!("expected a run that broke") };
+    let run = |fraction: f64, mut options: RunOptions| {
+        Dem::new(Convention::DEFAULT).run(&scene, &Resolution::CriticalFraction(fraction), &mut options)
+    };
+    let RunError::Broken(broken) = run(0.95, RunOptions::DEFAULT).unwrap_err() else {
+        panic!("expected a run that broke")
+    };
     let Cause::StiffContact { stiffness } = broken.cause else { panic!("{broken}") };
     let expected = 2.0 * modulus * (0.1 * overlap).sqrt();
     assert!((stiffness / expected - 1.0).abs() < 1e-9 && broken.step == 1, "{broken}");
     assert!((broken.critical / (2.0 * (mass / stiffness).sqrt()) - 1.0).abs() < 1e-12);
     assert!(broken.to_string().contains("became so stiff"), "{broken}");
-    run(dem, 0.5).unwrap();
-    let goes_on = run(dem.allowing_unstable_steps(), 0.95);
+    run(0.5, RunOptions::DEFAULT).unwrap();
+    let goes_on = run(0.95, RunOptions::unstable());
     assert!(!goes_on.is_err_and(|error| error.to_string().contains("became so stiff")));
 }

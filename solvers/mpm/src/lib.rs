@@ -19,7 +19,6 @@
 //! uses it.
 
 mod boundary;
-mod checkpoint;
 mod checks;
 mod contact;
 mod energy;
@@ -37,6 +36,7 @@ mod scheme;
 mod simulation;
 pub mod solver;
 mod start;
+mod stepper;
 mod surface;
 mod terms;
 mod transfer;

@@ -8,7 +8,7 @@ use crate::simulation::Simulation;
 use grainbench_scene::scene::{BodyName, WallShape};
 use grainbench_solver::budget::Budget;
 use grainbench_solver::record::{
-    self, BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, StepState, WallState,
+    BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, StepState, WallState, nearest_turn,
 };
 use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
@@ -33,7 +33,7 @@ struct WholeBodyMotion {
 
 impl<S: Space> Simulation<S> {
     /// Returns the state at this step. With `with_points`, it includes every material point.
-    pub(crate) fn look(&mut self, with_points: bool) -> StepState {
+    pub(crate) fn observed(&mut self, with_points: bool) -> StepState {
         let wholes: Vec<WholeBodyMotion> = (0..self.state.bodies.len()).map(|body| self.whole(body)).collect();
         let mut elastic_energy = 0.0;
         let mut inner_kinetic_energy = 0.0;
@@ -82,6 +82,7 @@ impl<S: Space> Simulation<S> {
         };
         let contacts = self.contacts();
         let slipping = contacts.iter().filter(|contact| contact.slipping).count();
+        let time = self.step as f64 * self.scheme.time_step;
         StepState {
             touching: Some([contacts.len(), slipping]),
             elastic_energy: elastic_energy + self.spring_energy(),
@@ -92,15 +93,9 @@ impl<S: Space> Simulation<S> {
             driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.contact_force())).collect(),
             budget: self.budget(elastic_energy),
             snapshot: Snapshot {
-                step: self.step,
-                time: self.step as f64 * self.scheme.time_step,
-                bounds: record::bounds(&self.scene, &grains),
-                periodic: self.scene.domain.map_or([false; 3], |domain| domain.periodic),
-                contacts: Some(contacts),
-                walls: self.wall_states(),
-                grains,
                 bodies,
                 points,
+                ..Snapshot::new(&self.scene, self.step, time, grains, self.wall_states(), Some(contacts))
             },
         }
     }
@@ -317,11 +312,6 @@ impl<S: Space> Simulation<S> {
 /// Returns the rotation about z (rad, from −π to π) of a deformation gradient in the plane, from R of F = R U.
 fn rotation_of(deformation: Matrix3<f64>) -> f64 {
     libm::atan2(deformation.m21 - deformation.m12, deformation.m11 + deformation.m22)
-}
-
-/// Returns the angle nearest to `expected` that differs from `angle` by full turns (rad).
-fn nearest_turn(angle: f64, expected: f64) -> f64 {
-    angle + ((expected - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
 /// Returns the mean of the states of several points, with the sum of their volumes; `None` without points.

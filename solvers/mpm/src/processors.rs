@@ -3,6 +3,7 @@
 use crate::options::{Basis, Setting, StressUpdate, Transfer};
 use crate::trial::prepared;
 use grainbench_lanes::{Processor, Team};
+use grainbench_solver::drive::Stepper;
 use grainbench_solver::space::{Plane, Solid, Space};
 
 /// Returns the state of the points, as text, after some steps of a round body. The body spins, crosses the faces of a

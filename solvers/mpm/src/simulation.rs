@@ -54,7 +54,7 @@ pub(crate) struct Simulation<S: Space> {
 }
 
 impl<S: Space> Simulation<S> {
-    /// Creates the bodies of a scene. [`Simulation::begin`] relaxes them and sets their initial velocities.
+    /// Creates the bodies of a scene, before their relaxation and without initial velocities.
     pub(crate) fn new(
         scene: &Scene,
         setting: Setting,
@@ -84,34 +84,10 @@ impl<S: Space> Simulation<S> {
         }
     }
 
-    /// Relaxes the bodies and sets their initial velocities.
-    ///
-    /// # Errors
-    /// Returns an error if the grid would have too many nodes, or if the relaxation fails.
-    pub(crate) fn begin(&mut self) -> Result<(), Box<SimulationFailure>> {
-        let team = self.state.team.clone();
-        team.lead(|| self.settle())?;
-        let Self { critical, scheme, .. } = *self;
-        let moving = team.lead(|| self.set_moving());
-        moving.map_err(|failure| failure.into_simulation_failure(0, scheme.time_step, critical))?;
-        self.open_accounts();
-        self.watch_energy();
-        Ok(())
-    }
-
     /// Opens the energy budget, if requested.
     pub(crate) fn open_accounts(&mut self) {
         let Self { scene, scheme, state, grid, .. } = self;
         self.accounts = scene.asks_for_budget().then(|| Accounts::open(scheme.setting.basis, state, &grid.lattice));
-    }
-
-    /// Takes `steps` steps. Contact points are recorded in the last step.
-    ///
-    /// # Errors
-    /// Returns an error if the state of a point becomes invalid or a check fails.
-    pub(crate) fn advance(&mut self, steps: u64) -> Result<(), Box<SimulationFailure>> {
-        let team = self.state.team.clone();
-        team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))
     }
 
     /// Takes one step. With `record`, contact points are recorded.

@@ -9,13 +9,12 @@ use grainbench_scene::dimension::Dimension;
 use grainbench_scene::memory;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_solver::Solver;
-use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, Run};
-use grainbench_solver::drive::{Course, LoopOutput, Stepper};
+use grainbench_solver::checkpoint::Checkpoint;
+use grainbench_solver::drive::Course;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::limits::{beyond_run, beyond_steps};
 use grainbench_solver::observer::Observer;
-use grainbench_solver::record::{Counts, Provenance, Record, StepState};
-use grainbench_solver::recorder::Recorder;
+use grainbench_solver::record::{Provenance, Record};
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::space::{Plane, Solid, Space};
 use std::f64::consts::PI;
@@ -56,106 +55,35 @@ impl Mpm {
         changed
     }
 
-    fn resolution_error(&self, reason: String) -> RunError {
-        RunError::Resolution { solver: self.name(), reason }
-    }
-
     /// Returns the grid and steps of a run, for example to estimate its cost.
     ///
     /// # Errors
     /// Returns an error if the scene is not supported or the resolution is invalid.
     pub fn plan(&self, scene: &Scene, resolution: &Resolution) -> Result<Plan, RunError> {
         if let Some(reason) = limits::reason(scene) {
-            return Err(RunError::Unsupported { solver: self.name(), reason });
+            return Err(self.unsupported(reason));
         }
-        let Resolution::Grid { cells, points, courant } = *resolution else {
-            return Err(self.resolution_error(format!(
-                "expected cells per length, points per cell and a Courant number, found {resolution}"
-            )));
-        };
-        let positive = |value: f64| value.is_finite() && value > 0.0;
-        if !(positive(cells) && positive(courant) && (1..=64).contains(&points)) {
-            return Err(self.resolution_error(format!("expected positive numbers, found {resolution}")));
-        }
-        let cell = scene.reference_length / cells;
-        let cells_of = |axis: usize| scene.domain.map_or(0.0, |domain| (domain.high[axis] - domain.low[axis]) / cell);
-        if let Some(axis) = (0..scene.dimension.count()).find(|&axis| cells_of(axis) >= f64::from(i32::MAX)) {
-            let found = format!("expected a domain of fewer than 2^31 cells along an axis, found {:e}", cells_of(axis));
-            return Err(self.resolution_error(found));
-        }
-        let lattice = lattice(scene, &self.setting, cell);
-        if let Some(found) = beyond_memory(scene, lattice.cell, points) {
-            return Err(self.resolution_error(format!("expected points and nodes that fit into memory, found {found}")));
-        }
-        let cell = lattice.shortest(scene.dimension.count());
-        let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
-        if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
-            return Err(self.resolution_error(format!(
-                "expected a radius of at least {SMALLEST} cells, found grain {} with {:.3}: {} cells are enough for it",
-                at + 1,
-                grain.radius / cell,
-                (SMALLEST * scene.reference_length / grain.radius).ceil()
-            )));
-        }
-        let dimensions = scene.dimension.count();
-        if let Some(body) = scene.bodies.iter().find(|body| body.shape.length(dimensions) < SMALLEST * cell) {
-            return Err(self.resolution_error(format!(
-                "expected a body at least {SMALLEST} cells wide, found `{}` with {:.3}: {} cells are enough for it",
-                body.name,
-                body.shape.length(dimensions) / cell,
-                (SMALLEST * scene.reference_length / body.shape.length(dimensions)).ceil()
-            )));
-        }
-        for (body, axis) in scene.bodies.iter().flat_map(|body| (0..dimensions).map(move |axis| (body, axis))) {
-            let BlockShape::Box { low, high } = body.shape else { continue };
-            let between = (high[axis] - low[axis]) / lattice.cell[axis];
-            if body.sides[axis].iter().all(|side| *side != Hold::Free) && between < BETWEEN_SIDES {
-                return Err(self.resolution_error(format!(
-                    "expected at least {BETWEEN_SIDES} cells between two constrained sides of `{}`, found \
-                     {between:.3}: with fewer cells both sides act on the same nodes, which adds energy",
-                    body.name
-                )));
-            }
-        }
-        let critical = scene.crossing_time(lattice.shortest(scene.dimension.count()));
-        let Duration::Seconds(time) = scene.duration else {
-            return Err(self.resolution_error("expected a duration in seconds".to_owned()));
-        };
-        // The number of steps is whole; the tolerance prevents rounding from adding a step.
-        let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
-        let damped = scene.global_damping * time / steps;
-        if damped >= 2.0 {
-            return Err(self.resolution_error(format!("expected damping times time step below 2, found {damped}")));
-        }
-        let settling = scene.start.settle.map_or(0.0, |settle| settle.duration / (time / steps));
-        if let Some(refusal) = beyond_run(scene, time / steps, steps).or_else(|| beyond_steps(settling)) {
-            return Err(self.resolution_error(refusal));
-        }
-        Ok(Plan { lattice, points, time_step: time / steps, steps: steps as u64, critical })
+        plan(&self.setting, scene, resolution).map_err(|reason| self.resolution_error(reason))
     }
 
     fn run_in<S: Space>(
         &self,
         scene: &Scene,
         resolution: &Resolution,
-        plan: &Plan,
         from: Option<&Checkpoint>,
         observer: &mut dyn Observer,
-    ) -> Result<LoopOutput, RunError> {
-        let &Plan { lattice, points, time_step, steps, critical } = plan;
-        let mut simulation = Simulation::<S>::new(
-            scene,
-            self.setting,
-            lattice,
-            points,
-            [time_step, critical],
-            observer.options().threads,
-        );
+    ) -> Result<Record, RunError> {
+        let Plan { lattice, points, time_step, steps, critical } = self.plan(scene, resolution)?;
+        let times = [time_step, critical];
+        let threads = observer.options().threads;
+        let mut simulation = Simulation::<S>::new(scene, self.setting, lattice, points, times, threads);
         let solver = format!("{} at {resolution} ({})", self.name(), self.setting.words().join(", "));
-        let run = Run { solver, scene, time_step, steps, layout: std::any::type_name::<Simulation<S>>() };
-        let resumed = from.map(|checkpoint| simulation.recall(&run.identity(), checkpoint)).transpose()?;
-        let course = Course { scene, time_step, steps, resumed, between_progress: STEPS_BETWEEN_PROGRESS };
-        course.drive(&mut RunningSimulation { simulation, run }, observer)
+        let provenance = Provenance {
+            critical_time_step: Some(critical),
+            ..Provenance::new(scene, self.name(), resolution, time_step, self.setting.words())
+        };
+        let course = Course { solver, scene, steps, from, between_progress: STEPS_BETWEEN_PROGRESS, provenance };
+        course.drive(&mut simulation, observer)
     }
 
     /// Runs from the start or from a checkpoint to the end.
@@ -166,20 +94,10 @@ impl Mpm {
         from: Option<&Checkpoint>,
         observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        let plan = self.plan(scene, resolution)?;
-        let LoopOutput { series, snapshots, cost } = match scene.dimension {
-            Dimension::Two => self.run_in::<Plane>(scene, resolution, &plan, from, observer)?,
-            Dimension::Three => self.run_in::<Solid>(scene, resolution, &plan, from, observer)?,
-        };
-        Ok(Record {
-            provenance: Provenance {
-                critical_time_step: Some(plan.critical),
-                ..Provenance::new(scene, self.name(), resolution, plan.time_step, self.setting.words())
-            },
-            series,
-            snapshots,
-            cost,
-        })
+        match scene.dimension {
+            Dimension::Two => self.run_in::<Plane>(scene, resolution, from, observer),
+            Dimension::Three => self.run_in::<Solid>(scene, resolution, from, observer),
+        }
     }
 }
 
@@ -225,46 +143,6 @@ const SMALLEST: f64 = 0.5;
 /// With one cell, the energy grew by a factor of 2e7 in 60 periods. With 1.5 cells it is constant within .2 %.
 const BETWEEN_SIDES: f64 = 1.5;
 
-/// Simulation as the main loop runs it, with the identity of the run.
-struct RunningSimulation<'a, S: Space> {
-    simulation: Simulation<S>,
-    run: Run<'a>,
-}
-
-impl<S: Space> Stepper for RunningSimulation<'_, S> {
-    fn begin(&mut self) -> Result<(), RunError> {
-        Ok(self.simulation.begin()?)
-    }
-
-    fn particles(&self, _: &Scene) -> u64 {
-        self.simulation.state.points.len() as u64
-    }
-
-    fn rows(&self, scene: &Scene) -> u64 {
-        self.particles(scene) + scene.grains.len() as u64
-    }
-
-    fn step(&self) -> u64 {
-        self.simulation.step
-    }
-
-    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
-        Ok(self.simulation.advance(steps)?)
-    }
-
-    fn look(&mut self, snapshot: bool) -> StepState {
-        self.simulation.look(snapshot)
-    }
-
-    fn counts(&self) -> Counts {
-        self.simulation.cost
-    }
-
-    fn keep(&self, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
-        self.simulation.keep(&self.run.identity(), recorder).map(Some)
-    }
-}
-
 /// Grid and steps of a run.
 #[derive(Clone, Copy, Debug)]
 pub struct Plan {
@@ -276,6 +154,76 @@ pub struct Plan {
     pub steps: u64,
     /// Time in which the fastest wave crosses a cell (s).
     pub critical: f64,
+}
+
+/// Returns the grid and steps of a run of a scene that the method supports. The error is the reason why the resolution is
+/// not valid.
+fn plan(setting: &Setting, scene: &Scene, resolution: &Resolution) -> Result<Plan, String> {
+    let Resolution::Grid { cells, points, courant } = *resolution else {
+        return Err(format!("expected cells per length, points per cell and a Courant number, found {resolution}"));
+    };
+    let positive = |value: f64| value.is_finite() && value > 0.0;
+    if !(positive(cells) && positive(courant) && (1..=64).contains(&points)) {
+        return Err(format!("expected positive numbers, found {resolution}"));
+    }
+    let dimensions = scene.dimension.count();
+    let cell = scene.reference_length / cells;
+    let cells_of = |axis: usize| scene.domain.map_or(0.0, |domain| (domain.high[axis] - domain.low[axis]) / cell);
+    if let Some(axis) = (0..dimensions).find(|&axis| cells_of(axis) >= f64::from(i32::MAX)) {
+        return Err(format!("expected a domain of fewer than 2^31 cells along an axis, found {:e}", cells_of(axis)));
+    }
+    let lattice = lattice(scene, setting, cell);
+    if let Some(found) = beyond_memory(scene, lattice.cell, points) {
+        return Err(format!("expected points and nodes that fit into memory, found {found}"));
+    }
+    let cell = lattice.shortest(dimensions);
+    let smallest = scene.grains.iter().enumerate().min_by(|(_, a), (_, b)| a.radius.total_cmp(&b.radius));
+    if let Some((at, grain)) = smallest.filter(|(_, grain)| grain.radius < SMALLEST * cell) {
+        return Err(format!(
+            "expected a radius of at least {SMALLEST} cells, found grain {} with {:.3}: {} cells are enough for it",
+            at + 1,
+            grain.radius / cell,
+            (SMALLEST * scene.reference_length / grain.radius).ceil()
+        ));
+    }
+    for body in &scene.bodies {
+        let length = body.shape.length(dimensions);
+        if length < SMALLEST * cell {
+            return Err(format!(
+                "expected a body at least {SMALLEST} cells wide, found `{}` with {:.3}: {} cells are enough for it",
+                body.name,
+                length / cell,
+                (SMALLEST * scene.reference_length / length).ceil()
+            ));
+        }
+    }
+    for (body, axis) in scene.bodies.iter().flat_map(|body| (0..dimensions).map(move |axis| (body, axis))) {
+        let BlockShape::Box { low, high } = body.shape else { continue };
+        let between = (high[axis] - low[axis]) / lattice.cell[axis];
+        if body.sides[axis].iter().all(|side| *side != Hold::Free) && between < BETWEEN_SIDES {
+            return Err(format!(
+                "expected at least {BETWEEN_SIDES} cells between two constrained sides of `{}`, found {between:.3}: with \
+                 fewer cells both sides act on the same nodes, which adds energy",
+                body.name
+            ));
+        }
+    }
+    let critical = scene.crossing_time(cell);
+    let Duration::Seconds(time) = scene.duration else {
+        return Err("expected a duration in seconds".to_owned());
+    };
+    // The number of steps is whole; the tolerance prevents rounding from adding a step.
+    let steps = (time / (courant * critical) * (1.0 - 1e-12)).ceil().max(1.0);
+    let time_step = time / steps;
+    let damped = scene.global_damping * time / steps;
+    if damped >= 2.0 {
+        return Err(format!("expected damping times time step below 2, found {damped}"));
+    }
+    let settling = scene.start.settle.map_or(0.0, |settle| settle.duration / time_step);
+    match beyond_run(scene, time_step, steps).or_else(|| beyond_steps(settling)) {
+        Some(refusal) => Err(refusal),
+        None => Ok(Plan { lattice, points, time_step, steps: steps as u64, critical }),
+    }
 }
 
 /// Returns a lattice with cells of about `cell` (m). Along periodic axes, the number of cells is whole.

@@ -5,8 +5,11 @@ use crate::pairs::{Pairs, Side};
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::overlap::distance;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
-use grainbench_solver::failure::{Cause, FailedParticle, SimulationFailure};
-use grainbench_solver::record::{ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState};
+use grainbench_solver::drive::Stepper;
+use grainbench_solver::failure::{Cause, FailedParticle, RunError, SimulationFailure};
+use grainbench_solver::record::{
+    ContactState, Counts, GrainState, Partner, Snapshot, StepState, WallState, nearest_turn,
+};
 use nalgebra::Vector3;
 
 /// Fraction of the Coulomb limit from which a friction impulse counts as slipping.
@@ -32,7 +35,7 @@ pub(crate) struct Simulation<'a> {
     angles: Vec<f64>,
     step: u64,
     /// Work counters since the start.
-    pub(crate) cost: Counts,
+    cost: Counts,
 }
 
 impl<'a> Simulation<'a> {
@@ -64,7 +67,7 @@ impl<'a> Simulation<'a> {
     /// # Errors
     /// When the state of a grain is not finite, or a grain moves so far that contacts may be missed. Also when a grain
     /// that spins in place on a contact rotates by more than [`LARGEST_TURN`].
-    pub(crate) fn advance(&mut self) -> Result<(), Box<SimulationFailure>> {
+    fn take_step(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.step += 1;
         let time = self.time();
         let place = |&wall: &usize| {
@@ -79,7 +82,7 @@ impl<'a> Simulation<'a> {
             self.check(at, &now)?;
             if self.scene.dimension == Dimension::Two {
                 let turned = now.spin.z * self.stepping.time_step;
-                self.angles[at] += unwrapped(now.orientation - self.state[at].orientation, turned);
+                self.angles[at] += nearest_turn(now.orientation - self.state[at].orientation, turned);
             }
             self.state[at] = now;
         }
@@ -126,54 +129,6 @@ impl<'a> Simulation<'a> {
                 _ => "more substeps may help".to_owned(),
             },
         }))
-    }
-
-    /// Returns the current state. Forces are impulses of the last step divided by the time step.
-    pub(crate) fn look(&self) -> StepState {
-        let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
-        let mut contacts: Vec<ContactState> =
-            self.engine.touches().iter().filter_map(|touch| self.contact(touch, &displaced)).collect();
-        let order = |contact: &ContactState| match contact.partner {
-            Partner::Grain(id) => (contact.grain, 0, id),
-            Partner::Body(at) => (contact.grain, 1, at),
-            Partner::Wall(at) => (contact.grain, 2, u32::from(at)),
-        };
-        contacts.sort_by_key(order);
-        let mut on_grains = vec![(Vector3::zeros(), Vector3::zeros()); self.state.len()];
-        let mut on_walls = vec![Vector3::zeros(); displaced.len()];
-        for contact in &contacts {
-            let force = contact.shear_force - contact.normal * contact.normal_force;
-            let mut push = |id: u32, force: Vector3<f64>| {
-                let at = id as usize - 1;
-                let (forces, torques): &mut (Vector3<f64>, Vector3<f64>) = &mut on_grains[at];
-                *forces += force;
-                *torques += (contact.point - self.state[at].position).cross(&force);
-            };
-            push(contact.grain, force);
-            match contact.partner {
-                Partner::Grain(id) => push(id, -force),
-                Partner::Wall(at) => on_walls[usize::from(at)] -= force,
-                Partner::Body(_) => {}
-            }
-        }
-        let grains: Vec<GrainState> = (0..).zip(on_grains).map(|(at, acting)| self.grain(at, acting)).collect();
-        let shapes = self.scene.walls.iter().zip(&displaced);
-        let walls = shapes.zip(on_walls).map(|((wall, shape), force)| wall_state(wall, shape, force)).collect();
-        let bounds = bounds(self.scene, &grains);
-        StepState::of_rigid(
-            Snapshot {
-                step: self.step,
-                time: self.time(),
-                bounds,
-                periodic: [false; 3],
-                grains,
-                contacts: Some(contacts),
-                walls,
-                bodies: Vec::new(),
-                points: Vec::new(),
-            },
-            0.0,
-        )
     }
 
     fn shape(&self, wall: &Wall) -> WallShape {
@@ -229,29 +184,56 @@ impl<'a> Simulation<'a> {
     }
 }
 
-/// Returns the angle nearest to `expected` that differs from `wrapped` by full turns (rad).
-fn unwrapped(wrapped: f64, expected: f64) -> f64 {
-    wrapped + ((expected - wrapped) / std::f64::consts::TAU).round() * std::f64::consts::TAU
-}
-
-fn wall_state(wall: &Wall, shape: &WallShape, force: Vector3<f64>) -> WallState {
-    let (corners, infinite) = shape.corners();
-    WallState { name: wall.name.clone(), corners, infinite, force: Some(force) }
-}
-
-fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f64>) {
-    if let Some(domain) = scene.domain {
-        return (domain.low, domain.high);
+impl Stepper for Simulation<'_> {
+    fn step(&self) -> u64 {
+        self.step
     }
-    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-    let (mut low, mut high) = grains.iter().fold(start, |(low, high), grain| {
-        let reach = Vector3::repeat(grain.radius);
-        (low.inf(&(grain.position - reach)), high.sup(&(grain.position + reach)))
-    });
-    if scene.dimension == Dimension::Two {
-        (low.z, high.z) = (-0.5, 0.5);
+
+    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
+        Ok((0..steps).try_for_each(|_| self.take_step())?)
     }
-    (low, high)
+
+    /// Returns the current state. Forces are impulses of the last step divided by the time step.
+    fn look(&mut self, _snapshot: bool) -> StepState {
+        let displaced: Vec<WallShape> = self.scene.walls.iter().map(|wall| self.shape(wall)).collect();
+        let mut contacts: Vec<ContactState> =
+            self.engine.touches().iter().filter_map(|touch| self.contact(touch, &displaced)).collect();
+        let order = |contact: &ContactState| match contact.partner {
+            Partner::Grain(id) => (contact.grain, 0, id),
+            Partner::Body(at) => (contact.grain, 1, at),
+            Partner::Wall(at) => (contact.grain, 2, u32::from(at)),
+        };
+        contacts.sort_by_key(order);
+        let mut on_grains = vec![(Vector3::zeros(), Vector3::zeros()); self.state.len()];
+        let mut on_walls = vec![Vector3::zeros(); displaced.len()];
+        for contact in &contacts {
+            let force = contact.shear_force - contact.normal * contact.normal_force;
+            let mut push = |id: u32, force: Vector3<f64>| {
+                let at = id as usize - 1;
+                let (forces, torques): &mut (Vector3<f64>, Vector3<f64>) = &mut on_grains[at];
+                *forces += force;
+                *torques += (contact.point - self.state[at].position).cross(&force);
+            };
+            push(contact.grain, force);
+            match contact.partner {
+                Partner::Grain(id) => push(id, -force),
+                Partner::Wall(at) => on_walls[usize::from(at)] -= force,
+                Partner::Body(_) => {}
+            }
+        }
+        let grains: Vec<GrainState> = (0..).zip(on_grains).map(|(at, acting)| self.grain(at, acting)).collect();
+        let shapes = self.scene.walls.iter().zip(&displaced);
+        let walls = shapes.zip(on_walls).map(|((wall, shape), force)| {
+            let (corners, infinite) = shape.corners();
+            WallState { name: wall.name.clone(), corners, infinite, force: Some(force) }
+        });
+        let (walls, contacts) = (walls.collect(), Some(contacts));
+        StepState::of_rigid(Snapshot::new(self.scene, self.step, self.time(), grains, walls, contacts), 0.0)
+    }
+
+    fn counts(&self) -> Counts {
+        self.cost
+    }
 }
 
 #[cfg(test)]
@@ -297,7 +279,7 @@ mod tests {
             for touch in [touch, turned] {
                 let mut simulation = Simulation::new(&scene, stepping);
                 simulation.engine = Box::new(OneContactEngine(touch));
-                let snapshot = simulation.look().snapshot;
+                let snapshot = simulation.look(true).snapshot;
                 let force = (shear - normal * 2.0) / 0.1;
                 let on_other = if other == Side::Wall(0) { snapshot.walls[0].force } else { snapshot.grains[1].force };
                 let off = [snapshot.grains[0].force.unwrap() - force, on_other.unwrap() + force].map(|off| off.norm());

@@ -6,11 +6,11 @@ use crate::settings::Settings;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_solver::Solver;
-use grainbench_solver::drive::{Course, LoopOutput, Stepper};
+use grainbench_solver::drive::Course;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::limits::beyond_run;
 use grainbench_solver::observer::Observer;
-use grainbench_solver::record::{Counts, Provenance, Record, StepState};
+use grainbench_solver::record::{Provenance, Record};
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::terms::{Limitation, Terms};
 
@@ -36,42 +36,39 @@ pub struct Rigid {
 impl Rigid {
     /// Conformance properties, with the limitations of the engine.
     pub const TERMS: Terms = Terms::at(Resolution::substeps(8)).owing_less(&[
-        Limitation {
-            property: "momentum",
-            quantity: "angular",
-            at_most: 1e-3,
-            because: "contact points are fixed to the grains for a step and rotate with them: the two impulses of a \
-                      contact act at points that separate by about v Δt",
-        },
-        Limitation {
-            property: "galilean-invariance",
-            quantity: "",
-            at_most: 1e-9,
-            because: "tolerances of the engine are absolute lengths and speeds, which act differently in a moving \
-                      frame",
-        },
-        Limitation {
-            property: "rotation-invariance",
-            quantity: "",
-            at_most: 1e-9,
-            because: "tolerances of the engine are absolute lengths and speeds, which act differently in a rotated \
-                      scene",
-        },
-        Limitation {
-            property: "permutation",
-            quantity: "",
-            at_most: 3e-3,
-            because: "contacts are solved one after another, in the order of the list, and the solver stops after some \
-                      iterations",
-        },
-        Limitation {
-            property: "free-flight",
-            quantity: "",
-            at_most: 1e-12,
-            because: "spins are converted to the units of the engine and back in each step, which adds rounding",
-        },
-        Limitation { property: "objectivity", quantity: "place", at_most: 0.1, because: PRESSED },
-        Limitation { property: "objectivity", quantity: "spin", at_most: 1.0, because: PRESSED },
+        Limitation::new(
+            "momentum",
+            "angular",
+            1e-3,
+            "contact points are fixed to the grains for a step and rotate with them: the two impulses of a contact act at \
+             points that separate by about v Δt",
+        ),
+        Limitation::new(
+            "galilean-invariance",
+            "",
+            1e-9,
+            "tolerances of the engine are absolute lengths and speeds, which act differently in a moving frame",
+        ),
+        Limitation::new(
+            "rotation-invariance",
+            "",
+            1e-9,
+            "tolerances of the engine are absolute lengths and speeds, which act differently in a rotated scene",
+        ),
+        Limitation::new(
+            "permutation",
+            "",
+            3e-3,
+            "contacts are solved one after another, in the order of the list, and the solver stops after some iterations",
+        ),
+        Limitation::new(
+            "free-flight",
+            "",
+            1e-12,
+            "spins are converted to the units of the engine and back in each step, which adds rounding",
+        ),
+        Limitation::new("objectivity", "place", 0.1, PRESSED),
+        Limitation::new("objectivity", "spin", 1.0, PRESSED),
     ]);
 
     /// Returns rapier with its default settings.
@@ -86,20 +83,16 @@ impl Rigid {
         Self { settings }
     }
 
-    fn unsupported(&self, reason: String) -> RunError {
-        RunError::Unsupported { solver: self.name(), reason }
-    }
-
     /// Returns the time step (s), the number of steps, and the iterations in each step.
     fn steps(&self, scene: &Scene, resolution: &Resolution) -> Result<(f64, u64, usize), RunError> {
-        let error = |reason: String| RunError::Resolution { solver: self.name(), reason };
         let Resolution::Rigid { step, substeps, iterations } = *resolution else {
-            return Err(error(format!(
+            return Err(self.resolution_error(format!(
                 "expected a number of substeps, found {resolution}: rigid contacts have no critical time step"
             )));
         };
         if !(step.is_finite() && step > 0.0 && substeps > 0 && iterations > 0) {
-            return Err(error(format!("expected a positive step, substeps and iterations, found {resolution}")));
+            let reason = format!("expected a positive step, substeps and iterations, found {resolution}");
+            return Err(self.resolution_error(reason));
         }
         let Duration::Seconds(time) = scene.duration else {
             return Err(self.unsupported("its duration is a number of calculation cycles".to_owned()));
@@ -107,7 +100,7 @@ impl Rigid {
         // The number of steps is rounded up. The tolerance prevents rounding errors from adding a step.
         let steps = (time / step * (1.0 - 1e-12)).ceil().max(1.0) * f64::from(substeps);
         if let Some(refusal) = beyond_run(scene, time / steps, steps) {
-            return Err(error(refusal));
+            return Err(self.resolution_error(refusal));
         }
         Ok((time / steps, steps as u64, iterations as usize))
     }
@@ -153,45 +146,12 @@ impl Solver for Rigid {
         let mean_mass = scene.grains.iter().map(|grain| grain.mass).sum::<f64>() / scene.grains.len().max(1) as f64;
         let mass = if mean_mass > 0.0 { libm::exp2(libm::log2(mean_mass).round()) } else { 1.0 };
         let stepping = Stepping { time_step, iterations, length, mass, settings: self.settings };
-        let mut running = RunningSimulation { simulation: Simulation::new(scene, stepping), step: 0 };
-        let course = Course { scene, time_step, steps, resumed: None, between_progress: STEPS_BETWEEN_PROGRESS };
-        let LoopOutput { series, snapshots, cost } = course.drive(&mut running, observer)?;
-        Ok(Record {
-            provenance: Provenance {
-                critical_time_step: None,
-                ..Provenance::new(scene, self.name(), resolution, time_step, self.words(scene, &stepping))
-            },
-            series,
-            snapshots,
-            cost,
-        })
-    }
-}
-
-/// Simulation that the main loop advances step by step.
-struct RunningSimulation<'a> {
-    simulation: Simulation<'a>,
-    step: u64,
-}
-
-impl Stepper for RunningSimulation<'_> {
-    fn step(&self) -> u64 {
-        self.step
-    }
-
-    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
-        for _ in 0..steps {
-            self.simulation.advance().map_err(RunError::Broken)?;
-            self.step += 1;
-        }
-        Ok(())
-    }
-
-    fn look(&mut self, _snapshot: bool) -> StepState {
-        self.simulation.look()
-    }
-
-    fn counts(&self) -> Counts {
-        self.simulation.cost
+        let provenance = Provenance {
+            critical_time_step: None,
+            ..Provenance::new(scene, self.name(), resolution, time_step, self.words(scene, &stepping))
+        };
+        let between_progress = STEPS_BETWEEN_PROGRESS;
+        let course = Course { solver: self.name(), scene, steps, from: None, between_progress, provenance };
+        course.drive(&mut Simulation::new(scene, stepping), observer)
     }
 }

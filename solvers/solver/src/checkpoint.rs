@@ -82,59 +82,25 @@ pub struct RunIdentity {
     pub layout: String,
 }
 
-/// Properties of a run that determine the identity in its checkpoints.
-#[derive(Clone, Debug)]
-pub struct Run<'a> {
-    /// Solver and options, as text.
-    pub solver: String,
-    /// Scene of the run.
-    pub scene: &'a Scene,
-    /// Time step (s).
-    pub time_step: f64,
-    /// Number of steps of the whole run.
-    pub steps: u64,
-    /// Text that identifies the layout of the solver's state.
-    pub layout: &'static str,
-}
-
-impl Run<'_> {
-    /// Returns the identity that checkpoints of this run store.
-    #[must_use]
-    pub fn identity(&self) -> RunIdentity {
-        let &Self { ref solver, scene, time_step, steps, layout } = self;
-        RunIdentity {
-            solver: solver.clone(),
-            scene: scene.title.clone(),
-            fingerprint: fingerprint(scene).to_hex().to_string(),
-            time_step,
-            steps,
-            layout: layout.to_owned(),
-        }
-    }
-}
-
 impl RunIdentity {
+    /// Returns the properties with their names, in the order in which they are compared.
+    fn properties(&self) -> [(&'static str, String); 6] {
+        [
+            ("the solver", self.solver.clone()),
+            ("the scene", self.scene.clone()),
+            ("a time step (s) of", self.time_step.to_string()),
+            ("a number of steps of", self.steps.to_string()),
+            ("a scene with the fingerprint", self.fingerprint.clone()),
+            ("the state of", self.layout.clone()),
+        ]
+    }
+
+    /// Compares properties as text, which shows all digits of the time step.
     fn require(&self, found: &Self) -> Result<(), CheckpointError> {
-        let other = |what, expected: &dyn ToString, found: &dyn ToString| {
-            Err(CheckpointError::OtherRun { what, expected: expected.to_string(), found: found.to_string() })
-        };
-        if self.solver != found.solver {
-            return other("the solver", &self.solver, &found.solver);
-        }
-        if self.scene != found.scene {
-            return other("the scene", &self.scene, &found.scene);
-        }
-        if self.time_step.to_bits() != found.time_step.to_bits() {
-            return other("a time step (s) of", &self.time_step, &found.time_step);
-        }
-        if self.steps != found.steps {
-            return other("a number of steps of", &self.steps, &found.steps);
-        }
-        if self.fingerprint != found.fingerprint {
-            return other("a scene with the fingerprint", &self.fingerprint, &found.fingerprint);
-        }
-        if self.layout != found.layout {
-            return other("the state of", &self.layout, &found.layout);
+        for ((what, expected), (_, found)) in self.properties().into_iter().zip(found.properties()) {
+            if expected != found {
+                return Err(CheckpointError::OtherRun { what, expected, found });
+            }
         }
         Ok(())
     }

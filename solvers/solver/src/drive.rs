@@ -2,10 +2,10 @@
 //! snapshots and checkpoints to the observer. It also measures the wall-clock time, relaxation included.
 
 use crate::brief::Brief;
-use crate::checkpoint::{Checkpoint, CheckpointError};
+use crate::checkpoint::{Checkpoint, CheckpointError, RunIdentity, fingerprint};
 use crate::failure::RunError;
 use crate::observer::{Observer, RunOutline};
-use crate::record::{Cost, Counts, PartialOutput, Series, Snapshot, StepState};
+use crate::record::{Cost, Counts, PartialOutput, Provenance, Record, Snapshot, StepState};
 use crate::recorder::Recorder;
 use crate::reduction::reduce;
 use grainbench_scene::end_state::EndState;
@@ -61,57 +61,75 @@ pub trait Stepper {
     fn counts(&self) -> Counts;
 
     /// Returns the state after the last step, as the initial state of another scene; `None` if the solver does not
-    /// provide it.
-    fn end_state(&self) -> Option<EndState> {
+    /// provide it. `solver` is the text of [`Course::solver`].
+    fn end_state(&self, _solver: &str) -> Option<EndState> {
         None
+    }
+
+    /// Returns text that identifies the layout of the state in checkpoints.
+    fn layout(&self) -> &'static str {
+        ""
     }
 
     /// Returns a checkpoint of the state with the record so far; `None` if the solver writes no checkpoints.
     ///
     /// # Errors
     /// When the state cannot be serialised.
-    fn keep(&self, _recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
+    fn keep(&self, _identity: &RunIdentity, _recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
+        Ok(None)
+    }
+
+    /// Restores the state from a checkpoint of the run with this identity, and returns the record so far; `None` if the
+    /// solver writes no checkpoints.
+    ///
+    /// # Errors
+    /// When the checkpoint belongs to another run or is damaged.
+    fn recall(
+        &mut self,
+        _identity: &RunIdentity,
+        _checkpoint: &Checkpoint,
+    ) -> Result<Option<Recorder>, CheckpointError> {
         Ok(None)
     }
 }
 
 /// Inputs of the main loop.
 pub struct Course<'a> {
+    /// Solver and options, as text for checkpoints and final states.
+    pub solver: String,
     /// Scene of the run.
     pub scene: &'a Scene,
-    /// Time step (s).
-    pub time_step: f64,
     /// Number of steps of the whole run.
     pub steps: u64,
-    /// Record so far of a continued run; `None` for a new run.
-    pub resumed: Option<Recorder>,
+    /// Checkpoint from which the run continues; `None` for a new run.
+    pub from: Option<&'a Checkpoint>,
     /// Largest number of steps between two progress reports.
     pub between_progress: u64,
-}
-
-/// Time series, snapshots and cost that [`Course::drive`] returns.
-pub struct LoopOutput {
-    /// Time series.
-    pub series: Series,
-    /// Snapshots that the observer returned for the record.
-    pub snapshots: Vec<Snapshot>,
-    /// Counts, and the wall-clock time of all steps, relaxation included (s).
-    pub cost: Cost,
+    /// Origin of the record, with the time step.
+    pub provenance: Provenance,
 }
 
 impl Course<'_> {
-    /// Advances a state to the end of the run.
+    /// Advances a state to the end of the run. The record contains the snapshots that the observer returned.
     ///
     /// # Errors
-    /// When the simulation breaks or is interrupted, or a snapshot or a checkpoint cannot be stored. The observer
-    /// receives the partial output of a run that broke or was interrupted.
-    pub fn drive(mut self, stepper: &mut dyn Stepper, observer: &mut dyn Observer) -> Result<LoopOutput, RunError> {
+    /// When the checkpoint belongs to another run or is damaged, the simulation breaks or is interrupted, or a snapshot
+    /// or a checkpoint cannot be stored. The observer receives the partial output of a run that broke or was
+    /// interrupted.
+    pub fn drive(self, stepper: &mut dyn Stepper, observer: &mut dyn Observer) -> Result<Record, RunError> {
+        let time_step = self.provenance.time_step;
+        let resumed = match self.from {
+            Some(checkpoint) => {
+                let identity = self.identity(stepper);
+                stepper.recall(&identity, checkpoint)?
+            }
+            None => None,
+        };
         let particles = stepper.particles(self.scene);
-        observer.begin(RunOutline { time_step: self.time_step, steps: self.steps, particles });
+        observer.begin(RunOutline { time_step, steps: self.steps, particles });
         let clock = Instant::now();
-        let resumed = self.resumed.take();
         let begins = resumed.is_none();
-        let begun = Recorder::new(self.scene, self.time_step, self.steps);
+        let begun = Recorder::new(self.scene, time_step, self.steps);
         let mut recorder = match resumed {
             None => begun,
             Some(resumed) if resumed.is_of(&begun) && stepper.step() <= self.steps => resumed,
@@ -144,13 +162,25 @@ impl Course<'_> {
             return Err(error);
         }
         if observer.options().end_state
-            && let Some(state) = stepper.end_state()
+            && let Some(state) = stepper.end_state(&self.solver)
         {
             observer.end_state(state);
         }
         let cost = Cost::new(stepper.counts(), clock.elapsed().as_secs_f64());
         let (series, snapshots) = recorder.finish();
-        Ok(LoopOutput { series, snapshots, cost })
+        Ok(Record { provenance: self.provenance, series, snapshots, cost })
+    }
+
+    /// Returns the identity that checkpoints of this run store.
+    fn identity(&self, stepper: &dyn Stepper) -> RunIdentity {
+        RunIdentity {
+            solver: self.solver.clone(),
+            scene: self.scene.title.clone(),
+            fingerprint: fingerprint(self.scene).to_hex().to_string(),
+            time_step: self.provenance.time_step,
+            steps: self.steps,
+            layout: stepper.layout().to_owned(),
+        }
     }
 
     fn steps(
@@ -163,13 +193,13 @@ impl Course<'_> {
         if begins {
             stepper.begin()?;
         }
-        let first = stepper.step();
+        let (first, time_step) = (stepper.step(), self.provenance.time_step);
         // No checkpoint is stored at the first step.
         let between_checkpoints = observer.options().checkpoint_interval.unwrap_or(u64::MAX).max(1);
         loop {
             let now = stepper.step();
             if now < self.steps && observer.is_over() {
-                return Err(RunError::Interrupted { time: now as f64 * self.time_step, step: now });
+                return Err(RunError::Interrupted { time: now as f64 * time_step, step: now });
             }
             if (begins || now > first) && recorder.is_due(now) {
                 self.take_down(now, recorder, stepper, observer)?;
@@ -180,7 +210,7 @@ impl Course<'_> {
             }
             if now > first
                 && now.is_multiple_of(between_checkpoints)
-                && let Some(checkpoint) = stepper.keep(recorder)?
+                && let Some(checkpoint) = stepper.keep(&self.identity(stepper), recorder)?
             {
                 observer.checkpoint(checkpoint)?;
             }
@@ -199,6 +229,7 @@ impl Course<'_> {
         stepper: &mut dyn Stepper,
         observer: &mut dyn Observer,
     ) -> Result<(), RunError> {
+        let time = step as f64 * self.provenance.time_step;
         let is_snapshot = recorder.is_snapshot(step);
         let shown = is_snapshot && stepper.shows(self.scene, observer.options().most_rows);
         let rows = stepper.rows(self.scene);
@@ -209,13 +240,12 @@ impl Course<'_> {
             observer.in_short(brief, rows);
         }
         let Some(look) = look else {
-            recorder.sample_nothing(step, step as f64 * self.time_step);
+            recorder.sample_nothing(step, time);
             return Ok(());
         };
         let snapshot = recorder.take(self.scene, look).filter(|_| shown);
         if let Some((column, value)) = recorder.not_finite() {
-            let (column, time) = (column.to_owned(), step as f64 * self.time_step);
-            return Err(RunError::NotFinite { time, step, column, value });
+            return Err(RunError::NotFinite { time, step, column: column.to_owned(), value });
         }
         if let Some(snapshot) = snapshot
             && let Some(kept) = observer.snapshot(snapshot)?

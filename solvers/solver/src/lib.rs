@@ -80,7 +80,16 @@ pub trait Solver: Send + Sync {
         _from: &Checkpoint,
         _observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        let reason = "it writes no checkpoints".to_owned();
-        Err(RunError::Unsupported { solver: self.name(), reason })
+        Err(self.unsupported("it writes no checkpoints".to_owned()))
+    }
+
+    /// Returns the error for a scene or a request that the solver does not support.
+    fn unsupported(&self, reason: String) -> RunError {
+        RunError::Unsupported { solver: self.name(), reason }
+    }
+
+    /// Returns the error for a resolution that is not valid.
+    fn resolution_error(&self, reason: String) -> RunError {
+        RunError::Resolution { solver: self.name(), reason }
     }
 }

@@ -269,17 +269,22 @@ impl Snapshot {
             let (corners, infinite) = wall.shape.moved(&wall.motion, &displacement).corners();
             WallState { name: wall.name.clone(), corners, infinite, force: None }
         });
-        Self {
-            step,
-            time,
-            bounds: bounds(scene, &grains),
-            periodic: scene.domain.map_or([false; 3], |domain| domain.periodic),
-            walls: walls.collect(),
-            contacts: None,
-            grains,
-            bodies: Vec::new(),
-            points: Vec::new(),
-        }
+        Self::new(scene, step, time, grains, walls.collect(), None)
+    }
+
+    /// Returns a snapshot without bodies and material points.
+    #[must_use]
+    pub fn new(
+        scene: &Scene,
+        step: u64,
+        time: f64,
+        grains: Vec<GrainState>,
+        walls: Vec<WallState>,
+        contacts: Option<Vec<ContactState>>,
+    ) -> Self {
+        let bounds = bounds(scene, &grains);
+        let periodic = scene.domain.map_or([false; 3], |domain| domain.periodic);
+        Self { step, time, bounds, periodic, grains, contacts, walls, bodies: Vec::new(), points: Vec::new() }
     }
 }
 
@@ -307,6 +312,12 @@ pub fn bounds(scene: &Scene, grains: &[GrainState]) -> (Vector3<f64>, Vector3<f6
         (low.z, high.z) = (-0.5, 0.5);
     }
     (low, high)
+}
+
+/// Returns the angle nearest to `expected` that differs from `angle` by full turns (rad).
+#[must_use]
+pub fn nearest_turn(angle: f64, expected: f64) -> f64 {
+    angle + ((expected - angle) / std::f64::consts::TAU).round() * std::f64::consts::TAU
 }
 
 /// State of a simulation at one step: a snapshot, and further data for probes.

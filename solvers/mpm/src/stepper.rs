@@ -1,17 +1,21 @@
-//! State of a simulation between two steps. A restart from this state gives the same bits as an uninterrupted run.
+//! Simulation as the main loop runs it, and its state between two steps. A restart from this state gives the same bits as
+//! an uninterrupted run.
 //!
 //! The order of points is stored, because the last bit of sums at nodes depends on it. Tracer positions and tangential
 //! spring displacements are stored too. Nodes, windows, pairs and planes are recomputed in each step.
 
 use crate::contact::friction::Friction;
 use crate::energy::accounts::{Accounts, Sums};
-use crate::energy::guard::EnergyGuard;
+use crate::energy::ledger::EnergyGuard;
 use crate::energy::ledger::Tally;
 use crate::points::arrays::Points;
 use crate::simulation::Simulation;
+use grainbench_scene::scene::Scene;
 use grainbench_solver::checkpoint::{Checkpoint, CheckpointError, RunIdentity};
+use grainbench_solver::drive::Stepper;
+use grainbench_solver::failure::RunError;
 use grainbench_solver::finite::is_finite;
-use grainbench_solver::record::Counts;
+use grainbench_solver::record::{Counts, StepState};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
@@ -37,9 +41,51 @@ struct CheckpointData<S: Space> {
     recorder: Recorder,
 }
 
-impl<S: Space> Simulation<S> {
-    /// Returns the state after the last step, with the record so far.
-    pub(crate) fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Checkpoint, CheckpointError> {
+impl<S: Space> Stepper for Simulation<S> {
+    /// Relaxes the bodies and sets their initial velocities.
+    fn begin(&mut self) -> Result<(), RunError> {
+        let team = self.state.team.clone();
+        team.lead(|| self.settle())?;
+        let Self { critical, scheme, .. } = *self;
+        let moving = team.lead(|| self.set_moving());
+        moving.map_err(|failure| failure.into_simulation_failure(0, scheme.time_step, critical))?;
+        self.open_accounts();
+        self.watch_energy();
+        Ok(())
+    }
+
+    fn particles(&self, _: &Scene) -> u64 {
+        self.state.points.len() as u64
+    }
+
+    fn rows(&self, scene: &Scene) -> u64 {
+        self.particles(scene) + scene.grains.len() as u64
+    }
+
+    fn step(&self) -> u64 {
+        self.step
+    }
+
+    /// Takes `steps` steps. Contact points are recorded in the last step.
+    fn advance(&mut self, steps: u64) -> Result<(), RunError> {
+        let team = self.state.team.clone();
+        Ok(team.lead(|| (0..steps).rev().try_for_each(|left| self.cycle(left == 0)))?)
+    }
+
+    /// Returns the state at this step. A snapshot includes every material point.
+    fn look(&mut self, snapshot: bool) -> StepState {
+        self.observed(snapshot)
+    }
+
+    fn counts(&self) -> Counts {
+        self.cost
+    }
+
+    fn layout(&self) -> &'static str {
+        std::any::type_name::<Self>()
+    }
+
+    fn keep(&self, identity: &RunIdentity, recorder: &Recorder) -> Result<Option<Checkpoint>, CheckpointError> {
         let (state, tracers) = (&self.state, &self.contacts.tracers);
         let kept = CheckpointData::<S> {
             points: state.points.clone(),
@@ -54,15 +100,10 @@ impl<S: Space> Simulation<S> {
             watched: self.watched,
             recorder: recorder.clone(),
         };
-        Checkpoint::keep(identity, self.step, &kept)
+        Checkpoint::keep(identity, self.step, &kept).map(Some)
     }
 
-    /// Restores a stored state and returns the record so far.
-    pub(crate) fn recall(
-        &mut self,
-        identity: &RunIdentity,
-        checkpoint: &Checkpoint,
-    ) -> Result<Recorder, CheckpointError> {
+    fn recall(&mut self, identity: &RunIdentity, checkpoint: &Checkpoint) -> Result<Option<Recorder>, CheckpointError> {
         let kept: CheckpointData<S> = checkpoint.state(identity)?;
         self.cover();
         let Self { state, contacts, .. } = self;
@@ -97,6 +138,6 @@ impl<S: Space> Simulation<S> {
         if let (Some(Accounts { sums, tally, .. }), Some(kept)) = (&mut self.accounts, kept.accounts) {
             (*sums, *tally) = kept;
         }
-        Ok(kept.recorder)
+        Ok(Some(kept.recorder))
     }
 }
