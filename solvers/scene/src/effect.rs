@@ -3,7 +3,7 @@
 //! always determined from this list.
 
 use crate::contact_law::{ContactLaw, Springs};
-use crate::material::Deformable;
+use crate::material::Constitutive;
 use crate::method::Method;
 use crate::motion::{Moment, Phase};
 use crate::scene::Scene;
@@ -198,14 +198,12 @@ impl Effect {
                 }
             }
             Self::Plasticity => {
-                for material in scene.deformable.iter_mut().flatten() {
-                    material.constitutive = material.constitutive.elastic();
-                }
+                let is_plastic = |law| matches!(law, Constitutive::VonMises { .. });
+                change_materials(scene, is_plastic, Constitutive::Hypoelastic);
             }
             Self::Viscosity => {
-                for material in scene.deformable.iter_mut().flatten() {
-                    material.constitutive = material.constitutive.inviscid();
-                }
+                let is_viscous = |law| matches!(law, Constitutive::KelvinVoigt { .. });
+                change_materials(scene, is_viscous, Constitutive::NeoHookean);
             }
         }
     }
@@ -251,16 +249,12 @@ impl Effect {
             }
             // The yield stress is so high that it is never reached.
             Self::Plasticity => {
-                let idle = |material: &mut Deformable| {
-                    material.constitutive.never_yielding().map(|never| material.constitutive = never)
-                };
-                scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
+                let never = Constitutive::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 };
+                change_materials(scene, |law| law == Constitutive::Hypoelastic, never)
             }
             Self::Viscosity => {
-                let idle = |material: &mut Deformable| {
-                    material.constitutive.hardly_viscous().map(|hardly| material.constitutive = hardly)
-                };
-                scene.deformable.iter_mut().flatten().filter_map(idle).count() > 0
+                let hardly = Constitutive::KelvinVoigt { viscosity: SMALLEST, bulk_viscosity: 0.0 };
+                change_materials(scene, |law| law == Constitutive::NeoHookean, hardly)
             }
             // A periodic domain of any size changes the positions of grains. Hertz contacts and restitution change the
             // results.
@@ -269,8 +263,18 @@ impl Effect {
     }
 }
 
-/// Smallest positive floating-point number, used as gravity (m/s²). Its product with a time step below 0.5 s is zero.
+/// Smallest positive floating-point number, used as gravity (m/s²) and as viscosity (Pa s). Its product with a time step
+/// below 0.5 s is zero.
 const SMALLEST: f64 = f64::from_bits(1);
+
+/// Replaces the constitutive laws for which `is_changed` is true. Returns false if there are none.
+fn change_materials(scene: &mut Scene, is_changed: impl Fn(Constitutive) -> bool, new: Constitutive) -> bool {
+    let mut changed = false;
+    for material in scene.deformable.iter_mut().flatten().filter(|material| is_changed(material.constitutive)) {
+        (material.constitutive, changed) = (new, true);
+    }
+    changed
+}
 
 /// Returns the key with its value for the first law in which the value is not zero; `None` if there is none.
 fn of_law(scene: &Scene, key: &str, value: impl Fn(&ContactLaw) -> f64) -> Option<String> {

@@ -209,24 +209,6 @@ impl Constitutive {
         }
     }
 
-    /// Returns the law without plasticity.
-    #[must_use]
-    pub const fn elastic(self) -> Self {
-        match self {
-            Self::VonMises { .. } => Self::Hypoelastic,
-            elastic => elastic,
-        }
-    }
-
-    /// Returns an equivalent law with a yield stress that is never reached; `None` if there is none.
-    #[must_use]
-    pub const fn never_yielding(&self) -> Option<Self> {
-        match self {
-            Self::Hypoelastic => Some(Self::VonMises { yield_stress: f64::MAX, hardening_modulus: 0.0 }),
-            Self::NeoHookean | Self::KelvinVoigt { .. } | Self::VonMises { .. } => None,
-        }
-    }
-
     /// Returns the shear and bulk viscosities η and ζ (Pa s); `None` if the law has no viscosity or both are zero.
     #[must_use]
     pub fn viscosities(&self) -> Option<[f64; 2]> {
@@ -235,25 +217,6 @@ impl Constitutive {
                 Some([viscosity, bulk_viscosity])
             }
             _ => None,
-        }
-    }
-
-    /// Returns the law without viscosity.
-    #[must_use]
-    pub const fn inviscid(self) -> Self {
-        match self {
-            Self::KelvinVoigt { .. } => Self::NeoHookean,
-            inviscid => inviscid,
-        }
-    }
-
-    /// Returns an equivalent law with a viscosity so small that its stress is lost in rounding; `None` if there is
-    /// none.
-    #[must_use]
-    pub const fn hardly_viscous(&self) -> Option<Self> {
-        match self {
-            Self::NeoHookean => Some(Self::KelvinVoigt { viscosity: f64::from_bits(1), bulk_viscosity: 0.0 }),
-            Self::Hypoelastic | Self::KelvinVoigt { .. } | Self::VonMises { .. } => None,
         }
     }
 }
