@@ -9,7 +9,7 @@ use crate::material::{Law, with_law};
 use crate::options::Contact;
 use crate::points::body::Body;
 use crate::simulation::Simulation;
-use grainbench_scene::scene::Scene;
+use grainbench_scene::scene::{Scene, crossing_time};
 use grainbench_solver::failure::{Cause, SimulationFailure};
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
@@ -43,15 +43,6 @@ fn is_closed(scene: &Scene) -> bool {
 /// depart with more energy than before (up to 1.8 times the energy of a collision).
 fn keeps_energy(contact: Contact) -> bool {
     !matches!(contact, Contact::Kinematic | Contact::Traction)
-}
-
-/// Returns the time (s) that the fastest wave takes to cross a cell at a point, from ρ₀c² (Pa) and the ratio of volume
-/// to initial volume.
-fn crossing_time(body: &Body, modulus: f64, volume_ratio: f64, cell: f64) -> f64 {
-    let speed = (modulus / body.density).sqrt();
-    // Same formula as `Scene::crossing_time`, with the current density.
-    let damping = body.deformable.longitudinal_viscosity() * volume_ratio / (body.density * speed * cell);
-    cell / speed * ((1.0 + damping * damping).sqrt() - damping)
 }
 
 impl<S: Space> Simulation<S> {
@@ -144,7 +135,8 @@ impl<S: Space> Simulation<S> {
             with_law!(&body.law, law => for at in body.part.points.clone() {
                 let ratio = points.volume[at] / points.reference_volume[at];
                 let finger = S::embed_symmetric(S::finger(points.deformation[at]));
-                let time = crossing_time(body, law.wave_modulus(ratio, &finger), ratio, cell);
+                let viscosity = body.deformable.longitudinal_viscosity() * ratio;
+                let time = crossing_time(law.wave_modulus(ratio, &finger), viscosity, body.density, cell);
                 if time < least.0 {
                     least = (time, place, at);
                 }

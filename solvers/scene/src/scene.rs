@@ -458,9 +458,8 @@ impl Scene {
         let material_time = |material: u16, density: f64| {
             let deformable = self.deformable.get(usize::from(material)).copied().flatten();
             deformable.map_or(f64::INFINITY, |deformable| {
-                let speed = (deformable.longitudinal_modulus() / density).sqrt();
-                let damping = deformable.longitudinal_viscosity() / (density * speed * cell);
-                cell / speed * ((1.0 + damping * damping).sqrt() - damping)
+                let (modulus, viscosity) = (deformable.longitudinal_modulus(), deformable.longitudinal_viscosity());
+                crossing_time(modulus, viscosity, density, cell)
             })
         };
         let volume = |radius: f64| self.grain_shape.mass(radius, 1.0);
@@ -586,4 +585,13 @@ impl Scene {
         let critical = self.critical_time_step();
         time_step >= critical && critical.is_finite()
     }
+}
+
+/// Returns the largest stable time step (s) of [`Scene::crossing_time`] for a material with a longitudinal modulus (Pa), a
+/// longitudinal viscosity (Pa s) and a density (kg/m³).
+#[must_use]
+pub fn crossing_time(modulus: f64, viscosity: f64, density: f64, cell: f64) -> f64 {
+    let speed = (modulus / density).sqrt();
+    let damping = viscosity / (density * speed * cell);
+    cell / speed * ((1.0 + damping * damping).sqrt() - damping)
 }
