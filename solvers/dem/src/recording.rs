@@ -4,7 +4,7 @@ use crate::mean_virial::MeanVirial;
 use crate::seen::{Energies, RecordedContacts};
 use crate::share::ThreadPartition;
 use grainbench_scene::columns::Chosen;
-use grainbench_scene::scene::{Grain, Probe, Scene};
+use grainbench_scene::scene::{Grain, Probe, ProbeTarget, Scene};
 use grainbench_solver::record::ContactState;
 
 /// Contacts of the last force evaluation, and the numbers that decide how they are recorded. Contacts between grains are
@@ -31,12 +31,15 @@ pub(crate) struct Recording {
 impl Recording {
     pub(crate) fn new(scene: &Scene, most_rows: u64) -> Self {
         let averages = scene.columns.has(Chosen::MeanVirial);
+        let of_contacts = |probe: &Probe| {
+            matches!(probe.target, ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) | ProbeTarget::Stress)
+        };
         let empty_mean_virial = || Box::new(MeanVirial::new(scene.grains.len(), scene.columns.mean_every));
         Self {
             at_walls: RecordedContacts::default(),
             step: None,
             most_rows,
-            needs_contacts: averages || scene.probes.iter().any(Probe::looks_at_contacts),
+            needs_contacts: averages || scene.probes.iter().any(of_contacts),
             one_by_one: false,
             contacts: 0,
             mean_virial: averages.then(empty_mean_virial),

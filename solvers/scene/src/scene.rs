@@ -370,14 +370,6 @@ pub struct Probe {
     pub target: ProbeTarget,
 }
 
-impl Probe {
-    /// Returns true if the probe needs individual contacts.
-    #[must_use]
-    pub const fn looks_at_contacts(&self) -> bool {
-        matches!(self.target, ProbeTarget::Pair(..) | ProbeTarget::GrainWall(..) | ProbeTarget::Stress)
-    }
-}
-
 /// Domain of a scene.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Domain {
