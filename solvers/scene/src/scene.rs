@@ -7,6 +7,7 @@ use crate::columns::{Chosen, Columns};
 use crate::contact_law::ContactLaw;
 use crate::dimension::{Dimension, GrainShape};
 use crate::end_state::Springs;
+pub use crate::file::Piston;
 use crate::material::Deformable;
 use crate::mesh::Mesh;
 use crate::motion::{Displacement, Motion};
@@ -193,18 +194,6 @@ pub struct Wall {
     pub piston: Option<Piston>,
     /// Time at which the wall is removed (s); `None` if it is never removed.
     pub until: Option<f64>,
-}
-
-/// Piston that presses a plane against grains. Its velocity v along the normal of the plane satisfies M dv/dt = F − F_n
-/// − M c v, where F_n is the normal force of the grains on the plane.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub struct Piston {
-    /// Force F along the normal (N; N/m in two dimensions).
-    pub force: f64,
-    /// Mass M (kg; kg/m in two dimensions).
-    pub mass: f64,
-    /// Damping c (1/s).
-    pub damping: f64,
 }
 
 /// Group of grains with prescribed motion, which forces do not change. The motion is the sum of a constant velocity, a

@@ -22,7 +22,7 @@ pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
 pub use output::OutputSpec;
 pub use probes::{PointSpec, ProbeSpec};
 pub use walls::{
-    ConeSpec, CylinderSpec, LengthUnit, MeshSpec, MotionSpec, PistonSpec, PlaneSpec, RectangleSpec, SineSpec, WallSpec,
+    ConeSpec, CylinderSpec, LengthUnit, MeshSpec, MotionSpec, Piston, PlaneSpec, RectangleSpec, SineSpec, WallSpec,
 };
 
 use crate::body::InitialPressure;

@@ -36,7 +36,7 @@ pub struct WallSpec {
     pub mesh: Option<MeshSpec>,
     /// Piston: the wall moves along its normal under a load, in addition to its prescribed motion. Planes only.
     #[serde(default)]
-    pub piston: Option<PistonSpec>,
+    pub piston: Option<Piston>,
     /// Removal time of the wall (s), for example of a plug that closes an orifice. Default: never.
     #[serde(default)]
     pub until: Option<f64>,
@@ -67,9 +67,10 @@ pub struct RectangleSpec {
 
 /// Piston that presses a plane against grains. Its velocity v along the normal of the plane satisfies M dv/dt = F − F_n
 /// − M c v, where F_n is the normal force of the grains on the plane. At rest, the plane presses with F.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Deserialize, Serialize, JsonSchema)]
 #[serde(deny_unknown_fields)]
-pub struct PistonSpec {
+#[schemars(rename = "PistonSpec")]
+pub struct Piston {
     /// Force F along the normal (N; N/m in two dimensions).
     pub force: f64,
     /// Mass M (kg; kg/m in two dimensions). It must be at least the total mass of the grains in contact with the plane.

@@ -3,7 +3,7 @@
 use super::Resolver;
 use crate::dimension::Dimension;
 use crate::error::SceneError;
-use crate::file::{PistonSpec, WallSpec};
+use crate::file::WallSpec;
 use crate::motion::Motion;
 use crate::scene::{Piston, Wall, WallShape};
 
@@ -63,21 +63,21 @@ impl Resolver<'_> {
         let material = self.material(&key("material"), &spec.material)?;
         let until = spec.until.map(|time| check.positive(&key("until"), time, "time (s)")).transpose()?;
         let motion = self.motion(&key("motion"), &spec.motion)?;
-        let piston = spec.piston.as_ref().map(|piston| self.piston(name, piston, &shape, &motion)).transpose()?;
-        Ok(Wall { name: name.to_owned(), material, shape, motion, piston, until })
+        if let Some(piston) = &spec.piston {
+            self.check_piston(name, piston, &shape, &motion)?;
+        }
+        Ok(Wall { name: name.to_owned(), material, shape, motion, piston: spec.piston, until })
     }
 
-    fn piston(&self, wall: &str, spec: &PistonSpec, shape: &WallShape, motion: &Motion) -> Result<Piston, SceneError> {
+    fn check_piston(&self, wall: &str, spec: &Piston, shape: &WallShape, motion: &Motion) -> Result<(), SceneError> {
         let check = &self.check;
         let key = |part: &str| format!("walls.{wall}.piston{part}");
         let is_plane = matches!(shape, WallShape::Plane { .. });
         check.require(is_plane, &key(""), "a `plane` as piston", "another wall")?;
         check.require(!motion.rotates(), &key(""), "a plane that does not rotate", "a rotating plane")?;
-        Ok(Piston {
-            force: check.finite(&key(".force"), spec.force, "force (N)")?,
-            mass: check.positive(&key(".mass"), spec.mass, "mass (kg)")?,
-            damping: check.not_negative(&key(".damping"), spec.damping, "damping (1/s)")?,
-        })
+        check.finite(&key(".force"), spec.force, "force (N)")?;
+        check.positive(&key(".mass"), spec.mass, "mass (kg)")?;
+        check.not_negative(&key(".damping"), spec.damping, "damping (1/s)").map(|_| ())
     }
 
     fn round(&self, key: &str, axis: &[Vec<f64>; 2], radii: [f64; 2]) -> Result<WallShape, SceneError> {
