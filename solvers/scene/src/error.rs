@@ -30,11 +30,8 @@ impl SceneError {
 /// Returns the error message, in which control characters from the scene file are not yet escaped.
 fn message(error: &SceneError) -> String {
     let SceneError { place, key, expected, found, help } = error;
-    format!("{place}: {}expected {expected}, found {found}{}", key_prefix(key), help_suffix(help.as_deref()))
-}
-
-fn key_prefix(key: &str) -> String {
-    if key.is_empty() { String::new() } else { format!("{key}: ") }
+    let separator = if key.is_empty() { "" } else { ": " };
+    format!("{place}: {key}{separator}expected {expected}, found {found}{}", help_suffix(help.as_deref()))
 }
 
 pub(crate) fn help_suffix(help: Option<&str>) -> String {
