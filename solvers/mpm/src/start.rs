@@ -10,7 +10,7 @@ use crate::simulation::Simulation;
 use grainbench_solver::failure::SimulationFailure;
 use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
-use nalgebra::Vector3;
+use nalgebra::{Matrix3, Vector3};
 
 impl<S: Space> Simulation<S> {
     /// Applies the initial stress and runs the damped relaxation before time zero.
@@ -60,13 +60,11 @@ impl<S: Space> Simulation<S> {
             let (_, centre) = points.centre_of_mass(body.part.points.clone());
             for at in body.part.points.clone() {
                 let position = S::embed(points.position[at]);
-                let mut velocity = match body.owner {
+                let (mut velocity, gradient) = match body.owner {
                     Owner::Grain(id) => {
                         let grain = &self.scene.grains[id as usize - 1];
-                        if let Some(affine) = points.affine.get_mut(at) {
-                            *affine = S::restrict_gradient(grain.spin.cross_matrix());
-                        }
-                        grain.velocity + grain.spin.cross(&(position - centre))
+                        let velocity = grain.velocity + grain.spin.cross(&(position - centre));
+                        (velocity, grain.spin.cross_matrix())
                     }
                     Owner::Body(place) => {
                         let block = &self.scene.bodies[place as usize];
@@ -74,12 +72,13 @@ impl<S: Space> Simulation<S> {
                             let low = body.held.map_or(block.shape.centre().x, |(_, [low, _])| low.x);
                             wave.amplitude * libm::sin(wave.wave_number * (position.x - low))
                         });
-                        if let Some(affine) = points.affine.get_mut(at) {
-                            *affine = S::restrict_gradient(block.velocity_gradient());
-                        }
-                        block.velocity_at(position) + Vector3::new(wave, 0.0, 0.0)
+                        let gradient = block.spin.cross_matrix() + Matrix3::from_diagonal(&block.stretch);
+                        (block.velocity_at(position) + Vector3::new(wave, 0.0, 0.0), gradient)
                     }
                 };
+                if let Some(affine) = points.affine.get_mut(at) {
+                    *affine = S::restrict_gradient(gradient);
+                }
                 let lag = S::embed(accelerations[at]) * half;
                 let mut behind = if body.driven.is_some() { velocity } else { velocity - lag };
                 if let Some(motion) = &self.scene.start.manufactured {

@@ -156,12 +156,6 @@ impl Block {
         let arm = place - self.shape.centre();
         self.velocity + self.spin.cross(&arm) + self.stretch.component_mul(&arm)
     }
-
-    /// Returns the gradient ∂vᵢ/∂xⱼ of the initial velocity, without the wave (1/s).
-    #[must_use]
-    pub fn velocity_gradient(&self) -> Matrix3<f64> {
-        self.spin.cross_matrix() + Matrix3::from_diagonal(&self.stretch)
-    }
 }
 
 /// Damped relaxation before t = 0. Bodies start at rest and come to equilibrium. At t = 0, they receive their initial
