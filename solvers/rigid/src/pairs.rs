@@ -41,42 +41,29 @@ pub(crate) struct Coefficients {
 
 /// Materials, masses and laws of a scene.
 #[derive(Clone, Debug)]
-pub(crate) struct Pairs {
-    laws: Vec<Option<ContactLaw>>,
-    materials: usize,
-    grains: Vec<(u16, f64)>,
-    walls: Vec<u16>,
-}
+pub(crate) struct Pairs(pub(crate) Scene);
 
 impl Pairs {
-    pub(crate) fn from_scene(scene: &Scene) -> Self {
-        Self {
-            laws: scene.laws.clone(),
-            materials: scene.materials.len(),
-            grains: scene.grains.iter().map(|grain| (grain.material, grain.mass)).collect(),
-            walls: scene.walls.iter().map(|wall| wall.material).collect(),
-        }
-    }
-
     /// Returns the index of the material and the inverse mass (1/kg) of a contact partner.
     fn side(&self, side: Side) -> (u16, f64) {
         match side {
-            Side::Grain(at) => (self.grains[at].0, 1.0 / self.grains[at].1),
-            Side::Wall(at) => (self.walls[at], 0.0),
+            Side::Grain(at) => (self.0.grains[at].material, 1.0 / self.0.grains[at].mass),
+            Side::Wall(at) => (self.0.walls[at].material, 0.0),
         }
     }
 
     /// Returns the coefficients of a pair; `None` if the scene has no law for this pair.
     pub(crate) fn between(&self, one: Side, other: Side) -> Option<Coefficients> {
         let ((a, inverse_a), (b, inverse_b)) = (self.side(one), self.side(other));
-        let law = self.laws[usize::from(a) * self.materials + usize::from(b)].as_ref()?;
+        let law = self.0.law(a, b)?;
         Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
     }
 
     /// Returns the coefficients if all pairs of the scene have the same coefficients, otherwise `None`. The result is
     /// also `None` if there are more than [`MOST_KINDS`] kinds of grains.
     pub(crate) fn shared(&self) -> Option<Coefficients> {
-        let mut kinds: Vec<(u16, f64)> = self.grains.clone();
+        let Scene { grains, walls, .. } = &self.0;
+        let mut kinds: Vec<(u16, f64)> = grains.iter().map(|grain| (grain.material, grain.mass)).collect();
         kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
         kinds.dedup();
         // With many different masses and damping, some pairs have different coefficients. A comparison of all pairs
@@ -84,13 +71,13 @@ impl Pairs {
         if kinds.len() > MOST_KINDS {
             return None;
         }
-        let of_kind = |kind: &(u16, f64)| self.grains.iter().position(|grain| grain == kind);
+        let of_kind = |kind: &(u16, f64)| grains.iter().position(|grain| (grain.material, grain.mass) == *kind);
         let kinds: Vec<usize> = kinds.iter().filter_map(of_kind).collect();
-        let several = self.grains.len() > 1;
+        let several = grains.len() > 1;
         let grain_pairs = kinds.iter().enumerate().flat_map(|(at, &a)| {
             kinds[at..].iter().map(move |&b| (Side::Grain(a), Side::Grain(b))).filter(move |_| several)
         });
-        let walls = kinds.iter().flat_map(|&a| (0..self.walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
+        let walls = kinds.iter().flat_map(|&a| (0..walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
         let mut all = grain_pairs.chain(walls).map(|(one, other)| self.between(one, other));
         // A scene without pairs never uses the coefficients.
         let Some(first) = all.next() else { return Some(Coefficients { friction: 0.0, restitution: 0.0 }) };

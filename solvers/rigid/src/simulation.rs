@@ -1,7 +1,7 @@
 //! Simulation of one scene. It steps an engine, moves walls, detects failures and reports the state.
 
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
-use crate::pairs::{Pairs, Side};
+use crate::pairs::Side;
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::overlap::distance;
 use grainbench_scene::scene::{Scene, Wall, WallShape};
@@ -40,10 +40,9 @@ pub(crate) struct Simulation<'a> {
 
 impl<'a> Simulation<'a> {
     pub(crate) fn new(scene: &'a Scene, stepping: Stepping) -> Self {
-        let pairs = Pairs::from_scene(scene);
         let engine: Box<dyn Engine> = match scene.dimension {
-            Dimension::Two => Box::new(crate::plane::world::World::new(scene, pairs, &stepping)),
-            Dimension::Three => Box::new(crate::solid::world::World::new(scene, pairs, &stepping)),
+            Dimension::Two => Box::new(crate::plane::world::World::new(scene, &stepping)),
+            Dimension::Three => Box::new(crate::solid::world::World::new(scene, &stepping)),
         };
         let state: Vec<GrainMotion> = (0..scene.grains.len()).map(|at| engine.grain(at)).collect();
         Self {

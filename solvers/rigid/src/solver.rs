@@ -108,7 +108,7 @@ impl Rigid {
     /// Returns a description of engine, settings, units and coefficients.
     fn words(&self, scene: &Scene, stepping: &Stepping) -> Vec<String> {
         let Settings { recycling, frequency, wall_frequency, damping_ratio } = self.settings;
-        let shared = crate::pairs::Pairs::from_scene(scene).shared();
+        let shared = crate::pairs::Pairs(scene.clone()).shared();
         let mut words = vec![
             RAPIER.to_owned(),
             format!("{} iterations a step", stepping.iterations),

@@ -43,7 +43,8 @@ pub(crate) struct World {
 }
 
 impl World {
-    pub(crate) fn new(scene: &Scene, pairs: Pairs, stepping: &Stepping) -> Self {
+    pub(crate) fn new(scene: &Scene, stepping: &Stepping) -> Self {
+        let pairs = Pairs(scene.clone());
         let shared = pairs.shared();
         // If all pairs have the same coefficients, the shapes store them, as is usual with rapier. Otherwise a hook
         // sets the coefficients of each pair.
