@@ -1,8 +1,6 @@
 //! Conventions in which discrete element codes differ for the same scene. A convention is a set of options. Four
 //! conventions have names.
 
-use std::fmt;
-
 /// Force to which the Coulomb limit applies.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum CoulombCap {
@@ -190,11 +188,5 @@ impl Convention {
             },
         ];
         words.map(str::to_owned).to_vec()
-    }
-}
-
-impl fmt::Display for Convention {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str(self.name)
     }
 }

@@ -1,15 +1,17 @@
 //! Tests of the loops over pairs. They are compiled for every instruction set and run on one or more threads. All
 //! variants must give the same results.
 
+use crate::contact::options::Options;
+use crate::contact::tangential::{SpringTransport, Turned};
 use crate::convention::Convention;
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
-use crate::solver::{plane, solid};
+use crate::solver::loops;
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
-use grainbench_solver::space::Space;
+use grainbench_solver::space::{Plane, Solid, Space};
 use std::fmt::Write as _;
 use std::path::Path;
 
@@ -123,24 +125,22 @@ fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> DemSimul
     }
 }
 
-fn simulated<S: Geometry>(
-    scene: &Scene,
-    convention: &Convention,
-    forces: Box<dyn crate::forces::Forces<S>>,
-    team: Team,
-) -> DemSimulation<S> {
-    let options = crate::contact::options::Options::from_convention(convention);
+fn simulated<S: Geometry>(scene: &Scene, convention: &Convention, team: Team) -> DemSimulation<S>
+where
+    Turned: SpringTransport<S>,
+{
+    let (forces, options) = (loops(scene, convention), Options::from_convention(convention));
     DemSimulation::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }
 
 #[test]
 fn runs_leave_the_same_bits_on_all_paths_and_threads_in_the_plane() {
-    same_on_all(|scene, convention, team| simulated(scene, convention, plane(scene, convention), team));
+    same_on_all(simulated::<Plane>);
 }
 
 #[test]
 fn runs_leave_the_same_bits_on_all_paths_and_threads_in_space() {
-    same_on_all(|scene, convention, team| simulated(scene, convention, solid(scene, convention), team));
+    same_on_all(simulated::<Solid>);
 }
 
 /// A call with many cycles moves grains directly after their forces are computed. It gives the same bits as one call per
@@ -151,8 +151,7 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
     for (name, law, _) in laws() {
         scene.change_laws(|each| *each = law);
         let end = |at_once: u64| {
-            let mut simulation =
-                simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
+            let mut simulation = simulated::<Solid>(&scene, &Convention::DEFAULT, Team::default());
             (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
             format!("{:?} {:?}", simulation.grains, simulation.neighbours.list.shares[0].near.memory)
         };
@@ -178,7 +177,7 @@ fn ball_under_beads() -> Scene {
 fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
     let scene = ball_under_beads();
     let end = |at_once: u64, team: Team| {
-        let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), team);
+        let mut simulation = simulated::<Solid>(&scene, &Convention::DEFAULT, team);
         simulation.threads.fewest = 5;
         (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
         let ball = simulation.grains.slot[0] as usize;
@@ -194,7 +193,7 @@ fn beads_over_a_ball_end_where_they_do_cycle_by_cycle() {
 #[test]
 fn whatever_touches_is_listed_while_the_skin_widens() {
     let scene = ball_under_beads();
-    let mut simulation = simulated(&scene, &Convention::DEFAULT, solid(&scene, &Convention::DEFAULT), Team::default());
+    let mut simulation = simulated::<Solid>(&scene, &Convention::DEFAULT, Team::default());
     let first = simulation.neighbours.list.skin;
     for _ in 0..8 {
         simulation.take_cycles(100).expect("it goes on");
@@ -216,7 +215,6 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
 #[test]
 fn a_radius_beside_a_spin_is_that_of_its_grain() {
     use crate::grains::Grains;
-    use grainbench_solver::space::Solid;
     let scene = scene(3);
     let mut grains = Grains::<Solid>::new(&scene, true);
     assert!(grains.is_of(&scene, true));

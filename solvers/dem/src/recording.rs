@@ -60,7 +60,7 @@ impl Recording {
 
     /// Returns the energies of the contacts in the last recorded force evaluation.
     pub(crate) fn energies<'a>(&'a self, partitions: &'a [ThreadPartition]) -> impl Iterator<Item = &'a Energies> {
-        let list_energies = |list: usize| partitions.iter().flat_map(move |share| &share.seen()[list].energies);
+        let list_energies = |list: usize| partitions.iter().flat_map(move |share| &share.work.seen[list].energies);
         self.at_walls.energies.iter().chain(list_energies(0)).chain(list_energies(1))
     }
 
@@ -68,7 +68,7 @@ impl Recording {
     /// recorded, or if `take_contacts` has moved them out.
     pub(crate) fn touching(&self, step: u64, partitions: &[ThreadPartition]) -> Option<[usize; 2]> {
         self.step.filter(|&at| at == step)?;
-        let lists = partitions.iter().flat_map(ThreadPartition::seen).chain([&self.at_walls]);
+        let lists = partitions.iter().flat_map(|share| &share.work.seen).chain([&self.at_walls]);
         Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
     }
 
@@ -79,11 +79,11 @@ impl Recording {
         self.step.take().filter(|&at| at == step && self.one_by_one)?;
         let [mut before, mut contacts] = [std::mem::take(&mut self.at_walls.contacts), Vec::new()];
         for share in &mut *partitions {
-            before.append(&mut share.seen_mut()[0].contacts);
+            before.append(&mut share.work.seen[0].contacts);
         }
         // With a single partition, the largest list is moved, not copied.
         for share in partitions {
-            let mut others = std::mem::take(&mut share.seen_mut()[1].contacts);
+            let mut others = std::mem::take(&mut share.work.seen[1].contacts);
             if contacts.is_empty() {
                 contacts = others;
             } else {
@@ -108,7 +108,7 @@ impl Recording {
     pub(crate) fn add_virials(&mut self, step: u64, partitions: &[ThreadPartition], grains: &[Grain]) {
         let Self { mean_virial, at_walls, .. } = self;
         if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(step)) {
-            let list_contacts = |list: usize| partitions.iter().flat_map(move |share| &share.seen()[list].contacts);
+            let list_contacts = |list: usize| partitions.iter().flat_map(move |share| &share.work.seen[list].contacts);
             mean.add(at_walls.contacts.iter().chain(list_contacts(0)).chain(list_contacts(1)), grains);
         }
     }

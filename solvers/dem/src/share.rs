@@ -48,17 +48,17 @@ pub(crate) struct ThreadPartition {
     pub(crate) across: Pairs,
     /// Working memory of force evaluations, which checkpoints do not contain.
     #[serde(skip)]
-    work: Work,
+    pub(crate) work: Work,
 }
 
 /// Working memory of a partition. Recorded contacts remain until the next evaluation that records contacts.
 #[derive(Clone, Debug, Default)]
-struct Work {
+pub(crate) struct Work {
     /// Pairs in contact in the present block. The first list is for pairs across a periodic face, the second for all
     /// others.
     touching: [ContactList; 2],
     /// Recorded contacts. The first list is for pairs across a periodic face, the second for all others.
-    seen: [RecordedContacts; 2],
+    pub(crate) seen: [RecordedContacts; 2],
     /// History index of each pair in the previous list. The first list is for pairs across a periodic face, the second
     /// for all others.
     places: [Vec<u32>; 2],
@@ -174,16 +174,6 @@ impl ThreadPartition {
     /// Returns the number of pairs in the partition's own rows.
     pub(crate) fn pairs(&self) -> usize {
         self.near.own().len() + self.across.own().len()
-    }
-
-    /// Returns the recorded contacts: first those across a periodic face, then all others.
-    pub(crate) fn seen(&self) -> &[RecordedContacts; 2] {
-        &self.work.seen
-    }
-
-    /// Returns mutable access to the recorded contacts, in the order of `seen`.
-    pub(crate) fn seen_mut(&mut self) -> &mut [RecordedContacts; 2] {
-        &mut self.work.seen
     }
 
     /// Returns the lists in the order of evaluation: pairs across a periodic face, then all other pairs.

@@ -226,7 +226,7 @@ impl<S: Geometry> DemSimulation<S> {
         let (driven, walls) = (&self.scene.driven, &self.walls);
         let mut forces = self.forces_on_driven();
         forces.extend(walls.iter().map(|wall| wall.kept.force));
-        let velocities = driven.iter().map(|driven| driven.velocity).chain(walls.iter().map(MovingWall::velocity));
+        let velocities = driven.iter().map(|driven| driven.velocity).chain(walls.iter().map(|wall| wall.velocity));
         let energies = || self.recording.energies(&self.neighbours.list.shares);
         let EnergyBudget { accounts, free_mass, .. } = &mut self.budget;
         accounts.add_work(forces, velocities, self.motion.time_step);

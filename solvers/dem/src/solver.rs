@@ -4,7 +4,7 @@
 use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
 use crate::contact::options::Options;
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
-use crate::contact::tangential::{Coulomb, Frictionless, Projected, Tangential, Turned};
+use crate::contact::tangential::{Coulomb, Frictionless, Projected, SpringTransport, Tangential, Turned};
 use crate::convention::{Convention, History, VelocityNormal};
 use crate::end_state::words;
 use crate::forces::{Chain, Forces};
@@ -110,18 +110,21 @@ impl Dem {
     fn start_on(&self, scene: &Scene, time_step: f64, options: RunOptions) -> Result<Box<dyn Stepper>, RunError> {
         self.refuse(scene)?;
         match scene.dimension {
-            Dimension::Two => self.start_with(scene, plane(scene, &self.convention), time_step, options),
-            Dimension::Three => self.start_with(scene, solid(scene, &self.convention), time_step, options),
+            Dimension::Two => self.start_with::<Plane>(scene, time_step, options),
+            Dimension::Three => self.start_with::<Solid>(scene, time_step, options),
         }
     }
 
     fn start_with<S: Geometry>(
         &self,
         scene: &Scene,
-        forces: Box<dyn Forces<S>>,
         time_step: f64,
         RunOptions { threads, most_rows, allow_unstable, .. }: RunOptions,
-    ) -> Result<Box<dyn Stepper>, RunError> {
+    ) -> Result<Box<dyn Stepper>, RunError>
+    where
+        Turned: SpringTransport<S>,
+    {
+        let forces = loops::<S>(scene, &self.convention);
         let own = words(forces.springs());
         if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != own) {
             let reason = format!(
@@ -208,19 +211,14 @@ impl Dem {
     }
 }
 
-/// Returns the loops over contacts in two dimensions, for the effects of a scene and a convention.
-pub(crate) fn plane(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Plane>> {
+/// Returns the loops over contacts for the effects of a scene and a convention.
+pub(crate) fn loops<S: Geometry>(scene: &Scene, convention: &Convention) -> Box<dyn Forces<S>>
+where
+    Turned: SpringTransport<S>,
+{
     match convention.history {
-        History::Turned => chain::<Plane, Coulomb<Turned>>(scene),
-        History::Projected => chain::<Plane, Coulomb<Projected>>(scene),
-    }
-}
-
-/// Returns the loops over contacts in three dimensions, for the effects of a scene and a convention.
-pub(crate) fn solid(scene: &Scene, convention: &Convention) -> Box<dyn Forces<Solid>> {
-    match convention.history {
-        History::Turned => chain::<Solid, Coulomb<Turned>>(scene),
-        History::Projected => chain::<Solid, Coulomb<Projected>>(scene),
+        History::Turned => chain::<S, Coulomb<Turned>>(scene),
+        History::Projected => chain::<S, Coulomb<Projected>>(scene),
     }
 }
 

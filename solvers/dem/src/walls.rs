@@ -22,9 +22,9 @@ pub(crate) struct MovingWall {
     pub(crate) shape: WallShape,
     centre: Vector3<f64>,
     /// Mean velocity of the centre over the last step (m/s).
-    velocity: Vector3<f64>,
+    pub(crate) velocity: Vector3<f64>,
     /// Angular velocity about the centre over the last step (rad/s).
-    spin: Vector3<f64>,
+    pub(crate) spin: Vector3<f64>,
     /// True if velocities of wall points are means over the last step; false if they are velocities at the end of the step.
     mid_step: bool,
     /// Factors c₁ (dimensionless) and c₂ (s) of the velocity V + c₁ Ω×r − c₂ Ω×(Ω×r) of a point at r from the centre,
@@ -102,11 +102,6 @@ impl MovingWall {
 
     pub(crate) fn material(&self) -> u16 {
         self.wall.material
-    }
-
-    /// Returns the mean velocity of the centre over the last step (m/s).
-    pub(crate) fn velocity(&self) -> Vector3<f64> {
-        self.velocity
     }
 
     /// Returns the mesh; `None` if the wall is not a mesh.
@@ -284,11 +279,6 @@ impl MovingWall {
         let [turning, inward] = self.swing;
         let around = self.spin.cross(&(point - self.centre));
         self.velocity + around * turning - self.spin.cross(&around) * inward
-    }
-
-    /// Returns the angular velocity over the last step (rad/s).
-    pub(crate) fn spin(&self) -> Vector3<f64> {
-        self.spin
     }
 }
 

@@ -68,12 +68,12 @@ fn a_stretched_spring_swings_with_its_contact() {
         let contact = end(&record).told_contacts()[0];
         // The normal points from the sphere to the wall: along −y at the start, along +x after the quarter turn. The
         // wall first moved along +x and drags the sphere with it. After the quarter turn, this direction is +y.
-        assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{convention}: {:?}", contact.normal);
+        assert!((contact.normal - Vector3::x()).norm() < ROUNDING, "{}: {:?}", convention.name, contact.normal);
         let force = 5.0e5 * 0.1 * 0.45 * 0.01;
         assert!(contact.shear_force.dot(&contact.normal).abs() < ROUNDING * force, "{:?}", contact.shear_force);
         let kept = contact.shear_force.y / force;
         let lost = if convention == Convention::LAMMPS { PI * PI / (8.0 * f64::from(steps)) } else { 5e-7 };
-        assert!(kept <= 1.0 + ROUNDING && 1.0 - kept <= lost, "{convention}: {kept}");
+        assert!(kept <= 1.0 + ROUNDING && 1.0 - kept <= lost, "{}: {kept}", convention.name);
     }
 }
 
