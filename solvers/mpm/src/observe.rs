@@ -80,23 +80,17 @@ impl<S: Space> Simulation<S> {
         } else {
             Vec::new()
         };
-        let contacts = self.contacts();
-        let slipping = contacts.iter().filter(|contact| contact.slipping).count();
-        let time = self.step as f64 * self.scheme.time_step;
+        let (time, walls) = (self.step as f64 * self.scheme.time_step, self.wall_states());
+        let rigid = Snapshot::new(&self.scene, self.step, time, grains, walls, Some(self.contacts()));
+        let springs: f64 = self.contacts.touches.iter().map(|touch| touch.energy).sum();
         StepState {
-            touching: Some([contacts.len(), slipping]),
-            elastic_energy: elastic_energy + self.spring_energy(),
             inner_kinetic_energy,
             uneven_rotational_energy,
             uneven_angular_momentum,
             spots: self.spots(),
             driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.contact_force())).collect(),
             budget: self.budget(elastic_energy),
-            snapshot: Snapshot {
-                bodies,
-                points,
-                ..Snapshot::new(&self.scene, self.step, time, grains, self.wall_states(), Some(contacts))
-            },
+            ..StepState::of_rigid(Snapshot { bodies, points, ..rigid }, elastic_energy + springs)
         }
     }
 
@@ -240,11 +234,6 @@ impl<S: Space> Simulation<S> {
             spots.extend(mean(&found));
         }
         spots
-    }
-
-    /// Returns the energy in the springs of contacts (J).
-    fn spring_energy(&self) -> f64 {
-        self.contacts.touches.iter().map(|touch| touch.energy).sum()
     }
 
     fn wall_states(&self) -> Vec<WallState> {

@@ -26,13 +26,6 @@ pub enum Transfer {
     Spin,
 }
 
-impl Transfer {
-    /// Returns true if points store the affine part of the velocity, or its spin.
-    pub(crate) const fn carries_affine(self) -> bool {
-        !matches!(self, Self::Flip { .. })
-    }
-}
-
 /// Time of the stress update within a step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum StressUpdate {

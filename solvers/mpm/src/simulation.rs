@@ -5,10 +5,10 @@
 //! nodes are in [`crate::transfer::scatter`] and [`crate::transfer::gather`].
 
 use crate::boundary::Boundary;
+use crate::contact::shared::{ProjectedVelocities, SteppedVelocities};
 use crate::contact::stages::{ContactRequest, Contacts};
-use crate::energy::accounts::Accounts;
-use crate::energy::ledger::EnergyGuard;
-use crate::energy::ledger::Tally;
+use crate::energy::accounts::{Accounts, work_of};
+use crate::energy::ledger::{EnergyGuard, Tally};
 use crate::failure::Failure;
 use crate::grid::basis::{Basis, with_basis};
 use crate::grid::damping::Damping;
@@ -189,7 +189,8 @@ impl<S: Space> Simulation<S> {
     fn finish_projection(&mut self) {
         let Self { scheme, state, grid, boundary, contacts, .. } = self;
         boundary.hold_projected(state, grid);
-        contacts.meet_projected(scheme, state, grid, boundary);
+        let Grid { lattice, projected, .. } = grid;
+        contacts.meet(scheme, state, lattice, boundary, None, &mut ProjectedVelocities(projected));
     }
 
     /// Adds the body force of a manufactured solution.
@@ -217,7 +218,7 @@ impl<S: Space> Simulation<S> {
         if let Some(accounts) = accounts {
             accounts.note_forces(&state.team, grid);
             if surroundings.damping > 0.0 {
-                accounts.note_brought(state.kinetic_energy(scheme.setting.basis, &grid.lattice));
+                accounts.brought = state.kinetic_energy(scheme.setting.basis, &grid.lattice);
             }
         }
     }
@@ -229,7 +230,8 @@ impl<S: Space> Simulation<S> {
         cost.node_updates += grid.step(state, surroundings.gravity, damping);
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         boundary.driven.hold(&mut grid.nodes, scheme.time_step);
-        contacts.meet_stepped(scheme, state, grid, boundary, accounts.as_mut());
+        let Grid { lattice, nodes, .. } = grid;
+        contacts.meet(scheme, state, lattice, boundary, accounts.as_mut(), &mut SteppedVelocities(nodes));
         grid.find_changes(state, damping);
     }
 
@@ -239,7 +241,7 @@ impl<S: Space> Simulation<S> {
         let Self { scheme, surroundings, state, grid, boundary, accounts, .. } = self;
         gather(scheme, Damping::over(surroundings.damping, scheme.time_step), state, grid);
         if let Some(accounts) = accounts {
-            accounts.note_driven(&boundary.driven, scheme.time_step);
+            accounts.held = work_of(&boundary.driven, scheme.time_step);
         }
         boundary.driven.carry(&state.bodies, &mut state.points, scheme.time_step);
         if let Some(accounts) = accounts {

@@ -5,7 +5,7 @@
 
 use crate::grid::basis::with_basis;
 use crate::grid::damping::Damping;
-use crate::grid::lattice::{Lattice, Node, Stencil};
+use crate::grid::lattice::{Lattice, Node};
 use crate::options::Basis;
 use crate::points::arrays::Points;
 use crate::points::body::Body;
@@ -93,11 +93,9 @@ impl<S: Space> DrivenGroups<S> {
             let Some(group) = body.driven else { continue };
             let window = &body.part.window;
             if one_field {
-                with_basis!(basis, B => for at in body.part.points.clone() {
-                    let extent = body.part.extent::<S, B>(points.deformation[at]);
-                    let stencil = Stencil::new::<S, B>(lattice, points.position[at], extent);
+                with_basis!(basis, B => body.part.each_stencil::<S, B>(lattice, points, |_, stencil| {
                     stencil.each::<S, B>(window, |node| self.held.push((node.slot, group)));
-                });
+                }));
             } else {
                 self.held.extend((window.start..window.start + window.len()).map(|slot| (slot, group)));
             }

@@ -212,9 +212,7 @@ impl<S: Space> SharedNodes<S> {
             if !self.touching[place] {
                 continue;
             }
-            for at in body.part.points.clone() {
-                let extent = body.part.extent::<S, B>(points.deformation[at]);
-                let stencil = Stencil::new::<S, B>(lattice, points.position[at], extent);
+            body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let (mass, volume) = (points.mass[at], points.volume[at]);
                 let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
                 stencil.each::<S, B>(&body.part.window, |node| {
@@ -222,7 +220,7 @@ impl<S: Space> SharedNodes<S> {
                     face.normal += stencil.gradient(&node) * mass;
                     face.stress += stress * node.weight;
                 });
-            }
+            });
         }
     }
 

@@ -6,11 +6,11 @@ use crate::contact::nodal::{self, ReactionReceivers};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{Push, SpringOutputs, Springs};
 use crate::contact::search::{Rules, Search, SearchResults, TracerSurroundings};
-use crate::contact::shared::{ProjectedVelocities, SharedNodes, SteppedVelocities};
+use crate::contact::shared::{Field, SharedNodes};
 use crate::contact::{ContactPoint, FrictionTable};
 use crate::energy::accounts::Accounts;
 use crate::grid::basis::with_basis;
-use crate::grid::lattice::Node;
+use crate::grid::lattice::{Lattice, Node};
 use crate::grid::nodes::{Grid, Velocities};
 use crate::off::AbsentEffect;
 use crate::options::{Contact, StressUpdate};
@@ -190,50 +190,29 @@ impl<S: Space> Contacts<S> {
         cost.contact_evaluations += springs.touched;
     }
 
-    /// Applies nodal contact to the velocities of the step.
-    pub(crate) fn meet_stepped(
+    /// Applies nodal contact to the velocities of `field`. The energy budget includes the impulses on velocities after the
+    /// step, but not those on projected velocities.
+    pub(crate) fn meet(
         &mut self,
         scheme: &Scheme,
         state: &State<S>,
-        grid: &mut Grid<S>,
+        lattice: &Lattice,
         boundary: &mut Boundary<S>,
         accounts: Option<&mut Accounts<S>>,
+        field: &mut impl Field<S>,
     ) {
         let contact = scheme.setting.contact;
         if !Self::is_nodal(contact, state, boundary) {
             return;
         }
-        let Grid { lattice, nodes, .. } = grid;
         let Self { friction, shared, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
         let (walls, driven, bodies) = (&mut *boundary.walls, &mut *boundary.driven.groups, &state.bodies);
-        let mut field = SteppedVelocities(nodes);
         if let Some(Accounts { tally, .. }) = accounts {
-            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: tally }, &mut field);
+            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: tally }, field);
         } else {
-            let mut felt = ReactionReceivers { walls, driven, ledger: AbsentEffect };
-            nodal::meet(&rules, bodies, shared, &mut felt, &mut field);
+            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: AbsentEffect }, field);
         }
-    }
-
-    /// Applies nodal contact to the projected velocities. The energy budget does not include these impulses.
-    pub(crate) fn meet_projected(
-        &mut self,
-        scheme: &Scheme,
-        state: &State<S>,
-        grid: &mut Grid<S>,
-        boundary: &mut Boundary<S>,
-    ) {
-        let contact = scheme.setting.contact;
-        if !Self::is_nodal(contact, state, boundary) {
-            return;
-        }
-        let Grid { lattice, projected, .. } = grid;
-        let Self { friction, shared, .. } = self;
-        let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
-        let mut felt =
-            ReactionReceivers { walls: &mut boundary.walls, driven: &mut boundary.driven.groups, ledger: AbsentEffect };
-        nodal::meet(&rules, &state.bodies, shared, &mut felt, &mut ProjectedVelocities(projected));
     }
 
     /// Moves the tracers of all bodies; each thread handles a range of bodies.

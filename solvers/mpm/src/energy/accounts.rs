@@ -88,9 +88,9 @@ pub(crate) struct Accounts<S: Space> {
     /// Forces of springs on the nodes (N).
     springs: Vec<S::Vector>,
     /// Work of driven grains on nodes in this step (J).
-    held: f64,
+    pub(crate) held: f64,
     /// Kinetic energy of points before the step (J); only used with damping.
-    brought: f64,
+    pub(crate) brought: f64,
 }
 
 /// Returns the velocity of a node before the step, from its velocity after the step, its change in the step and the
@@ -113,7 +113,7 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
 }
 
 /// Returns the work (J) of driven grains in the current step of length `time_step` (s).
-fn work_of<S: Space>(driven: &DrivenGroups<S>, time_step: f64) -> f64 {
+pub(crate) fn work_of<S: Space>(driven: &DrivenGroups<S>, time_step: f64) -> f64 {
     let work = driven.groups.iter().map(|group| -S::dot(group.force, group.velocity));
     work.sum::<f64>() * time_step
 }
@@ -121,71 +121,45 @@ fn work_of<S: Space>(driven: &DrivenGroups<S>, time_step: f64) -> f64 {
 /// Number of nodes that are summed as one block. It is fixed, so that sums do not depend on the number of threads.
 const BLOCK: usize = 4096;
 
-/// Sums over nodes in one step.
-#[derive(Clone, Copy, Debug, Default)]
-struct NodeSums {
-    /// Mass (kg).
-    mass: f64,
-    /// Work of internal forces on the velocities before the step (J).
-    given: f64,
-    /// Kinetic energy before the step (J).
-    seen: f64,
-    /// Gain of kinetic energy (J).
-    stepped: f64,
-    /// Work of gravity (J).
-    pulled: f64,
-    /// Work of damping (J).
-    dragged: f64,
+/// Returns sums over a block of nodes in one step: mass (kg), work of internal forces on the velocities before the step
+/// (J), kinetic energy before the step (J), gain of kinetic energy (J), work of gravity (J) and work of damping (J).
+///
+/// On entry, `forces` contains all forces on the nodes and `impulses` the internal forces (N). On return, `forces` contains
+/// the impulses (N s) of all forces except gravity and damping, and `impulses` the same without internal forces.
+fn node_sums<S: Space>(
+    nodes: &[Node<S>],
+    forces: &mut [S::Vector],
+    impulses: &mut [S::Vector],
+    gravity: S::Vector,
+    Damping { keep, gain }: Damping,
+    time_step: f64,
+) -> [f64; 6] {
+    let [mut mass, mut given, mut seen, mut stepped, mut pulled, mut dragged] = [0.0; 6];
+    for ((node, force), impulse) in nodes.iter().zip(forces).zip(impulses) {
+        if node.mass <= 0.0 {
+            (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
+            continue;
+        }
+        mass += node.mass;
+        let before = before(node, keep);
+        let mean = (before + node.velocity) * 0.5;
+        let pull = gravity * node.mass;
+        given += S::dot(*impulse, before) * time_step;
+        let slowed = before * (keep - 1.0) + (*force * (1.0 / node.mass) + gravity) * (gain - time_step);
+        let drag = slowed * node.mass;
+        *force = (node.velocity - before) * node.mass - pull * time_step - drag;
+        *impulse = *force - *impulse * time_step;
+        seen += 0.5 * node.mass * S::dot(before, before);
+        stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
+        pulled += S::dot(pull, mean) * time_step;
+        dragged += S::dot(drag, mean);
+    }
+    [mass, given, seen, stepped, pulled, dragged]
 }
 
-impl NodeSums {
-    /// Computes the sums over a block of nodes.
-    ///
-    /// On entry, `forces` contains all forces on the nodes and `impulses` the internal forces (N). On return, `forces`
-    /// contains the impulses (N s) of all forces except gravity and damping, and `impulses` the same without internal
-    /// forces.
-    fn add<S: Space>(
-        nodes: &[Node<S>],
-        forces: &mut [S::Vector],
-        impulses: &mut [S::Vector],
-        gravity: S::Vector,
-        Damping { keep, gain }: Damping,
-        time_step: f64,
-    ) -> Self {
-        let mut sums = Self::default();
-        for ((node, force), impulse) in nodes.iter().zip(forces).zip(impulses) {
-            if node.mass <= 0.0 {
-                (*impulse, *force) = (S::ORIGIN, S::ORIGIN);
-                continue;
-            }
-            sums.mass += node.mass;
-            let before = before(node, keep);
-            let mean = (before + node.velocity) * 0.5;
-            let pull = gravity * node.mass;
-            sums.given += S::dot(*impulse, before) * time_step;
-            let dragged = before * (keep - 1.0) + (*force * (1.0 / node.mass) + gravity) * (gain - time_step);
-            let drag = dragged * node.mass;
-            *force = (node.velocity - before) * node.mass - pull * time_step - drag;
-            *impulse = *force - *impulse * time_step;
-            sums.seen += 0.5 * node.mass * S::dot(before, before);
-            sums.stepped += 0.5 * node.mass * (S::dot(node.velocity, node.velocity) - S::dot(before, before));
-            sums.pulled += S::dot(pull, mean) * time_step;
-            sums.dragged += S::dot(drag, mean);
-        }
-        sums
-    }
-
-    /// Returns the sum of two sums over nodes.
-    fn and(self, other: Self) -> Self {
-        Self {
-            mass: self.mass + other.mass,
-            given: self.given + other.given,
-            seen: self.seen + other.seen,
-            stepped: self.stepped + other.stepped,
-            pulled: self.pulled + other.pulled,
-            dragged: self.dragged + other.dragged,
-        }
-    }
+/// Adds the sums of two blocks.
+fn added<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
+    std::array::from_fn(|entry| a[entry] + b[entry])
 }
 
 impl<S: Space> Accounts<S> {
@@ -231,16 +205,6 @@ impl<S: Space> Accounts<S> {
         });
     }
 
-    /// Records the kinetic energy (J) of points. It is needed only with damping, and before velocities change.
-    pub(crate) const fn note_brought(&mut self, kinetic: f64) {
-        self.brought = kinetic;
-    }
-
-    /// Records the work of driven grains. It must be called before their points get the prescribed velocity.
-    pub(crate) fn note_driven(&mut self, driven: &DrivenGroups<S>, time_step: f64) {
-        self.held = work_of(driven, time_step);
-    }
-
     /// Adds the sums over nodes. It must be called after velocities have changed.
     pub(crate) fn add_nodes(
         &mut self,
@@ -256,9 +220,8 @@ impl<S: Space> Accounts<S> {
         let damped = Damping::over(damping, time_step);
         let nodes = &grid.nodes[..grid.used];
         let blocks = forces.chunks_mut(BLOCK).zip(impulses.chunks_mut(BLOCK)).zip(nodes.chunks(BLOCK));
-        let add = |_, ((forces, impulses), nodes)| NodeSums::add(nodes, forces, impulses, gravity, damped, time_step);
-        let NodeSums { mass, given, seen, stepped, pulled, dragged } =
-            team.fold(blocks, add, NodeSums::default(), NodeSums::and);
+        let add = |_, ((forces, impulses), nodes)| node_sums(nodes, forces, impulses, gravity, damped, time_step);
+        let [mass, given, seen, stepped, pulled, dragged] = team.fold(blocks, add, [0.0; 6], added);
         sums.stepped += stepped;
         sums.gravity += pulled;
         sums.damping -= dragged;
@@ -301,8 +264,7 @@ impl<S: Space> Accounts<S> {
             }
             sum
         };
-        let [contacts, stray, taken] =
-            team.fold(blocks, add, [0.0; 3], |a, b| std::array::from_fn(|entry| a[entry] + b[entry]));
+        let [contacts, stray, taken] = team.fold(blocks, add, [0.0; 3], added);
         sums.contacts += contacts;
         sums.stray += stray;
         sums.taken += taken;

@@ -64,16 +64,6 @@ impl<S: Space> Points<S> {
         (mass, moment / mass)
     }
 
-    /// Adds an affine part of the velocity, initially zero, to every point if the transfer `carries` such a part.
-    pub(crate) fn set_affine(&mut self, carries: bool) {
-        self.affine = vec![S::NO_GRADIENT; if carries { self.len() } else { 0 }];
-    }
-
-    /// Adds a plastic strain, initially zero, to every point if any material `yields`.
-    pub(crate) fn set_plastic_strain(&mut self, yields: bool) {
-        self.plastic_strain = vec![0.0; if yields { self.len() } else { 0 }];
-    }
-
     /// Returns the affine part of the velocity of a point (1/s); zero if there is none.
     pub(crate) fn affine_of(&self, at: usize) -> S::Matrix {
         self.affine.get(at).copied().unwrap_or(S::NO_GRADIENT)

@@ -2,7 +2,7 @@
 
 use crate::grid::lattice::Lattice;
 use crate::material::Material;
-use crate::options::Setting;
+use crate::options::{Setting, Transfer};
 use crate::points::arrays::Points;
 use crate::points::body::Body;
 use crate::points::body::Part;
@@ -112,8 +112,12 @@ pub(crate) fn seed<S: Space>(
             }
         })
         .collect();
-    points.set_affine(setting.transfer.carries_affine());
-    points.set_plastic_strain(bodies.iter().any(|body| body.deformable.constitutive.yield_stress().is_some()));
+    if !matches!(setting.transfer, Transfer::Flip { .. }) {
+        points.affine = vec![S::NO_GRADIENT; points.len()];
+    }
+    if bodies.iter().any(|body| body.deformable.constitutive.yield_stress().is_some()) {
+        points.plastic_strain = vec![0.0; points.len()];
+    }
     (bodies, points, tracers)
 }
 
