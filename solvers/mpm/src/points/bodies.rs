@@ -1,31 +1,18 @@
 //! Creation of bodies from a scene, with seeding of material points and surface tracers.
 
-use crate::grid::lattice::Lattice;
+use crate::grid::lattice::{Lattice, Window};
 use crate::material::Material;
 use crate::options::{Setting, Transfer};
 use crate::points::arrays::Points;
-use crate::points::body::Body;
-use crate::points::body::Part;
+use crate::points::body::{Body, Part};
 use crate::points::seed::{self, Seed};
 use crate::surface::elements::{self, Patch};
 use crate::surface::tracers::Tracers;
 use grainbench_scene::body::{Block, BlockShape, Sides};
-use grainbench_scene::material::Deformable;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
-
-/// Description of a body before it is seeded.
-struct Blank {
-    owner: Owner,
-    material: u16,
-    density: f64,
-    deformable: Deformable,
-    seeds: Vec<Seed>,
-    surfaces: Vec<Vec<Patch>>,
-    held: Option<(Sides, [Vector3<f64>; 2])>,
-}
 
 /// Seeds all bodies of a scene with `per_cell` points per cell and axis.
 ///
@@ -41,8 +28,42 @@ pub(crate) fn seed<S: Space>(
     let cell = lattice.shortest(S::DIMENSION);
     let spacing = cell / f64::from(per_cell);
     let between = cell / setting.tracers;
-    let deformable = |material: u16| scene.deformable.get(usize::from(material)).copied().flatten();
-    let grains = scene.grains.iter().enumerate().filter_map(|(at, grain)| {
+    let (mut bodies, mut points, mut tracers) = (Vec::new(), Points::<S>::default(), Tracers::default());
+    let half = 0.5 / f64::from(per_cell);
+    let driven = scene.driven_group_of_grains();
+    let mut add = |owner: Owner, material: u16, density: f64, seeds: &[Seed], surfaces: &[Vec<Patch>]| {
+        let Some(deformable) = scene.deformable.get(usize::from(material)).copied().flatten() else { return };
+        let first = (points.len(), tracers.len());
+        for seed in seeds {
+            points.push(S::restrict(seed.position), seed.volume, density);
+        }
+        surfaces.iter().for_each(|surface| tracers.add(surface));
+        let (held, driven) = match owner {
+            Owner::Grain(id) => (None, driven[id as usize - 1]),
+            Owner::Body(at) => (held(&scene.bodies[at as usize]), None),
+        };
+        bodies.push(Body {
+            owner,
+            part: Part {
+                points: first.0..points.len(),
+                window: Window::default(),
+                runs_in_order: 0,
+                half,
+                cell_mass: density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
+            },
+            tracers: first.1..tracers.len(),
+            chunks: tracers.cut(first.1..tracers.len()),
+            material,
+            law: Material::new(&deformable, time_step),
+            density,
+            deformable,
+            bounds: [Vector3::zeros(); 2],
+            angle: 0.0,
+            held,
+            driven,
+        });
+    };
+    for (at, grain) in scene.grains.iter().enumerate() {
         let (centre, radius) = (grain.position, grain.radius);
         let (seeds, surface) = if S::DIMENSION == 2 {
             (seed::rings(centre, 0.0, radius, spacing), elements::circle(centre, radius, between, 1.0))
@@ -50,75 +71,25 @@ pub(crate) fn seed<S: Space>(
             (seed::shells(centre, radius, spacing), elements::globe(centre, radius, between))
         };
         let volume: f64 = seeds.iter().map(|seed| seed.volume).sum();
-        Some(Blank {
-            owner: Owner::Grain(at as u32 + 1),
-            material: grain.material,
-            density: grain.mass / volume,
-            deformable: deformable(grain.material)?,
-            seeds,
-            surfaces: vec![surface],
-            held: None,
-        })
-    });
-    let blocks = scene.bodies.iter().enumerate().filter_map(|(at, block)| {
+        add(Owner::Grain(at as u32 + 1), grain.material, grain.mass / volume, &seeds, &[surface]);
+    }
+    for (at, block) in scene.bodies.iter().enumerate() {
         let (seeds, surfaces) = block_seeds::<S>(block, lattice, spacing, per_cell, between);
-        let held = match block.shape {
-            BlockShape::Box { low, high } => Some((block.sides, [low, high])),
-            BlockShape::Annulus { .. } => None,
-        };
-        Some(Blank {
-            owner: Owner::Body(at as u32),
-            material: block.material,
-            density: block.density,
-            deformable: deformable(block.material)?,
-            seeds,
-            surfaces,
-            held: held.filter(|(sides, _)| *sides != Sides::default()),
-        })
-    });
-    let (mut points, mut tracers) = (Points::default(), Tracers::default());
-    let half = 0.5 / f64::from(per_cell);
-    let driven = scene.driven_group_of_grains();
-    let bodies: Vec<Body> = grains
-        .chain(blocks)
-        .map(|blank| {
-            let first = (points.len(), tracers.len());
-            for seed in &blank.seeds {
-                points.push(S::restrict(seed.position), seed.volume, blank.density);
-            }
-            blank.surfaces.iter().for_each(|surface| tracers.add(surface));
-            Body {
-                owner: blank.owner,
-                part: Part {
-                    points: first.0..points.len(),
-                    window: crate::grid::lattice::Window::default(),
-                    runs_in_order: 0,
-                    half,
-                    cell_mass: blank.density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
-                },
-                tracers: first.1..tracers.len(),
-                chunks: tracers.cut(first.1..tracers.len()),
-                material: blank.material,
-                law: Material::new(&blank.deformable, time_step),
-                density: blank.density,
-                deformable: blank.deformable,
-                bounds: [Vector3::zeros(); 2],
-                angle: 0.0,
-                held: blank.held,
-                driven: match blank.owner {
-                    Owner::Grain(id) => driven[id as usize - 1],
-                    Owner::Body(_) => None,
-                },
-            }
-        })
-        .collect();
+        add(Owner::Body(at as u32), block.material, block.density, &seeds, &surfaces);
+    }
     if !matches!(setting.transfer, Transfer::Flip { .. }) {
         points.affine = vec![S::NO_GRADIENT; points.len()];
     }
-    if bodies.iter().any(|body| body.deformable.constitutive.yield_stress().is_some()) {
+    if bodies.iter().any(|body: &Body| body.deformable.constitutive.yield_stress().is_some()) {
         points.plastic_strain = vec![0.0; points.len()];
     }
     (bodies, points, tracers)
+}
+
+/// Returns the held sides of a box and its corners (m); `None` if no side is held.
+fn held(block: &Block) -> Option<(Sides, [Vector3<f64>; 2])> {
+    let BlockShape::Box { low, high } = block.shape else { return None };
+    (block.sides != Sides::default()).then_some((block.sides, [low, high]))
 }
 
 fn block_seeds<S: Space>(
