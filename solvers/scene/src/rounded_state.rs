@@ -144,6 +144,8 @@ impl PackedState {
         };
         let velocity = |axis: usize| singles(state.grains.iter().map(|grain| grain.velocity[axis]));
         let spin = |axis: usize| singles(state.grains.iter().map(|grain| grain.spin[axis]));
+        let ([x, y, z], [v_x, v_y, v_z]) = ([0, 1, 2].map(position), [0, 1, 2].map(velocity));
+        let [spin_x, spin_y, spin_z] = [0, 1, 2].map(spin);
         let Springs { layout, pairs, walls } = &state.springs;
         let memories = || pairs.iter().map(|pair| &pair.2).chain(walls.iter().map(|wall| &wall.2));
         let count = memories().next().map_or(0, Vec::len);
@@ -162,18 +164,7 @@ impl PackedState {
             time: state.time,
             materials: state.materials.clone(),
             step,
-            grains: [
-                of_kinds,
-                position(0),
-                position(1),
-                position(2),
-                velocity(0),
-                velocity(1),
-                velocity(2),
-                spin(0),
-                spin(1),
-                spin(2),
-            ],
+            grains: [of_kinds, x, y, z, v_x, v_y, v_z, spin_x, spin_y, spin_z],
             pairs: [places(after(&firsts)), places(pairs.iter().map(|pair| (pair.1, pair.0)))],
             walls: [places(after(&at_walls)), places(walls.iter().map(|wall| (name(&wall.1), 0)))],
             springs: (0..count).map(|number| singles(memories().map(|memory| memory[number]))).collect(),
@@ -187,8 +178,7 @@ impl PackedState {
     /// Returns the state with the rounded values.
     pub(crate) fn state(&self) -> Result<EndState, String> {
         let kinds = read_places(&self.grains[0])?;
-        let positions = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));
-        let [x, y, z] = positions;
+        let [x, y, z] = [1, 2, 3].map(|axis| numbers::<8>(&self.grains[axis]));
         let positions = [x?, y?, z?];
         let singles: Vec<Vec<f64>> =
             self.grains[4..].iter().map(|singles_of| read_singles(singles_of)).collect::<Result<_, _>>()?;
