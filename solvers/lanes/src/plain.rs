@@ -24,6 +24,18 @@ macro_rules! each {
     };
 }
 
+/// Arithmetic of two registers, lane by lane.
+macro_rules! lane_by_lane {
+    ($($name:ident $operator:tt);*) => {
+        $(#[inline(always)]
+        fn $name(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
+            let mut result = a;
+            each!(lane of WIDTH => result[lane] = a[lane] $operator b[lane]);
+            result
+        })*
+    };
+}
+
 /// Returns a flag as a mask with all bits set or no bit set, so that a number can be selected without a branch.
 #[inline(always)]
 const fn all_bits(yes: bool) -> u64 {
@@ -58,30 +70,7 @@ impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
         row[..WIDTH].copy_from_slice(&register);
         row
     }
-    #[inline(always)]
-    fn add(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut result = a;
-        each!(lane of WIDTH => result[lane] = a[lane] + b[lane]);
-        result
-    }
-    #[inline(always)]
-    fn sub(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut result = a;
-        each!(lane of WIDTH => result[lane] = a[lane] - b[lane]);
-        result
-    }
-    #[inline(always)]
-    fn mul(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut result = a;
-        each!(lane of WIDTH => result[lane] = a[lane] * b[lane]);
-        result
-    }
-    #[inline(always)]
-    fn div(self, a: [f64; WIDTH], b: [f64; WIDTH]) -> [f64; WIDTH] {
-        let mut result = a;
-        each!(lane of WIDTH => result[lane] = a[lane] / b[lane]);
-        result
-    }
+    lane_by_lane!(add +; sub -; mul *; div /);
     #[inline(always)]
     fn sqrt(self, a: [f64; WIDTH]) -> [f64; WIDTH] {
         let mut result = a;
