@@ -41,8 +41,8 @@ impl Resolver<'_> {
             let (key, [u, v]) = (key("rectangle.edges"), &rectangle.edges);
             let edges = [check.vector(&key, u)?, check.vector(&key, v)?];
             let lengths = edges[0].norm() * edges[1].norm();
-            let is_square = lengths != 0.0 && edges[0].dot(&edges[1]).abs() <= 1e-9 * lengths;
-            check.require(is_square, &key, "two perpendicular edges", format_args!("{u:?} and {v:?}"))?;
+            let is_skew = lengths == 0.0 || edges[0].dot(&edges[1]).abs() > 1e-9 * lengths;
+            check.require(!is_skew, &key, "two perpendicular edges", format_args!("{u:?} and {v:?}"))?;
             WallShape::Rectangle { corner, edges }
         } else if let Some(cylinder) = &spec.cylinder {
             let radius = check.positive(&key("cylinder.radius"), cylinder.radius, "radius (m)")?;
