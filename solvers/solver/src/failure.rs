@@ -6,11 +6,13 @@ use std::fmt;
 use thiserror::Error;
 
 /// Reason why a simulation broke.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Error)]
 pub enum Cause {
     /// A position or velocity is NaN or infinite.
+    #[error("its state is not finite")]
     NotFinite,
     /// A grain moved more than its radius in one step.
+    #[error("it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")]
     Runaway {
         /// Displacement in the step (m).
         moved: f64,
@@ -18,16 +20,19 @@ pub enum Cause {
         radius: f64,
     },
     /// A contact became so stiff that the time step exceeds the critical one.
+    #[error("one of its contacts became so stiff, {stiffness:.3e} N/m, that the time step is above the critical one")]
     StiffContact {
         /// Stiffness of the contact springs (N/m).
         stiffness: f64,
     },
     /// A grain rotated so far in one step that the direction of friction is lost.
+    #[error("it turned by {turned:.3e} rad in one step")]
     Spun {
         /// Rotation in the step (rad).
         turned: f64,
     },
     /// A material point moved more than a cell in one step.
+    #[error("it moved {moved:.3e} m in one step, more than a cell of {cell:.3e} m")]
     LeftCell {
         /// Displacement in the step (m).
         moved: f64,
@@ -35,16 +40,22 @@ pub enum Cause {
         cell: f64,
     },
     /// A material point was inverted.
+    #[error("it was turned inside out: its volume is {volume_ratio:.3e} of that at the start")]
     Inverted {
         /// Volume relative to the initial volume.
         volume_ratio: f64,
     },
     /// A cell lost all its volume in one step.
+    #[error("its cell collapsed: one step changed its volume by a factor {volume_ratio:.3e}")]
     CollapsedCell {
         /// Volume after the step relative to the volume before it.
         volume_ratio: f64,
     },
     /// A material point became so stiff that a wave crosses a cell in less than a time step.
+    #[error(
+        "it was deformed until the fastest wave crossed a cell in {crossing:.4e} s ({at_start:.4e} s at the start), \
+         less than the time step"
+    )]
     Stiffened {
         /// Present time in which the fastest wave crosses a cell (s).
         crossing: f64,
@@ -52,6 +63,10 @@ pub enum Cause {
         at_start: f64,
     },
     /// A closed system gained energy without a source.
+    #[error(
+        "it is the fastest in a run that has gained {gained:.4e} J since the start, which nothing supplied; at most \
+         {allowed:.4e} J is allowed"
+    )]
     GainedEnergy {
         /// Energy gained since the start (J; J/m for discs).
         gained: f64,
@@ -59,6 +74,10 @@ pub enum Cause {
         allowed: f64,
     },
     /// A surface starts so deep inside another surface that the contact springs would eject it.
+    #[error(
+        "it starts {depth:.4e} m inside another surface; the springs would expel it in a shock with a strain of \
+         {strain:.3}, more than {allowed}"
+    )]
     StartsInside {
         /// Overlap (m).
         depth: f64,
@@ -69,11 +88,16 @@ pub enum Cause {
         allowed: f64,
     },
     /// Bodies spread beyond the largest grid.
+    #[error("it left the grid, which would need {cells:.3e} cells")]
     LeftGrid {
         /// Number of cells required.
         cells: f64,
     },
     /// A poured grain was inserted at the position of another grain.
+    #[error(
+        "it was poured into grain {other}, which it overlaps by {ratio:.3} of the smaller radius: a poured grain needs \
+         room in its box at its time, and other grains may have piled up there"
+    )]
     CameIntoGrain {
         /// Id of the other grain, from 1.
         other: u32,
@@ -81,6 +105,10 @@ pub enum Cause {
         ratio: f64,
     },
     /// A poured grain was inserted at the position of a wall.
+    #[error(
+        "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: a poured grain \
+         needs room in its box at its time"
+    )]
     CameIntoWall {
         /// Number of the wall in the order of the file, from 1.
         wall: u16,
@@ -92,60 +120,6 @@ pub enum Cause {
 /// Largest overlap of an inserted grain, relative to the smaller radius. A larger overlap breaks the simulation. The
 /// value equals the default limit of initial overlaps.
 pub const LARGEST_ENTRY_OVERLAP: f64 = 0.1;
-
-impl fmt::Display for Cause {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        match self {
-            Self::NotFinite => write!(formatter, "its state is not finite"),
-            Self::Runaway { moved, radius } => {
-                write!(formatter, "it moved {moved:.3e} m in one step, more than its radius {radius:.3e} m")
-            }
-            Self::StiffContact { stiffness } => {
-                write!(
-                    formatter,
-                    "one of its contacts became so stiff, {stiffness:.3e} N/m, that the time step is above the \
-                     critical one"
-                )
-            }
-            Self::Spun { turned } => write!(formatter, "it turned by {turned:.3e} rad in one step"),
-            Self::LeftCell { moved, cell } => {
-                write!(formatter, "it moved {moved:.3e} m in one step, more than a cell of {cell:.3e} m")
-            }
-            Self::Inverted { volume_ratio } => {
-                write!(formatter, "it was turned inside out: its volume is {volume_ratio:.3e} of that at the start")
-            }
-            Self::CollapsedCell { volume_ratio } => {
-                write!(formatter, "its cell collapsed: one step changed its volume by a factor {volume_ratio:.3e}")
-            }
-            Self::Stiffened { crossing, at_start } => write!(
-                formatter,
-                "it was deformed until the fastest wave crossed a cell in {crossing:.4e} s ({at_start:.4e} s at the \
-                 start), less than the time step"
-            ),
-            Self::GainedEnergy { gained, allowed } => write!(
-                formatter,
-                "it is the fastest in a run that has gained {gained:.4e} J since the start, which nothing supplied; at \
-                 most {allowed:.4e} J is allowed"
-            ),
-            Self::StartsInside { depth, strain, allowed } => write!(
-                formatter,
-                "it starts {depth:.4e} m inside another surface; the springs would expel it in a shock with a strain \
-                 of {strain:.3}, more than {allowed}"
-            ),
-            Self::LeftGrid { cells } => write!(formatter, "it left the grid, which would need {cells:.3e} cells"),
-            Self::CameIntoGrain { other, ratio } => write!(
-                formatter,
-                "it was poured into grain {other}, which it overlaps by {ratio:.3} of the smaller radius: a poured \
-                 grain needs room in its box at its time, and other grains may have piled up there"
-            ),
-            Self::CameIntoWall { wall, ratio } => write!(
-                formatter,
-                "it was poured into wall {wall} of the scene, which it overlaps by {ratio:.3} of its radius: a poured \
-                 grain needs room in its box at its time"
-            ),
-        }
-    }
-}
 
 /// Particle at which a simulation broke.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
