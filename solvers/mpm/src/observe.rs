@@ -1,12 +1,12 @@
 //! Output of a simulation at a step: bodies, contacts, material points and energies.
 
 use crate::contact::{ContactPartner, ContactPoint};
+use crate::energy::accounts::Accounts;
 use crate::material::stress::embed_deformation;
 use crate::material::{self, Law, with_law};
 use crate::points::body::Body;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::{BodyName, WallShape};
-use grainbench_solver::budget::Budget;
 use grainbench_solver::record::{
     BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, StepState, WallState, nearest_turn,
 };
@@ -83,13 +83,17 @@ impl<S: Space> Simulation<S> {
         let (time, walls) = (self.step as f64 * self.scheme.time_step, self.wall_states());
         let rigid = Snapshot::new(&self.scene, self.step, time, grains, walls, Some(self.contacts()));
         let springs: f64 = self.contacts.touches.iter().map(|touch| touch.energy).sum();
+        let Self { scene, scheme, state, grid, .. } = &*self;
+        let budget = |accounts: &Accounts<S>| {
+            accounts.budget(&scheme.setting, scene.gravity, state, &grid.lattice, elastic_energy)
+        };
         StepState {
             inner_kinetic_energy,
             uneven_rotational_energy,
             uneven_angular_momentum,
             spots: self.spots(),
             driven: self.boundary.driven.groups.iter().map(|group| S::embed(group.contact_force())).collect(),
-            budget: self.budget(elastic_energy),
+            budget: self.accounts.as_ref().map(budget),
             ..StepState::of_rigid(Snapshot { bodies, points, ..rigid }, elastic_energy + springs)
         }
     }
@@ -111,13 +115,6 @@ impl<S: Space> Simulation<S> {
             }
         }
         sums
-    }
-
-    /// Returns the energy budget, if requested, from the elastic energy of the material (J).
-    fn budget(&self, elastic: f64) -> Option<Budget> {
-        let Self { scene, scheme, state, grid, accounts, .. } = self;
-        let accounts = accounts.as_ref()?;
-        Some(accounts.budget(&scheme.setting, scene.gravity, state, &grid.lattice, elastic))
     }
 
     /// Wraps a position into the domain along periodic axes.

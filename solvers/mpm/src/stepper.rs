@@ -6,8 +6,7 @@
 
 use crate::contact::friction::Friction;
 use crate::energy::accounts::{Accounts, Sums};
-use crate::energy::ledger::EnergyGuard;
-use crate::energy::ledger::Tally;
+use crate::energy::ledger::{EnergyGuard, Tally};
 use crate::points::arrays::Points;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::Scene;

@@ -35,11 +35,9 @@ impl<S: Space> Boundary<S> {
     pub(crate) fn move_walls(&mut self, time: f64, time_step: f64, settling: bool) {
         for wall in &mut self.walls {
             wall.force = S::ORIGIN;
+            wall.move_to(if settling { 0.0 } else { time }, time_step);
             if settling {
-                wall.move_to(0.0, time_step);
                 wall.stop();
-            } else {
-                wall.move_to(time, time_step);
             }
         }
     }
