@@ -4,7 +4,7 @@ use serde::ser::{
     self, Serialize, SerializeMap, SerializeSeq, SerializeStruct, SerializeStructVariant, SerializeTuple,
     SerializeTupleStruct, SerializeTupleVariant, Serializer,
 };
-use std::fmt::{self, Display};
+use std::fmt::Display;
 
 /// Returns true if all numbers in a value are finite.
 #[must_use]
@@ -16,16 +16,9 @@ pub fn is_finite(value: &impl Serialize) -> bool {
 struct Search;
 
 /// Error: the value contains a number that is not finite.
-#[derive(Debug)]
+#[derive(Debug, thiserror::Error)]
+#[error("a number that is not finite")]
 struct NonFiniteNumber;
-
-impl Display for NonFiniteNumber {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        formatter.write_str("a number that is not finite")
-    }
-}
-
-impl std::error::Error for NonFiniteNumber {}
 
 impl ser::Error for NonFiniteNumber {
     fn custom<T: Display>(_: T) -> Self {
