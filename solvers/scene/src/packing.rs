@@ -199,7 +199,10 @@ struct Packing<'a> {
 impl Packing<'_> {
     /// Returns the vector (m) from the centre of b, or its nearest periodic image, to the centre of a.
     fn between(&self, a: usize, b: usize) -> Vector3<f64> {
-        let mut apart = self.centres[a] - self.centres[b];
+        self.nearest_image(self.centres[a] - self.centres[b])
+    }
+
+    fn nearest_image(&self, mut apart: Vector3<f64>) -> Vector3<f64> {
         for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
             let length = self.domain.high[axis] - self.domain.low[axis];
             apart[axis] -= length * (apart[axis] / length).round();
@@ -268,14 +271,7 @@ impl Packing<'_> {
             }
         }
         let limit = 0.25 * self.skin * self.skin;
-        let moved = |(now, then): (&Vector3<f64>, &Vector3<f64>)| {
-            let mut way = now - then;
-            for axis in (0..self.axes).filter(|&axis| self.domain.periodic[axis]) {
-                let length = self.domain.high[axis] - self.domain.low[axis];
-                way[axis] -= length * (way[axis] / length).round();
-            }
-            way.norm_squared() > limit
-        };
+        let moved = |(now, then): (&Vector3<f64>, &Vector3<f64>)| self.nearest_image(now - then).norm_squared() > limit;
         if self.centres.iter().zip(&self.listed).any(moved) {
             self.list();
         }
