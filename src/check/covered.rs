@@ -12,6 +12,28 @@ use grainbench_reports::number;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_solver::record::Series;
 
+/// Output of a program, and the scene to which it belongs.
+pub(super) struct CheckedOutput<'c> {
+    pub(super) candidate: &'c Candidate,
+    pub(super) outputs: &'c Outputs,
+    pub(super) observed: &'c DumpRecord,
+    pub(super) covered: Coverage,
+    /// Result without a quantity. It names the scene, the variant, the files and their time step.
+    pub(super) open: Verdict,
+}
+
+impl CheckedOutput<'_> {
+    /// Returns a result about a quantity before it is judged.
+    pub(super) fn row(&self, quantity: impl Into<String>, unit: &str) -> Verdict {
+        Verdict { quantity: quantity.into(), unit: unit.to_owned(), ..self.open.clone() }
+    }
+
+    /// Returns the same output with other samples.
+    pub(super) fn with<'o>(&'o self, observed: &'o DumpRecord) -> CheckedOutput<'o> {
+        CheckedOutput { observed, covered: self.covered.by(observed), open: self.open.clone(), ..*self }
+    }
+}
+
 /// Accepted rounding error of a time that a program prints with few digits, as a fraction of the duration of the run.
 const PRINTED: f64 = 1e-6;
 
@@ -103,7 +125,7 @@ impl Coverage {
     }
 
     /// Returns the coverage of the run by part of the samples.
-    pub(super) fn by(self, observed: &DumpRecord) -> Self {
+    fn by(self, observed: &DumpRecord) -> Self {
         let time = &observed.series.time;
         Self { reached: time.last().copied().unwrap_or_default(), samples: time.len(), ..self }
     }

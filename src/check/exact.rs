@@ -1,30 +1,18 @@
 //! Comparison of output with the exact solutions of a case.
 
-use super::covered::Coverage;
+use super::covered::CheckedOutput;
 use super::judgement::judged;
-use super::subject::Candidate;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::run::FinishedRun;
 use grainbench_harness::verdict::{Outcome, Verdict};
-use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::Outputs;
-use grainbench_scene::scene::Scene;
 use grainbench_solver::record::{Cost, Provenance, Record, Series};
 use std::sync::Arc;
 
 /// Judges a claim of the case with the output. The tolerance is increased by the effect of the printed digits on the quantity.
-pub(super) fn exact(
-    claim: &Claim,
-    candidate: &Candidate,
-    outputs: &Outputs,
-    observed: &DumpRecord,
-    covered: &Coverage,
-    row: &dyn Fn(String, &str) -> Verdict,
-) -> Verdict {
-    let scene = Arc::new(candidate.scene.clone());
-    let done = |series: Series| {
-        FinishedRun::new(Arc::clone(&scene), Arc::new(record(&candidate.scene, outputs, observed, series)))
-    };
+pub(super) fn exact(claim: &Claim, output: &CheckedOutput<'_>) -> Verdict {
+    let CheckedOutput { observed, covered, .. } = output;
+    let scene = Arc::new(output.candidate.scene.clone());
+    let done = |series: Series| FinishedRun::new(Arc::clone(&scene), Arc::new(record(output, series)));
     let measured = |series: Series| (claim.measure)(&[done(series)]);
     let row = Verdict {
         evidence: claim.evidence(),
@@ -32,7 +20,7 @@ pub(super) fn exact(
         allowed: claim.tolerance.allowed(&[done(observed.series.clone())]),
         tolerance: claim.tolerance.made_without_estimate(),
         because: claim.tolerance.because.clone(),
-        ..row(claim.quantity.clone(), claim.unit)
+        ..output.row(&claim.quantity, claim.unit)
     };
     if let Some(why) = covered.why_not() {
         return row.left(Outcome::NoReference, why);
@@ -52,7 +40,7 @@ pub(super) fn exact(
             open += moved(1.0).max(moved(-1.0));
         }
     }
-    let row = judged(row, open, outputs, &found);
+    let row = judged(row, open, output.outputs, &found);
     // If wrong values in the longest interval do not change the result, the result needs no sample there.
     let is_same = |part: f64| {
         let wrong = covered.with_wrong_sample(&observed.series, part).map(&measured);
@@ -61,7 +49,9 @@ pub(super) fn exact(
     if is_same(1e3) && is_same(-1e3) { row } else { covered.dense(row) }
 }
 
-fn record(scene: &Scene, outputs: &Outputs, observed: &DumpRecord, series: Series) -> Record {
+fn record(output: &CheckedOutput<'_>, series: Series) -> Record {
+    let CheckedOutput { outputs, observed, .. } = output;
+    let scene = &output.candidate.scene;
     let steps = observed.series.step.last().copied().unwrap_or_default();
     let critical = scene.critical_time_step();
     Record {

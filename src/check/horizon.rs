@@ -1,7 +1,8 @@
 //! Predictability horizon of a run. After it, means over time are compared: of quantities of the whole system, of forces on
 //! walls, and of numbers of grains.
 
-use super::ours::{ConventionChoice, FLOOR, Plan, convention, is_compared};
+use super::covered::CheckedOutput;
+use super::ours::{ConventionChoice, FLOOR, Plan, compare, convention, is_compared, nearest_first, ours, until};
 use grainbench_harness::compare::peers::{Peer, WIDE, together};
 use grainbench_harness::expect::Measurement;
 use grainbench_harness::statistics::{BLOCKS, CONFIDENCE, next_mean, next_value};
@@ -11,18 +12,12 @@ use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
 use grainbench_scene::scene::{ProbeTarget, Scene};
 use grainbench_solver::perturbed::PARTED;
-use grainbench_solver::record::{Column, Series};
+use grainbench_solver::record::{Column, Series, Snapshot};
 
 /// Number of perturbed runs from which the scatter of means is measured.
 const PERTURBED: u32 = 3;
 /// Fraction of the discharge of our runs at which the measurement of the flow rate ends.
 const DISCHARGED: f64 = 0.9;
-
-/// Perturbed run, and the last time (s) at which it agrees with our run; `None` if they agree to the end.
-pub(super) struct Parting {
-    pub(super) time: Option<f64>,
-    perturbed: Series,
-}
 
 /// Returns the scene with one grain moved by a multiple of the rounding error of its position. The largest coordinate counts,
 /// because a coordinate near zero has a smaller rounding error than the distances to other grains.
@@ -32,20 +27,6 @@ fn moved(scene: &Scene, times: u32) -> Scene {
         grain.position.x += f64::from(times) * f64::EPSILON * grain.position.amax().max(grain.radius);
     }
     scene
-}
-
-/// Runs the perturbed scene, in which one grain is moved by a rounding error; `None` if the scene has only one grain. The run
-/// has the chosen or the default convention.
-pub(super) fn find(
-    scene: &Scene,
-    plan: &Plan,
-    ours: &[Peer],
-    choice: ConventionChoice,
-) -> Result<Option<Parting>, String> {
-    let chosen = ours.iter().find(|peer| choice.only() == Some(&peer.name)).or(ours.first());
-    let Some(ours) = chosen.filter(|_| scene.grains.len() > 1) else { return Ok(None) };
-    let perturbed = plan.run(&moved(scene, 1), convention(ours), 1)?.series;
-    Ok(Some(Parting { time: parted(&ours.series, &perturbed, PARTED, false), perturbed }))
 }
 
 /// Returns the horizon (s), shortened to the last time at which a run agrees with the run at smaller time steps. In a run
@@ -69,32 +50,57 @@ fn parted(run: &Series, other: &Series, fraction: f64, moved: bool) -> Option<f6
     run.time.get(first.saturating_sub(1)).copied()
 }
 
-/// Our runs of a scene after the predictability horizon.
-pub(super) struct Ensemble {
-    /// Predictability horizon (s).
-    pub(super) from: f64,
-    /// Runs with one grain moved by one or more rounding errors.
+/// Our runs of a scene.
+pub(super) struct OwnRuns {
+    pub(super) plan: Plan,
+    choice: ConventionChoice,
+    /// Runs, with the nearest or chosen convention first.
+    pub(super) peers: Vec<Peer>,
+    /// Last snapshot of the first run.
+    pub(super) end: Option<Snapshot>,
+    /// Predictability horizon (s); `None` if the run is predictable to its end.
+    pub(super) horizon: Option<f64>,
+    /// Runs with one grain moved by one or more rounding errors. They are complete if there is a horizon.
     perturbed: Vec<Series>,
 }
 
-/// Completes the perturbed runs, and shortens the horizon. With a chosen convention, all perturbed runs have it. Otherwise each
-/// has another convention.
-pub(super) fn ensemble(
-    scene: &Scene,
-    plan: &Plan,
-    (ours, choice): (&[Peer], ConventionChoice),
-    parting: Parting,
-) -> Result<Option<Ensemble>, String> {
-    let (Some(first), Some(horizon)) = (ours.first(), parting.time) else { return Ok(None) };
-    let mut perturbed = vec![parting.perturbed];
-    for times in 2..=PERTURBED {
-        let peer = match choice {
-            ConventionChoice::Nearest => &ours[times as usize % ours.len()],
-            _ => first,
-        };
-        perturbed.push(plan.run(&moved(scene, times), convention(peer), 1)?.series);
+impl OwnRuns {
+    /// Runs a scene with each of our contact conventions, and perturbed scenes in which one grain is moved by rounding
+    /// errors. The first perturbed run has the chosen or the default convention. With a chosen convention, all perturbed
+    /// runs have it. Otherwise each has another convention.
+    pub(super) fn new(
+        scene: &Scene,
+        plan: Plan,
+        observed: &DumpRecord,
+        choice: ConventionChoice,
+    ) -> Result<Self, String> {
+        let (mut peers, mut ends) = ours(scene, &plan)?;
+        let perturbed_run =
+            |times: u32, peer: &Peer| plan.run(&moved(scene, times), convention(peer), 1).map(|record| record.series);
+        let (mut horizon, mut perturbed) = (None, Vec::new());
+        if scene.grains.len() > 1 {
+            let own = peers.iter().find(|peer| choice.only() == Some(&peer.name)).unwrap_or(&peers[0]);
+            perturbed.push(perturbed_run(1, own)?);
+            horizon = parted(&own.series, &perturbed[0], PARTED, false);
+        }
+        let nearest = nearest_first(scene, &plan, &mut peers, observed, horizon, choice)?;
+        if let Some(time) = horizon {
+            for times in 2..=PERTURBED {
+                let place = if choice == ConventionChoice::Nearest { times as usize % peers.len() } else { 0 };
+                perturbed.push(perturbed_run(times, &peers[place])?);
+            }
+            horizon = Some(shortened(time, &peers[0]));
+        }
+        Ok(Self { plan, choice, end: ends.swap_remove(nearest), peers, horizon, perturbed })
     }
-    Ok(Some(Ensemble { from: shortened(horizon, first), perturbed }))
+
+    /// Compares the output with our runs, sample by sample up to the horizon and by means after it.
+    pub(super) fn compare(&self, output: &CheckedOutput<'_>) -> Vec<Verdict> {
+        let (peers, seen) = until(self.horizon, &self.peers, output.observed);
+        let mut rows = compare(&peers, self.choice, &output.with(&seen));
+        rows.extend(self.horizon.into_iter().flat_map(|horizon| self.beyond(horizon, output)));
+        rows
+    }
 }
 
 /// Column after the horizon: one series of the output and one of each of our runs, with the same times.
@@ -138,81 +144,76 @@ impl Tail {
     /// Returns true if a mean lies in the prediction interval of one more convention, from the means of the first runs, which
     /// have different conventions.
     fn is_between(&self, conventions: usize, found: f64) -> bool {
-        let mean = |run: &Vec<f64>| run.iter().sum::<f64>() / run.len() as f64;
-        let means: Vec<f64> = self.ours.iter().take(conventions).map(mean).collect();
+        let means: Vec<f64> = self.ours.iter().take(conventions).map(|run| mean(run.iter().copied())).collect();
         next_value(&means).is_some_and(|(mean, half_width)| (found - mean).abs() <= half_width)
     }
 
     /// Returns the mean of the output, the mean of our runs with their smallest and largest mean, and the mean magnitude of
     /// our runs.
     fn means(&self) -> (f64, [f64; 3], f64) {
-        let mean = |values: &mut dyn Iterator<Item = f64>| {
-            let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
-            sum / count
-        };
-        let ours: Vec<f64> = self.ours.iter().map(|run| mean(&mut run.iter().copied())).collect();
+        let ours: Vec<f64> = self.ours.iter().map(|run| mean(run.iter().copied())).collect();
         let [low, high] = [f64::min, f64::max].map(|pick| ours.iter().copied().reduce(pick).unwrap_or(f64::NAN));
-        let magnitude = mean(&mut self.ours.iter().flatten().map(|value| value.abs()));
-        (mean(&mut self.found.iter().copied()), [mean(&mut ours.iter().copied()), low, high], magnitude)
+        let magnitude = mean(self.ours.iter().flatten().map(|value| value.abs()));
+        (mean(self.found.iter().copied()), [mean(ours.iter().copied()), low, high], magnitude)
     }
 }
 
-/// Compares means over the time after the horizon. Only columns of the whole system and of walls are compared.
-pub(super) fn beyond(
-    scene: &Scene,
-    (ours, choice, ensemble): (&[Peer], ConventionChoice, &Ensemble),
-    observed: &DumpRecord,
-    row: &dyn Fn(String, &str) -> Verdict,
-) -> Vec<Verdict> {
-    let Some(first) = ours.first() else { return Vec::new() };
-    let conventions = if choice == ConventionChoice::Nearest { ours } else { &ours[..1] };
-    let runs: Vec<&Series> = conventions
-        .iter()
-        .map(|peer| &peer.series)
-        .chain(first.half_step.as_ref())
-        .chain(&ensemble.perturbed)
-        .collect();
-    let columns = observed.series.columns.iter().zip(&observed.series.values).zip(&observed.uncertainty);
-    let compared: Vec<_> = columns
-        .filter(|((column, _), _)| is_of_all(scene, &column.name) && !is_rest(scene, &column.name))
-        .filter_map(|((column, values), open)| {
-            let together = |run: &&Series| together(&observed.series, values, run, &column.name);
-            let all = runs.iter().map(together).collect::<Option<Vec<_>>>()?;
-            let (times, found, _) = all.first()?.clone();
-            let mut tail = Tail { times, found, ours: all.into_iter().map(|(_, _, ours)| ours).collect() };
-            let from = tail.times.partition_point(|&time| time <= ensemble.from);
-            if is_rate(&column.name) {
-                tail.cut(from.saturating_sub(1), usize::MAX);
-                tail.become_rates();
-            } else {
-                tail.cut(from, usize::MAX);
-            }
-            Some((column, tail, open.iter().copied().fold(0.0, f64::max)))
-        })
-        .collect();
-    let count = compared.len();
-    let judge = |(column, tail, open): &(&Column, Tail, f64)| {
-        let (mean, unit) = if is_rate(&column.name) { ("mean rate", "1/s") } else { ("mean", column.unit.as_str()) };
-        let [from, to] = [tail.times.first(), tail.times.last()]
-            .map(|time| number::significant(time.copied().unwrap_or(ensemble.from), 4));
-        let row = Verdict {
-            source: format!("mean of {} runs of our solver, after the predictability horizon", runs.len()),
-            tolerance: ToleranceOrigin::Interval,
-            because: format!(
-                "{} % prediction interval for one more run, from the scatter of our runs in {BLOCKS} blocks of time \
-                 ({}half the time step, {} perturbed); {count} means are judged together",
-                100.0 * CONFIDENCE,
-                if conventions.len() > 1 { format!("{} conventions, ", conventions.len()) } else { String::new() },
-                ensemble.perturbed.len(),
-            ),
-            ..row(format!("{}, {mean} from t = {from} s to {to} s", column.name), unit)
+fn mean(values: impl Iterator<Item = f64>) -> f64 {
+    let (sum, count) = values.fold((0.0, 0.0), |(sum, count), value| (sum + value, count + 1.0));
+    sum / count
+}
+
+impl OwnRuns {
+    /// Compares means over the time after the horizon (s). Only columns of the whole system and of walls are compared.
+    fn beyond(&self, horizon: f64, output: &CheckedOutput<'_>) -> Vec<Verdict> {
+        let (scene, observed) = (&output.candidate.scene, output.observed);
+        let conventions = if self.choice == ConventionChoice::Nearest { &self.peers[..] } else { &self.peers[..1] };
+        let half_step = self.peers[0].half_step.as_ref();
+        let runs: Vec<&Series> =
+            conventions.iter().map(|peer| &peer.series).chain(half_step).chain(&self.perturbed).collect();
+        let columns = observed.series.columns.iter().zip(&observed.series.values).zip(&observed.uncertainty);
+        let compared: Vec<_> = columns
+            .filter(|((column, _), _)| is_of_all(scene, &column.name) && !is_rest(scene, &column.name))
+            .filter_map(|((column, values), open)| {
+                let together = |run: &&Series| together(&observed.series, values, run, &column.name);
+                let all = runs.iter().map(together).collect::<Option<Vec<_>>>()?;
+                let (times, found, _) = all.first()?.clone();
+                let mut tail = Tail { times, found, ours: all.into_iter().map(|(_, _, ours)| ours).collect() };
+                let from = tail.times.partition_point(|&time| time <= horizon);
+                if is_rate(&column.name) {
+                    tail.cut(from.saturating_sub(1), usize::MAX);
+                    tail.become_rates();
+                } else {
+                    tail.cut(from, usize::MAX);
+                }
+                Some((column, tail, open.iter().copied().fold(0.0, f64::max)))
+            })
+            .collect();
+        let count = compared.len();
+        let judge = |(column, tail, open): &(&Column, Tail, f64)| {
+            let (mean, unit) =
+                if is_rate(&column.name) { ("mean rate", "1/s") } else { ("mean", column.unit.as_str()) };
+            let [from, to] = [tail.times.first(), tail.times.last()]
+                .map(|time| number::significant(time.copied().unwrap_or(horizon), 4));
+            let row = Verdict {
+                source: format!("mean of {} runs of our solver, after the predictability horizon", runs.len()),
+                tolerance: ToleranceOrigin::Interval,
+                because: format!(
+                    "{} % prediction interval for one more run, from the scatter of our runs in {BLOCKS} blocks of time \
+                     ({}half the time step, {} perturbed); {count} means are judged together",
+                    100.0 * CONFIDENCE,
+                    if conventions.len() > 1 { format!("{} conventions, ", conventions.len()) } else { String::new() },
+                    self.perturbed.len(),
+                ),
+                ..output.row(format!("{}, {mean} from t = {from} s to {to} s", column.name), unit)
+            };
+            // A grain may cross the edge of a box shortly before the last sample in one run and after it in another.
+            let span = tail.times.last().zip(tail.times.first()).map_or(0.0, |(last, first)| last - first);
+            let floor = if is_rate(&column.name) { (1.0 + 2.0 * open) / span } else { *open };
+            judge_mean(row, tail, (count, floor), conventions.len())
         };
-        // A grain may cross the edge of a box shortly before the last sample in one run and after it in another.
-        let span = tail.times.last().zip(tail.times.first()).map_or(0.0, |(last, first)| last - first);
-        let floor = if is_rate(&column.name) { (1.0 + 2.0 * open) / span } else { *open };
-        judge_mean(row, tail, (count, floor), conventions.len())
-    };
-    compared.iter().map(judge).collect()
+        compared.iter().map(judge).collect()
+    }
 }
 
 /// Returns the change between samples divided by the mean time between samples (1/s). The mean of these rates is the flow

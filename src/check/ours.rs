@@ -1,6 +1,6 @@
 //! Comparison of output with our solvers on the same scene.
 
-use super::covered::Coverage;
+use super::covered::CheckedOutput;
 use super::judgement::{Between, ErrorAllowance, judged_in_time};
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
@@ -8,7 +8,6 @@ use grainbench_harness::compare::peers::{ColumnComparison, Peer, against};
 use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::Outputs;
 use grainbench_scene::scene::{Probe, ProbeTarget, Scene};
 use grainbench_solver::Solver;
 use grainbench_solver::record::{Record, Series, Snapshot};
@@ -46,22 +45,27 @@ impl ConventionChoice {
     }
 }
 
-/// Returns the runs up to a time (s).
-pub(super) fn until(runs: &[Peer], time: f64) -> Vec<Peer> {
-    let cut = |series: &Series| {
-        let mut series = series.clone();
-        let keep = series.time.partition_point(|&sample| sample <= time);
-        series.step.truncate(keep);
-        series.time.truncate(keep);
-        series.values.iter_mut().for_each(|values| values.truncate(keep));
-        series
-    };
+/// Returns the first `samples` samples of a series.
+pub(super) fn truncated(mut series: Series, samples: usize) -> Series {
+    series.step.truncate(samples);
+    series.time.truncate(samples);
+    series.values.iter_mut().for_each(|values| values.truncate(samples));
+    series
+}
+
+/// Returns our runs and the output up to a time (s), or to their ends without a time.
+pub(super) fn until(time: Option<f64>, runs: &[Peer], observed: &DumpRecord) -> (Vec<Peer>, DumpRecord) {
+    let count =
+        |series: &Series| time.map_or(series.time.len(), |time| series.time.partition_point(|&sample| sample <= time));
+    let cut = |series: &Series| truncated(series.clone(), count(series));
     let run = |run: &Peer| Peer {
         name: run.name.clone(),
         series: cut(&run.series),
         half_step: run.half_step.as_ref().map(cut),
     };
-    runs.iter().map(run).collect()
+    let mut seen = observed.clone();
+    seen.keep(count(&observed.series));
+    (runs.iter().map(run).collect(), seen)
 }
 
 /// Returns the contact convention of one of our runs.
@@ -166,11 +170,7 @@ pub(super) fn nearest_first(
     horizon: Option<f64>,
     choice: ConventionChoice,
 ) -> Result<usize, String> {
-    let mut seen = observed.clone();
-    if let Some(horizon) = horizon {
-        seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
-    }
-    let runs = until(peers, horizon.unwrap_or(f64::INFINITY));
+    let (runs, seen) = until(horizon, peers, observed);
     let name = against_runs(scene, &runs, &seen, choice).map(|(name, _)| name);
     let nearest = peers.iter().position(|peer| Some(peer.name.as_str()) == name).unwrap_or_default();
     peers[..=nearest].rotate_right(1);
@@ -200,17 +200,10 @@ fn is_count(name: &str) -> bool {
 
 /// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the
 /// change that smaller time steps cause in this run.
-pub(super) fn compare(
-    scene: &Scene,
-    ours: &[Peer],
-    choice: ConventionChoice,
-    outputs: &Outputs,
-    observed: &DumpRecord,
-    covered: &Coverage,
-    row: &dyn Fn(String, &str) -> Verdict,
-) -> Vec<Verdict> {
-    let Some((name, columns)) = against_runs(scene, ours, observed, choice) else { return Vec::new() };
-    columns.into_iter().map(|compared| column(&compared, name, choice, outputs, covered, row)).collect()
+pub(super) fn compare(ours: &[Peer], choice: ConventionChoice, output: &CheckedOutput<'_>) -> Vec<Verdict> {
+    let compared = against_runs(&output.candidate.scene, ours, output.observed, choice);
+    let Some((name, columns)) = compared else { return Vec::new() };
+    columns.into_iter().map(|compared| column(&compared, name, choice, output)).collect()
 }
 
 /// Compares the columns with the nearest or chosen run. Returns its name and one comparison per column.
@@ -245,29 +238,22 @@ fn column(
     compared: &ColumnComparison<'_>,
     name: &str,
     choice: ConventionChoice,
-    outputs: &Outputs,
-    covered: &Coverage,
-    row: &dyn Fn(String, &str) -> Verdict,
+    output: &CheckedOutput<'_>,
 ) -> Verdict {
     // Programs print forces that depend on velocities half a step later than the velocities that moved the grains. For
     // a dashpot, this difference is twice the change due to half the time step, so three times this change is allowed.
     let times = if matches!(compared.unit, "N" | "Pa") { 3.0 } else { 1.0 };
     // A grain may cross the edge of a box between two samples in one run and after them in the other.
     let floor = if is_count(compared.name) { 1.0 / compared.scale } else { FLOOR };
-    let row = Verdict {
-        source: format!("{name}, {}, at the time step of the file", how_chosen(choice)),
-        tolerance: ToleranceOrigin::Computed,
-        ..row(format!("{}, {}", compared.name, covered.words()), compared.unit)
+    let (how, between) = match choice {
+        ConventionChoice::Named(_) => ("the chosen convention", Between::Refused),
+        ConventionChoice::Nearest => ("our nearest convention", Between::Inconclusive),
     };
-    let between = if choice == ConventionChoice::Nearest { Between::Inconclusive } else { Between::Refused };
+    let row = Verdict {
+        source: format!("{name}, {how}, at the time step of the file"),
+        tolerance: ToleranceOrigin::Computed,
+        ..output.row(format!("{}, {}", compared.name, output.covered.words()), compared.unit)
+    };
     let beside = ErrorAllowance { floor, times, between };
-    covered.all(compared.samples.len(), judged_in_time(row, compared, &beside, outputs))
-}
-
-/// Returns the words of a source that say how the convention was chosen.
-const fn how_chosen(choice: ConventionChoice) -> &'static str {
-    match choice {
-        ConventionChoice::Named(_) => "the chosen convention",
-        ConventionChoice::Nearest => "our nearest convention",
-    }
+    output.covered.all(compared.samples.len(), judged_in_time(row, compared, &beside, output.outputs))
 }

@@ -1,17 +1,15 @@
 //! Power of a check: the changes of the scene that the given output reveals. Our solver runs the scene with one effect
 //! changed, and the result is checked in place of the output.
 
-use super::covered::Coverage;
-use super::horizon::{Ensemble, beyond, is_only_mean};
+use super::covered::CheckedOutput;
+use super::horizon::{OwnRuns, is_only_mean};
 use super::judgement::is_outside;
-use super::ours::{ConventionChoice, Plan, compare, convention, is_compared, until};
-use grainbench_dem::convention::Convention;
-use grainbench_harness::compare::peers::{Peer, together};
+use super::ours::{convention, is_compared};
+use grainbench_harness::compare::peers::together;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::{Bound, ExpectedValue, Measurement};
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::Outputs;
 use grainbench_reports::number;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::effect::Effect;
@@ -74,110 +72,106 @@ struct Size {
     scenes: Vec<Scene>,
 }
 
-/// Outcome of the search for the smallest revealed change of one effect.
-enum SearchOutcome {
-    /// Smallest revealed change; larger changes are revealed too.
-    Revealed(f64),
-    /// Even the largest change is not revealed.
-    Hidden,
-    /// Nothing was tried, for this reason.
-    NotTried(String),
+/// Search for the changes of the scene that the output reveals.
+struct Search<'c> {
+    runs: &'c OwnRuns,
+    output: &'c CheckedOutput<'c>,
+    /// Number of further runs that the work limit permits.
+    left: u64,
 }
 
-/// Inputs of a check. The check can be repeated with other output.
-pub(super) struct CheckInputs<'c> {
-    pub(super) scene: &'c Scene,
-    pub(super) plan: &'c Plan,
-    pub(super) ours: &'c [Peer],
-    pub(super) choice: ConventionChoice,
-    /// Our runs after the predictability horizon; `None` if the run is predictable to its end.
-    pub(super) ensemble: Option<&'c Ensemble>,
-    pub(super) outputs: &'c Outputs,
-    pub(super) observed: &'c DumpRecord,
-    pub(super) covered: &'c Coverage,
-}
-
-impl CheckInputs<'_> {
-    /// Compares output with our runs, sample by sample up to the horizon and by means after it.
-    pub(super) fn compare(&self, observed: &DumpRecord, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
-        let mut seen = observed.clone();
-        let horizon = self.ensemble.map(|ensemble| ensemble.from);
-        if let Some(horizon) = horizon {
-            seen.keep(seen.series.time.partition_point(|&time| time <= horizon));
-        }
-        let truncated = horizon.map(|horizon| until(self.ours, horizon));
-        let ours = truncated.as_deref().unwrap_or(self.ours);
-        let mut rows = compare(self.scene, ours, self.choice, self.outputs, &seen, &self.covered.by(&seen), row);
-        rows.extend(
-            self.ensemble
-                .into_iter()
-                .flat_map(|ensemble| beyond(self.scene, (self.ours, self.choice, ensemble), observed, row)),
-        );
-        rows
-    }
-
-    /// Returns one result for each effect that was tried, one for all other effects, and one for all columns that are
-    /// not compared.
-    pub(super) fn power(&self, power: Power, row: &dyn Fn(String, &str) -> Verdict) -> Vec<Verdict> {
-        if power == Power::Off {
-            return Vec::new();
-        }
-        let row = |quantity: String| Verdict {
-            evidence: Evidence::Invariant,
-            source: SOURCE.to_owned(),
-            ..row(quantity, "1")
-        };
-        let mut left = if power == Power::Full { u64::MAX } else { MOST_WORK * self.plan.work() };
-        let (mut rows, mut not_tried) = (Vec::new(), Vec::new());
-        for family in families(self.scene) {
-            match self.find(&family, &mut left) {
-                SearchOutcome::NotTried(why) => not_tried.push(format!("{} ({why})", family.name)),
-                found => rows.push(outcome_row(
-                    &family,
-                    &found,
-                    row(format!("{}: smallest mistake that this output would reveal", family.name)),
-                )),
+/// Returns one result for each effect that was tried, one for all other effects, and one for all columns that are not
+/// compared.
+pub(super) fn rows(runs: &OwnRuns, output: &CheckedOutput<'_>, power: Power) -> Vec<Verdict> {
+    let left = match power {
+        Power::Off => return Vec::new(),
+        Power::Limited => MOST_WORK * runs.plan.work(),
+        Power::Full => u64::MAX,
+    };
+    let row = |quantity: &str, because: String| Verdict {
+        evidence: Evidence::Invariant,
+        source: SOURCE.to_owned(),
+        because,
+        ..output.row(quantity, "1")
+    };
+    let mut search = Search { runs, output, left };
+    let (mut rows, mut not_tried) = (Vec::new(), Vec::new());
+    for family in families(&output.candidate.scene) {
+        let name = &family.name;
+        let size = match search.smallest(&family) {
+            Ok(size) => size,
+            Err(why) => {
+                not_tried.push(format!("{name} ({why})"));
+                continue;
             }
-        }
-        if !not_tried.is_empty() {
-            let row = Verdict { because: "no comparison was made".to_owned(), ..row("mistakes not tried".to_owned()) };
-            rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
-        }
-        rows.extend(self.unjudged().map(|names| {
-            let because = "a wrong value in these columns is not detected".to_owned();
-            let row = Verdict { because, ..row("columns of probes not judged".to_owned()) };
-            row.left(Outcome::NoReference, names)
-        }));
-        rows
+        };
+        let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
+        let because =
+            format!("our solver ran the scene with this mistake, and was judged as your output: {}", sizes.join(", "));
+        let row = row(&format!("{name}: smallest mistake that this output would reveal"), because);
+        let largest = family.sizes.last();
+        rows.push(match size {
+            Some(size) => {
+                let most = ExpectedValue::Bound(Bound::AtMost(largest.unwrap_or(size).amount));
+                let detail = Some(format!("{name}: {}{SEEN}", size.words));
+                Verdict { detail, ..row.judged(&Measurement::new(size.amount, most, 1.0)) }
+            }
+            None => {
+                let words = largest.map_or("any change", |largest| &largest.words);
+                row.left(Outcome::NoReference, format!("{name}: {words}{HIDDEN}"))
+            }
+        });
     }
+    if !not_tried.is_empty() {
+        let row = row("mistakes not tried", "no comparison was made".to_owned());
+        rows.push(row.left(Outcome::NoReference, not_tried.join("; ")));
+    }
+    rows.extend(unjudged(runs, output).map(|names| {
+        let because = "a wrong value in these columns is not detected".to_owned();
+        row("columns of probes not judged", because).left(Outcome::NoReference, names)
+    }));
+    rows
+}
 
-    /// Finds the smallest revealed change, beginning with the largest. Output that hides a large change also hides a smaller one.
-    fn find(&self, family: &Family, left: &mut u64) -> SearchOutcome {
+/// Returns the names of the columns of the scene's probes that are not compared; `None` if all are compared.
+fn unjudged(runs: &OwnRuns, output: &CheckedOutput<'_>) -> Option<String> {
+    let columns = Recorder::new(&output.candidate.scene, 1.0, 1).finish().0.columns;
+    let is_compared = |name: &str| is_compared(name) || runs.horizon.is_some() && is_only_mean(name);
+    let is_judged = |name: &str| is_compared(name) && output.observed.series.column(name).is_some();
+    let names: Vec<String> = columns.into_iter().map(|column| column.name).filter(|name| !is_judged(name)).collect();
+    let more = names.len().saturating_sub(MOST_NAMES);
+    let first = names.iter().take(MOST_NAMES).cloned().collect::<Vec<_>>().join(", ");
+    let more = if more > 0 { format!(" and {more} more") } else { String::new() };
+    (!names.is_empty()).then(|| first + &more)
+}
+
+impl Search<'_> {
+    /// Returns the smallest revealed change, and `None` if even the largest change is hidden. The search begins with the
+    /// largest change, because output that hides it also hides smaller ones.
+    ///
+    /// # Errors
+    /// The reason why nothing was tried.
+    fn smallest<'f>(&mut self, family: &'f Family) -> Result<Option<&'f Size>, String> {
         let mut smallest = None;
         for size in family.sizes.iter().rev() {
-            let is_revealed = self.is_revealed(size, left);
-            match (is_revealed, smallest) {
-                (Ok(true), _) => smallest = Some(size.amount),
-                (Ok(false), None) => return SearchOutcome::Hidden,
-                (Err(why), None) => return SearchOutcome::NotTried(why),
-                (Ok(false) | Err(_), Some(_)) => break,
+            match self.is_revealed(size) {
+                Ok(true) => smallest = Some(size),
+                Err(why) if smallest.is_none() => return Err(why),
+                Ok(false) | Err(_) => break,
             }
         }
-        smallest.map_or_else(
-            || SearchOutcome::NotTried("there is no smaller change of it".to_owned()),
-            SearchOutcome::Revealed,
-        )
+        Ok(smallest)
     }
 
-    fn is_revealed(&self, size: &Size, left: &mut u64) -> Result<bool, String> {
+    fn is_revealed(&mut self, size: &Size) -> Result<bool, String> {
+        let OwnRuns { plan, peers, .. } = self.runs;
         for scene in &size.scenes {
-            if scene.is_unstable_at(self.plan.step) {
+            if scene.is_unstable_at(plan.step) {
                 return Err("the time step would be at or above the critical one".to_owned());
             }
-            *left =
-                left.checked_sub(1).ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
-            let nearest = self.ours.first().map_or(Convention::DEFAULT, convention);
-            let record = self.plan.run(scene, nearest, 1)?;
+            let left = self.left.checked_sub(1);
+            self.left = left.ok_or_else(|| "the work limit is reached; --power full has no limit".to_owned())?;
+            let record = plan.run(scene, convention(&peers[0]), 1)?;
             if !self.is_detected(&record.series) {
                 return Ok(false);
             }
@@ -188,53 +182,20 @@ impl CheckInputs<'_> {
     /// Returns true if a run gives a result outside the tolerance in place of the output. The run is compared at the
     /// sample times of the output, for the columns of the output, and with the uncertainty of its printed digits.
     fn is_detected(&self, series: &Series) -> bool {
+        let observed = self.output.observed;
         let mut seen = DumpRecord::default();
-        (seen.series.step, seen.series.time) = (self.observed.series.step.clone(), self.observed.series.time.clone());
-        let columns = self.observed.series.columns.iter().zip(&self.observed.series.values);
-        for ((column, values), open) in columns.zip(&self.observed.uncertainty) {
-            let theirs = together(&self.observed.series, values, series, &column.name).map(|(_, _, theirs)| theirs);
+        (seen.series.step, seen.series.time) = (observed.series.step.clone(), observed.series.time.clone());
+        let columns = observed.series.columns.iter().zip(&observed.series.values);
+        for ((column, values), open) in columns.zip(&observed.uncertainty) {
+            let theirs = together(&observed.series, values, series, &column.name).map(|(_, _, theirs)| theirs);
             if let Some(theirs) = theirs.filter(|theirs| theirs.len() == values.len()) {
                 seen.series.columns.push(column.clone());
                 seen.series.values.push(theirs);
                 seen.uncertainty.push(open.clone());
             }
         }
-        let row = |quantity: String, unit: &str| Verdict::open("power", quantity, unit);
-        self.compare(&seen, &row).iter().any(|row| row.outcome == Outcome::Fail || is_outside(row))
-    }
-
-    /// Returns the names of the columns of the scene's probes that are not compared; `None` if all are compared.
-    fn unjudged(&self) -> Option<String> {
-        let columns = Recorder::new(self.scene, 1.0, 1).finish().0.columns;
-        let is_compared = |name: &str| is_compared(name) || self.ensemble.is_some() && is_only_mean(name);
-        let is_judged = |name: &str| is_compared(name) && self.observed.series.column(name).is_some();
-        let names: Vec<String> =
-            columns.into_iter().map(|column| column.name).filter(|name| !is_judged(name)).collect();
-        let more = names.len().saturating_sub(MOST_NAMES);
-        let first = names.iter().take(MOST_NAMES).cloned().collect::<Vec<_>>().join(", ");
-        let more = if more > 0 { format!(" and {more} more") } else { String::new() };
-        (!names.is_empty()).then(|| first + &more)
-    }
-}
-
-/// Returns the result for an effect that was tried.
-fn outcome_row(family: &Family, found: &SearchOutcome, row: Verdict) -> Verdict {
-    let sizes: Vec<&str> = family.sizes.iter().map(|size| size.words.as_str()).collect();
-    let because =
-        format!("our solver ran the scene with this mistake, and was judged as your output: {}", sizes.join(", "));
-    let row = Verdict { because, ..row };
-    let largest = family.sizes.last();
-    match (found, largest) {
-        (SearchOutcome::Revealed(amount), Some(largest)) => {
-            let most = ExpectedValue::Bound(Bound::AtMost(largest.amount));
-            let size = family.sizes.iter().find(|size| size.amount.total_cmp(amount).is_eq()).unwrap_or(largest);
-            let detail = Some(format!("{}: {}{SEEN}", family.name, size.words));
-            Verdict { detail, ..row.judged(&Measurement::new(*amount, most, 1.0)) }
-        }
-        (_, largest) => {
-            let words = largest.map_or("any change", |largest| &largest.words);
-            row.left(Outcome::NoReference, format!("{}: {words}{HIDDEN}", family.name))
-        }
+        let rows = self.runs.compare(&self.output.with(&seen));
+        rows.iter().any(|row| row.outcome == Outcome::Fail || is_outside(row))
     }
 }
 

@@ -1,6 +1,7 @@
 //! Overlaps of the contacts at the start and at the end of a run. They show if the stiffness of the scene is that of the
 //! output.
 
+use super::covered::CheckedOutput;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
@@ -70,18 +71,14 @@ pub(super) fn at_start(scene: &Scene, observed: &DumpRecord) -> String {
 }
 
 /// Returns an amber result with the question about the stiffness for the last sample; `None` if the overlaps are similar.
-pub(super) fn at_end(
-    scene: &Scene,
-    observed: &DumpRecord,
-    ours: &Snapshot,
-    row: &dyn Fn(String, &str) -> Verdict,
-) -> Option<Verdict> {
-    let of_file = observed.snapshots.last().and_then(|last| of_snapshot(scene, last))?;
+pub(super) fn at_end(output: &CheckedOutput<'_>, ours: &Snapshot) -> Option<Verdict> {
+    let scene = &output.candidate.scene;
+    let of_file = output.observed.snapshots.last().and_then(|last| of_snapshot(scene, last))?;
     let words = question(of_file, of_snapshot(scene, ours)?)?;
     let row = Verdict {
         because: "the overlap at rest depends on the stiffness".to_owned(),
         source: "our run to the last sample".to_owned(),
-        ..row("mean overlap of the contacts at the end, over the radius".to_owned(), "1")
+        ..output.row("mean overlap of the contacts at the end, over the radius", "1")
     };
     Some(row.left(Outcome::NoReference, words))
 }

@@ -1,16 +1,14 @@
 //! Comparison of output with stored runs of LAMMPS and LIGGGHTS of the same scene.
 
-use super::covered::Coverage;
+use super::covered::CheckedOutput;
 use super::judgement::{Between, ErrorAllowance, judged_in_time};
-use super::ours::is_compared;
+use super::ours::{FLOOR, is_compared, truncated};
 use super::subject::Candidate;
 use grainbench_cases::stored;
 use grainbench_harness::case::Case;
 use grainbench_harness::compare::peers::{Peer, against};
 use grainbench_harness::tolerance::ToleranceOrigin;
 use grainbench_harness::verdict::Verdict;
-use grainbench_reference::observer::DumpRecord;
-use grainbench_reference::outputs::Outputs;
 use grainbench_reference::stored::{StoredRun, folder};
 use grainbench_reports::number;
 use grainbench_solver::record::Series;
@@ -19,21 +17,13 @@ use grainbench_solver::record::Series;
 /// F_s rᵖ/(rᵖ − 1) of the coarser step (Roache 1994). The factor of safety F_s = 3 applies to two steps, whose ratio is
 /// r = 2. The order is p = 1, because contacts begin and end within steps.
 const SAFETY: f64 = 6.0;
-/// Allowed error of a program in addition to the measured differences, as a fraction of the scale.
-const FLOOR: f64 = 1e-6;
 
 /// Compares each column with the stored run that is nearest to the output, at the sample times that both have. The
 /// allowed error contains the difference between the stored runs and the uncertainty of the run with the longer time step,
 /// which is the stored run or the output.
-pub(super) fn compare(
-    case: &Case,
-    candidate: &Candidate,
-    outputs: &Outputs,
-    observed: &DumpRecord,
-    covered: &Coverage,
-    row: &dyn Fn(String, &str) -> Verdict,
-) -> Vec<Verdict> {
-    let runs = runs(case, candidate);
+pub(super) fn compare(case: &Case, output: &CheckedOutput<'_>) -> Vec<Verdict> {
+    let CheckedOutput { outputs, observed, .. } = output;
+    let runs = runs(case, output.candidate);
     let scale = |extent: &dyn Fn(&str) -> f64, unit: &str| extent(unit);
     let compared = against(&observed.series, &observed.uncertainty, &runs, None, is_compared, scale);
     let Some((nearest, columns)) = compared else { return Vec::new() };
@@ -46,7 +36,7 @@ pub(super) fn compare(
         let row = Verdict {
             source: nearest.to_owned(),
             tolerance: ToleranceOrigin::Estimated,
-            ..row(
+            ..output.row(
                 format!("{}, worst of {} stored samples to t = {until} s", compared.name, compared.samples.len()),
                 compared.unit,
             )
@@ -58,7 +48,7 @@ pub(super) fn compare(
             let steps = number::significant(coarser, 3);
             row.because.push_str(&format!("; the step of the files is {steps} times that of the stored run"));
         }
-        covered.dense_in(compared.samples.iter().map(|sample| sample.time), row)
+        output.covered.dense_in(compared.samples.iter().map(|sample| sample.time), row)
     });
     rows.collect()
 }
@@ -71,10 +61,15 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
             let scene = stored_run.scene().ok().filter(|scene| *scene == candidate.scene)?;
             let stored = StoredRun::load(&folder(stored_run.program, &stored_run.id)).ok()?;
             let provenance = stored.is_of(&scene, &stored_run.run.resolution).then(|| stored.provenance())?;
+            let last = provenance.predictable_steps.unwrap_or(u64::MAX);
+            let predictable = |series: Series| {
+                let samples = series.step.partition_point(|&step| step <= last);
+                truncated(series, samples)
+            };
             Some(Peer {
                 name: format!("{}, stored run of {}", provenance.version, provenance.date),
-                series: until(stored.series(&scene), provenance.predictable_steps),
-                half_step: Some(until(stored.half_step(&scene), provenance.predictable_steps)),
+                series: predictable(stored.series(&scene)),
+                half_step: Some(predictable(stored.half_step(&scene))),
             })
         })
         .collect()
@@ -84,13 +79,4 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
 fn time_step(series: &Series) -> Option<f64> {
     let (time, step) = series.time.last().zip(series.step.last())?;
     (*step > 0).then(|| time / *step as f64)
-}
-
-/// Returns the samples up to the last predictable step.
-fn until(mut series: Series, last: Option<u64>) -> Series {
-    let keep = last.map_or(series.step.len(), |last| series.step.partition_point(|&step| step <= last));
-    series.step.truncate(keep);
-    series.time.truncate(keep);
-    series.values.iter_mut().for_each(|values| values.truncate(keep));
-    series
 }

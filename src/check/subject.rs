@@ -112,6 +112,13 @@ pub(super) struct Candidate {
     pub(super) claims: Vec<Claim>,
 }
 
+impl Candidate {
+    /// Returns a scene without changed keys and without claims.
+    fn new(variant: String, scene: Scene) -> Self {
+        Self { variant, own: Some(scene.clone()), scene, moved: Vec::new(), claims: Vec::new() }
+    }
+}
+
 /// Returns the scenes of a case, and these scenes as changed by solver-independent claims.
 fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidate>, SceneError> {
     let mut names = case.variants()?;
@@ -119,17 +126,8 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
         names.push(PLAIN.to_owned());
     }
     names.retain(|name| variant.is_none_or(|variant| variant == name));
-    let mut candidates: Vec<Candidate> = Vec::new();
-    for name in names {
-        let scene = case.variant(&name)?;
-        candidates.push(Candidate {
-            own: Some(scene.clone()),
-            scene,
-            variant: name,
-            moved: Vec::new(),
-            claims: Vec::new(),
-        });
-    }
+    let candidate = |name: String| case.variant(&name).map(|scene| Candidate::new(name, scene));
+    let mut candidates = names.into_iter().map(candidate).collect::<Result<Vec<_>, _>>()?;
     for claim in (case.claims)() {
         let [run] = &claim.runs[..] else { continue };
         if !claim.scope.is_of_grains() || variant.is_some_and(|variant| variant != run.variant) {
@@ -142,10 +140,7 @@ fn candidates(case: &'static Case, variant: Option<&str>) -> Result<Vec<Candidat
         let variant = run.variant.to_owned();
         match candidates.iter_mut().find(|other| other.variant == variant && other.scene == scene) {
             Some(candidate) => candidate.claims.push(claim),
-            None => {
-                let (own, moved) = (Some(scene.clone()), Vec::new());
-                candidates.push(Candidate { variant, own, scene, moved, claims: vec![claim] });
-            }
+            None => candidates.push(Candidate { claims: vec![claim], ..Candidate::new(variant, scene) }),
         }
     }
     Ok(candidates)
