@@ -1,6 +1,7 @@
 //! `grainbench completions` and `grainbench man`: shell completions and manual pages, generated from the commands.
 
 use super::exit::{Fault, Outcome, check_folder, print};
+use super::publish::write_files;
 use grainbench::store::StagedDir;
 use std::path::PathBuf;
 use std::process::ExitCode;
@@ -22,8 +23,7 @@ pub(crate) struct ManArguments {
 pub(crate) fn completions(arguments: &Arguments, mut command: clap::Command) -> Outcome {
     let mut script = Vec::new();
     clap_complete::generate(arguments.shell, &mut command, "grainbench", &mut script);
-    print(&String::from_utf8_lossy(&script))?;
-    Ok(ExitCode::SUCCESS)
+    print(&String::from_utf8_lossy(&script))
 }
 
 /// Prints the manual page of the program, or writes one page for each command.
@@ -31,20 +31,19 @@ pub(crate) fn man(arguments: &ManArguments, mut command: clap::Command) -> Outco
     command.build();
     let page = |command: clap::Command| {
         let mut text = Vec::new();
-        clap_mangen::Man::new(command).render(&mut text).map_err(Fault::input)?;
+        clap_mangen::Man::new(command).render(&mut text)?;
         Ok::<_, Fault>(text)
     };
     let Some(out) = &arguments.out else {
-        print(&String::from_utf8_lossy(&page(command)?))?;
-        return Ok(ExitCode::SUCCESS);
+        return print(&String::from_utf8_lossy(&page(command)?));
     };
     check_folder(out)?;
-    let mut staged = StagedDir::new(out).map_err(Fault::writing)?;
+    let mut pages = Vec::new();
     for subcommand in command.get_subcommands() {
         let name = subcommand.get_display_name().unwrap_or_else(|| subcommand.get_name());
-        staged.write(format!("{name}.1"), page(subcommand.clone())?).map_err(Fault::writing)?;
+        pages.push((format!("{name}.1"), page(subcommand.clone())?));
     }
-    staged.write("grainbench.1", page(command)?).map_err(Fault::writing)?;
-    staged.commit().map_err(Fault::writing)?;
+    pages.push(("grainbench.1".to_owned(), page(command)?));
+    write_files(StagedDir::new(out)?, &pages)?;
     Ok(ExitCode::SUCCESS)
 }

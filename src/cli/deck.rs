@@ -1,13 +1,13 @@
 //! `grainbench deck`: writes the input files of another program for a scene.
 
 use super::exit::{Fault, Outcome, check_folder, print};
+use super::publish::write_files;
 use super::subject;
 use super::value::{path_and_value, positive};
 use grainbench::reference::deck::{DeckError, Program, write_deck};
 use grainbench::solver::resolution::Resolution;
 use grainbench::store::StagedDir;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Default time step for scene files, as a fraction of the critical one.
 const USUAL: Resolution = Resolution::CriticalFraction(0.1);
@@ -61,11 +61,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Resolution(_) => Fault::input(error),
     })?;
     check_folder(&arguments.out)?;
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-    for (name, text) in &deck.files {
-        out.write(name, text).map_err(Fault::writing)?;
-    }
-    out.commit().map_err(Fault::writing)?;
+    write_files(StagedDir::new(&arguments.out)?, &deck.files)?;
     let (stepping, out) = (&deck.stepping, shell_word(&arguments.out.to_string_lossy()));
     print(&format!(
         "scene      {}\nprogram    {program}\ntime step  {:.6e} s\nsteps      {}\nfiles      {}\nrun        cd {out} && {}\n",
@@ -74,8 +70,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         grainbench::reports::number::count(stepping.steps),
         deck.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "),
         program.command(),
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    ))
 }
 
 /// Quotes a word for a shell.

@@ -126,7 +126,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     // The files of an external program may change between two runs.
     let cache = match solver::is_manifest(&yours.solver) {
         true => Directory::none(),
-        false => Directory::open(&arguments.out.join(own::RUNS), arguments.study.no_cache).map_err(Fault::writing)?,
+        false => Directory::open(&arguments.out.join(own::RUNS), arguments.study.no_cache)?,
     };
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -178,8 +178,8 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
             left_out.push(effect.word());
             continue;
         }
-        cache.put::<Json<_>>(&id(effect.word()), &entry).map_err(Fault::writing)?;
-        cache.put::<Json<_>>(&id(CHAOS), &!whole.perturbed.is_empty()).map_err(Fault::writing)?;
+        cache.put::<Json<_>>(&id(effect.word()), &entry)?;
+        cache.put::<Json<_>>(&id(CHAOS), &!whole.perturbed.is_empty())?;
         study.ledger.extend(entry);
     }
     drop(progress);

@@ -1,10 +1,12 @@
 //! Exit codes, messages and output on the terminal.
 
 use super::terminal;
+use grainbench::jobs;
 use grainbench::reference::ReadError;
-use grainbench::scene::error::{SceneError, did_you_mean};
+use grainbench::scene::error::did_you_mean;
 use grainbench::scene::text::{shortened, tamed};
 use std::collections::BTreeSet;
+use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
 use std::path::Path;
@@ -25,7 +27,7 @@ pub(crate) enum Fault {
 }
 
 /// Exit code if a result is red, a control does not fail, or a run fails.
-pub(crate) const RED: u8 = 1;
+pub(crate) const RED: ExitCode = ExitCode::FAILURE;
 
 /// Largest number of known names that fit on one line.
 const MOST_ON_A_LINE: usize = 6;
@@ -45,18 +47,6 @@ impl Fault {
         Self::input(format!("{error}{hint}"))
     }
 
-    /// Returns the error of a failed write. A full disk counts as a failure during the run, not as bad input.
-    pub(crate) fn writing(error: impl std::error::Error + 'static) -> Self {
-        let mut cause: Option<&(dyn std::error::Error + 'static)> = Some(&error);
-        while let Some(inner) = cause {
-            if inner.downcast_ref::<io::Error>().is_some_and(|io| io.kind() == ErrorKind::StorageFull) {
-                return Self::Broken(error.to_string());
-            }
-            cause = inner.source();
-        }
-        Self::input(error)
-    }
-
     /// Returns the error of an unknown word, with the known words.
     pub(crate) fn unknown<'a>(what: &str, word: &str, known: impl IntoIterator<Item = &'a str> + Clone) -> Self {
         let mut names: Vec<&str> = known.clone().into_iter().collect();
@@ -73,15 +63,15 @@ impl Fault {
     /// Prints the error on the standard error and returns the exit code.
     pub(crate) fn report(&self) -> ExitCode {
         let (message, names, code) = match self {
-            Self::Input(message) => (message, &[][..], BAD_INPUT),
-            Self::Unknown(message, names) => (message, &names[..], BAD_INPUT),
+            Self::Input(message) => (message, &[][..], ExitCode::from(BAD_INPUT)),
+            Self::Unknown(message, names) => (message, &names[..], ExitCode::from(BAD_INPUT)),
             Self::Broken(message) => (message, &[][..], RED),
         };
         say("error", message);
         for name in names {
             let _ = writeln!(io::stderr(), "  {}", tamed(&shortened(name), |_| false));
         }
-        ExitCode::from(code)
+        code
     }
 }
 
@@ -94,8 +84,17 @@ impl Display for Fault {
     }
 }
 
-impl From<SceneError> for Fault {
-    fn from(error: SceneError) -> Self {
+impl<E: Error + 'static> From<E> for Fault {
+    /// A full disk and a failure of the batch system are failures during the run. All other errors count as bad input.
+    fn from(error: E) -> Self {
+        let first: &(dyn Error + 'static) = &error;
+        let is_full = |cause: &(dyn Error + 'static)| {
+            cause.downcast_ref::<io::Error>().is_some_and(|error| error.kind() == ErrorKind::StorageFull)
+        };
+        let is_of_batch = matches!(first.downcast_ref::<jobs::Fault>(), Some(jobs::Fault::Batch(_)));
+        if is_of_batch || std::iter::successors(Some(first), |&cause| cause.source()).any(is_full) {
+            return Self::Broken(error.to_string());
+        }
         Self::input(error)
     }
 }
@@ -107,31 +106,32 @@ pub(crate) fn say(kind: &str, message: &str) {
     let _ = writeln!(io::stderr(), "{}", terminal::message(line));
 }
 
-/// Prints text on the standard output. If the reader closes the pipe early, as `head` does, this is not an error.
-pub(crate) fn print(text: &str) -> Result<(), Fault> {
+/// Prints text on the standard output, and returns the exit code for success. If the reader closes the pipe early, as
+/// `head` does, this is not an error.
+pub(crate) fn print(text: &str) -> Outcome {
     print_with(|out| out.write_all(text.as_bytes()))
 }
 
 /// Prints text for a reader on the standard output. On a terminal, it has colours and fits the width.
-pub(crate) fn print_text(text: &str) -> Result<(), Fault> {
+pub(crate) fn print_text(text: &str) -> Outcome {
     let Some(shown) = terminal::shown(text) else { return print(text) };
     let mut out = io::stdout().lock();
     done(out.write_all(shown.as_bytes()).and_then(|()| out.flush()))
 }
 
 /// Prints the output of a function in blocks, so that large output needs little memory.
-pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Result<(), Fault> {
+pub(crate) fn print_with(write: impl FnOnce(&mut dyn Write) -> io::Result<()>) -> Outcome {
     let mut out = TamedOutput { out: io::stdout().lock(), piece: Vec::new() };
     done(write(&mut out).and_then(|()| out.flush()))
 }
 
-/// Returns the error of the standard output. A closed pipe is no error.
-fn done(written: io::Result<()>) -> Result<(), Fault> {
+/// Returns the exit code for success, or the error of the standard output. A closed pipe is no error.
+fn done(written: io::Result<()>) -> Outcome {
     match written {
         Err(error) if error.kind() != ErrorKind::BrokenPipe => {
             Err(Fault::input(format!("cannot write the standard output: {error}")))
         }
-        _ => Ok(()),
+        _ => Ok(ExitCode::SUCCESS),
     }
 }
 
@@ -174,8 +174,8 @@ impl Write for TamedOutput {
 }
 
 /// Prints a value as JSON.
-pub(crate) fn print_json(value: &impl serde::Serialize) -> Result<(), Fault> {
-    let text = serde_json::to_string_pretty(value).map_err(Fault::input)?;
+pub(crate) fn print_json(value: &impl serde::Serialize) -> Outcome {
+    let text = serde_json::to_string_pretty(value)?;
     print(&(text + "\n"))
 }
 

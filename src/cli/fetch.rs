@@ -5,7 +5,7 @@ use grainbench::reference::data::{installed, unpack};
 use grainbench::store::{StagedDir, temporary_in};
 use std::io;
 use std::path::{Path, PathBuf};
-use std::process::{Command, ExitCode};
+use std::process::Command;
 
 #[derive(clap::Args)]
 pub(crate) struct Fetch {
@@ -21,8 +21,8 @@ pub(crate) fn fetch(arguments: &Fetch) -> Outcome {
     arguments.out.as_deref().map(check_writable).transpose()?;
     let none = || Fault::Input("--out: expected a directory for the data, found no home directory".to_owned());
     let target = arguments.out.clone().or_else(installed).ok_or_else(none)?;
-    let mut out = StagedDir::new(&target).map_err(Fault::writing)?.without_manifest();
-    let scratch = temporary_in(&std::env::temp_dir()).map_err(Fault::writing)?;
+    let mut out = StagedDir::new(&target)?.without_manifest();
+    let scratch = temporary_in(&std::env::temp_dir())?;
     let archive = if arguments.source.starts_with("https://") {
         let file = scratch.path().join("data.zip");
         download(&arguments.source, &file)?;
@@ -32,9 +32,8 @@ pub(crate) fn fetch(arguments: &Fetch) -> Outcome {
     };
     let count = unpack(&archive, |name, bytes| out.write(name, bytes).map_err(io::Error::other));
     let count = count.map_err(Fault::input)?;
-    out.commit().map_err(Fault::writing)?;
-    print(&format!("{count} files in {}\n", target.display()))?;
-    Ok(ExitCode::SUCCESS)
+    out.commit()?;
+    print(&format!("{count} files in {}\n", target.display()))
 }
 
 /// Downloads a file with `curl`.

@@ -18,7 +18,6 @@ use grainbench::scene::nalgebra::Vector3;
 use grainbench::solver::record::Snapshot;
 use grainbench::store::refuse_mixed;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -158,13 +157,8 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         return Err(Fault::input(format!("{there}: expected {what} in the selected time interval, found fewer{hint}")));
     };
     let summary = Summary::new(&course, there.to_string(), usize::from(arguments.blocks));
-    write_elements(&arguments.out, &course, &summary, arguments.parquet).map_err(Fault::writing)?;
-    if arguments.json {
-        print_json(&summary)?;
-    } else {
-        print(&summary_text(&summary, &arguments.out))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    write_elements(&arguments.out, &course, &summary, arguments.parquet)?;
+    if arguments.json { print_json(&summary) } else { print(&summary_text(&summary, &arguments.out)) }
 }
 
 /// Reads the snapshots of a directory that `simulate` wrote.
@@ -206,12 +200,12 @@ fn of_dump(
     };
     if (arguments.from.is_some() || arguments.to.is_some()) && arguments.time_step.is_none() {
         // If the dump has no times, `--from` and `--to` would select nothing without any message.
-        let mut first = GrainDump::open(path, None, beside.clone()).map_err(Fault::input)?;
-        if first.read().map_err(Fault::input)?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
+        let mut first = GrainDump::open(path, None, beside.clone())?;
+        if first.read()?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
             return Err(Fault::input("--from, --to: expected a dump with times, or the option `--time-step`"));
         }
     }
-    let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside).map_err(Fault::input)?;
+    let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside)?;
     while let Some(snapshot) = dump.read().map_err(Fault::reading)? {
         take(snapshot)?;
     }

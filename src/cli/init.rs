@@ -1,9 +1,9 @@
 //! `grainbench init`: writes the files of a new solver, case or scene. They are the files of `examples`.
 
 use super::exit::{Fault, Outcome, print};
+use super::publish::write_files;
 use grainbench::store::{StagedDir, write_file};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(clap::Subcommand)]
 pub(crate) enum Command {
@@ -74,12 +74,11 @@ pub(crate) fn init(command: &Command) -> Outcome {
                     file.display()
                 )));
             }
-            write_file(file, CASE[0].1).map_err(Fault::writing)?;
+            write_file(file, CASE[0].1)?;
             format!("grainbench simulate {} --solver dem", file.display())
         }
     };
-    print(&format!("{next}\n"))?;
-    Ok(ExitCode::SUCCESS)
+    print(&format!("{next}\n"))
 }
 
 /// Writes the files to a new or empty directory.
@@ -91,9 +90,5 @@ fn write(dir: &Path, files: Files) -> Result<(), Fault> {
             dir.display()
         )));
     }
-    let mut staged = StagedDir::new(dir).map_err(Fault::writing)?.without_manifest();
-    for (name, text) in files {
-        staged.write(name, text).map_err(Fault::writing)?;
-    }
-    staged.commit().map_err(Fault::writing)
+    write_files(StagedDir::new(dir)?.without_manifest(), files)
 }

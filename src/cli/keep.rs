@@ -45,16 +45,16 @@ pub(crate) fn other_program(program: &ExternalProgram, kept: &ExternalResults) -
 
 /// Stores a study in the source tree, for the first screen of the report.
 pub(crate) fn keep_study(name: &str, study: &Study) -> Result<(), Fault> {
-    let text = kept_text(study).map_err(Fault::input)?;
-    write_file(grainbench::studies::kept::place(name), text.as_bytes()).map_err(Fault::writing)
+    let text = kept_text(study)?;
+    Ok(write_file(grainbench::studies::kept::place(name), text)?)
 }
 
 /// Stores the results of an external solver in the directory of its manifest.
 pub(crate) fn keep(program: &ExternalProgram, report: &Report) -> Result<(), Fault> {
-    let adapter = program.fingerprint().map_err(Fault::writing)?;
+    let adapter = program.fingerprint()?;
     let name = program.manifest().name.clone();
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let results = ExternalResults::new([name, version, adapter], &report.provenance, &report.sections);
-    let text = serde_json::to_string_pretty(&results).map_err(Fault::input)? + "\n";
-    write_file(program.folder().join(STORED), text).map_err(Fault::writing)
+    let text = serde_json::to_string_pretty(&results)? + "\n";
+    Ok(write_file(program.folder().join(STORED), text)?)
 }

@@ -6,6 +6,7 @@ use super::exit::{Fault, Outcome, print, say};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance;
+use super::publish::write_files;
 use super::value::whole;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::{Case, runner, solvers};
@@ -18,7 +19,6 @@ use grainbench::solver::observer::{Observer, RunOptions, RunOutline};
 use grainbench::store::StagedDir;
 use std::fs;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::sync::Arc;
 
 #[derive(clap::Args)]
@@ -82,7 +82,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
                     lines.push_str(&format!("{:6} {}/{}\n", "absent", case.name, one.id));
                     continue;
                 }
-                given => given.map_err(Fault::input)?,
+                given => given?,
             };
             let keeping = StorageTask {
                 arguments,
@@ -115,8 +115,8 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
             }
         }
     }
-    print(&lines)?;
-    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(ExitCode::SUCCESS) }
+    let printed = print(&lines)?;
+    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(printed) }
 }
 
 /// Run whose result is to be stored.
@@ -148,11 +148,7 @@ impl StorageTask<'_> {
         let date = provenance::today();
         let made = [env!("GRAINBENCH_COMMIT"), &date];
         let files = kept::files(wanted, &done, &self.given, made).map_err(Fault::input)?;
-        let mut out = StagedDir::new(wanted.folder()).map_err(Fault::writing)?.without_manifest();
-        for (name, bytes) in &files {
-            out.write(name, bytes).map_err(Fault::writing)?;
-        }
-        out.commit().map_err(Fault::writing)?;
+        write_files(StagedDir::new(wanted.folder())?.without_manifest(), &files)?;
         if is_resumable {
             // A short run has no checkpoint. The directory is deleted only if it is empty.
             let _ = fs::remove_file(self.checkpoint());

@@ -7,7 +7,6 @@ use grainbench::cases::registry::CASES;
 use grainbench::harness::case::Case;
 use grainbench::reports::number;
 use serde::Serialize;
-use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -51,12 +50,7 @@ pub(crate) fn list(arguments: &Arguments) -> Outcome {
         return list_rows(arguments);
     }
     let entries = CASES.iter().map(|case| entry(case)).collect::<Result<Vec<_>, _>>()?;
-    if arguments.json {
-        print_json(&entries)?;
-    } else {
-        print_text(&table(&entries))?;
-    }
-    Ok(ExitCode::SUCCESS)
+    if arguments.json { print_json(&entries) } else { print_text(&table(&entries)) }
 }
 
 /// Prints the claims by which `run --solver SOLVER.toml` judges an external solver.
@@ -71,15 +65,13 @@ fn list_rows(arguments: &Arguments) -> Outcome {
         }
     }
     if arguments.json {
-        print_json(&rows)?;
-    } else {
-        let line = |row: &Row| {
-            let Row { case, variant, quantity, control, .. } = row;
-            format!("{case}/{variant} · {quantity} [control: {control}]\n")
-        };
-        print_text(&rows.iter().map(line).collect::<String>())?;
+        return print_json(&rows);
     }
-    Ok(ExitCode::SUCCESS)
+    let line = |row: &Row| {
+        let Row { case, variant, quantity, control, .. } = row;
+        format!("{case}/{variant} · {quantity} [control: {control}]\n")
+    };
+    print_text(&rows.iter().map(line).collect::<String>())
 }
 
 fn entry(case: &Case) -> Result<Entry, super::exit::Fault> {

@@ -171,28 +171,28 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let input = &input.within(&scene)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.no_cache)?;
     let words = input.words("cost", options.budget());
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
     let mut follower = Follower::new(&study, input.out, &words);
     let mut measured = Measurement::new(&study);
-    measured.levels(&mut follower).map_err(Fault::writing)?;
-    measured.variations(&mut follower).map_err(Fault::writing)?;
-    let (ledger, skipped) = effects::measure(&study, &measured, &mut follower).map_err(Fault::writing)?;
+    measured.levels(&mut follower)?;
+    measured.variations(&mut follower)?;
+    let (ledger, skipped) = effects::measure(&study, &measured, &mut follower)?;
     follower.ledger = ledger;
     // A note tells why a solver has no level. Its stable step would take too long or does not exist.
     let names = measured.measured_solvers();
     follower.limits = limits((&study, &names), &mut |part| measured.remaining(part), &mut follower.bar)?;
-    measured.repetitions(&mut follower).map_err(Fault::writing)?;
+    measured.repetitions(&mut follower)?;
     let mut result = measured.result();
     result.notes.extend(skipped);
     let is_stopped = stop();
     let study = follower.study(result, is_stopped);
     if is_stopped {
         drop(follower);
-        write_study(input.out, &study).map_err(Fault::writing)?;
+        write_study(input.out, &study)?;
         return Err(stopped());
     }
     drop(follower);
@@ -237,7 +237,7 @@ fn limits(
         bar.now(&format!("{solver}: largest stable step"), study.budget.as_secs_f64() - remaining(1.0));
         let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
         let deadline = Instant::now() + Duration::from_secs_f64(share);
-        let limit = limit::of_scene(study, solver, deadline).map_err(Fault::writing)?;
+        let limit = limit::of_scene(study, solver, deadline)?;
         if (study.stop)() {
             break;
         }
@@ -251,7 +251,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.no_cache).map_err(Fault::writing)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.no_cache)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));

@@ -7,6 +7,7 @@ use grainbench::reports::results::results_json;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
 use grainbench::reports::{Headline, Report, summary_table_within, write_report, write_report_and_parquet};
+use grainbench::store::StagedDir;
 use std::path::Path;
 use std::process::ExitCode;
 
@@ -31,12 +32,18 @@ impl<'a> Output<'a> {
     }
 }
 
+/// Writes files to a directory, all or none.
+pub(crate) fn write_files<N: AsRef<Path>, B: AsRef<[u8]>>(mut out: StagedDir, files: &[(N, B)]) -> Result<(), Fault> {
+    files.iter().try_for_each(|(name, bytes)| out.write(name, bytes))?;
+    Ok(out.commit()?)
+}
+
 /// Writes and prints a report, and returns the exit code.
 pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     let write = if output.parquet { write_report_and_parquet } else { write_report };
-    write(output.out, report).map_err(Fault::writing)?;
+    write(output.out, report)?;
     if output.json {
-        print(&results_json(report).map_err(Fault::input)?)?;
+        print(&results_json(report)?)?;
     } else if output.quiet {
         print_text(&quiet_text(report))?;
     } else {
@@ -50,9 +57,9 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
 
 /// Writes and prints a study, and returns the exit code.
 pub(crate) fn publish_study(study: &Study, output: Output<'_>) -> Outcome {
-    write_study(output.out, study).map_err(Fault::writing)?;
+    write_study(output.out, study)?;
     if output.json {
-        print(&study_json(study).map_err(Fault::input)?)?;
+        print(&study_json(study)?)?;
     } else {
         print_text(&output.text.unwrap_or_else(|| study.text()))?;
         print(&format!("{}\n", output.out.join("index.html").display()))?;
@@ -62,7 +69,7 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>) -> Outcome {
 
 /// Returns the exit code of a study.
 pub(crate) fn study_code(study: &Study) -> ExitCode {
-    if study.is_red() { ExitCode::from(RED) } else { ExitCode::SUCCESS }
+    if study.is_red() { RED } else { ExitCode::SUCCESS }
 }
 
 /// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
@@ -87,5 +94,5 @@ fn quiet_text(report: &Report) -> String {
 /// Returns the exit code. It is red if the report does not pass. With `strict`, an amber result is red too.
 pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
     let is_red = !report.passes() || strict && Headline::of_report(report).amber() > 0;
-    if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS }
+    if is_red { RED } else { ExitCode::SUCCESS }
 }

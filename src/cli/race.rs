@@ -3,6 +3,7 @@
 use super::exit::{Fault, Outcome, RED, check_writable, print, print_text};
 use super::progress::Progress;
 use super::provenance::provenance;
+use super::publish::write_files;
 use super::value::whole;
 use super::{solver, subject};
 use grainbench::cases::registry::read_grains;
@@ -113,14 +114,11 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     let has_run = heats.iter().flat_map(|heat| &heat.results).any(|raced| !raced.rates.is_empty());
     let options = vec![format!("rounds {}", arguments.rounds)];
     let race = ThroughputBenchmark { provenance: provenance(options, start.elapsed().as_secs_f64()), heats };
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-    let json = serde_json::to_string_pretty(&race).map_err(Fault::input)?;
-    out.write("race.json", json + "\n").map_err(Fault::writing)?;
-    out.write("race.md", race.markdown()).map_err(Fault::writing)?;
-    out.commit().map_err(Fault::writing)?;
+    let json = serde_json::to_string_pretty(&race)? + "\n";
+    write_files(StagedDir::new(&arguments.out)?, &[("race.json", json), ("race.md", race.markdown())])?;
     print_text(&race.text())?;
     print(&format!("\n{}\n", arguments.out.join("race.md").display()))?;
-    Ok(if has_run { ExitCode::SUCCESS } else { ExitCode::from(RED) })
+    Ok(if has_run { ExitCode::SUCCESS } else { RED })
 }
 
 /// Returns a benchmark scene with grains. Its time step is the default time step of its case, or 0.1 of the critical one.

@@ -6,7 +6,7 @@ use super::fetch::{Fetch, fetch};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::{self, provenance};
-use super::publish::{Output, publish};
+use super::publish::{Output, publish, write_files};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::stored::{self, Reference};
 use grainbench::cases::uncertainty::{self, StoredEstimates};
@@ -19,7 +19,6 @@ use grainbench::solver::failure::RunError;
 use grainbench::store::{StagedDir, write_file};
 use grainbench::verify::verify as compare;
 use std::path::PathBuf;
-use std::process::ExitCode;
 use std::time::Instant;
 
 #[derive(clap::Subcommand)]
@@ -109,12 +108,8 @@ fn build(arguments: &Build) -> Outcome {
         let made = make(reference.program, &reference.id, &reference.title(), &date, &scene, &reference.run.resolution);
         let outcome = match made {
             Ok(made) => {
-                let mut out = StagedDir::new(&target).map_err(Fault::writing)?.without_manifest();
+                write_files(StagedDir::new(&target)?.without_manifest(), &made.files)?;
                 let bytes: usize = made.files.iter().map(|(_, bytes)| bytes.len()).sum();
-                for (name, bytes) in &made.files {
-                    out.write(name, bytes).map_err(Fault::writing)?;
-                }
-                out.commit().map_err(Fault::writing)?;
                 format!("made           {}/{} ({bytes} bytes)\n", reference.program.name(), reference.id)
             }
             Err(error @ RunError::NotAvailable { .. }) => {
@@ -131,8 +126,8 @@ fn build(arguments: &Build) -> Outcome {
         progress.advance();
     }
     drop(progress);
-    print(&lines)?;
-    if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(ExitCode::SUCCESS) }
+    let printed = print(&lines)?;
+    if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(printed) }
 }
 
 /// Estimates the discretization errors of claims with an estimated tolerance, and stores the estimates.
@@ -172,11 +167,10 @@ fn uncertainty(arguments: &Uncertainty) -> Outcome {
         }
         drop(progress);
         lines.push_str(&format!("{}: {} of {} rows\n", case.name, stored.estimate.len(), claims.len()));
-        let text = toml::to_string(&stored).map_err(Fault::input)?;
-        write_file(uncertainty::file(case.name), text.as_bytes()).map_err(Fault::writing)?;
+        let text = toml::to_string(&stored)?;
+        write_file(uncertainty::file(case.name), text.as_bytes())?;
     }
-    print(&lines)?;
-    Ok(ExitCode::SUCCESS)
+    print(&lines)
 }
 
 /// Rule of the estimates, written to the stored files so that they can be read without the program.

@@ -22,7 +22,6 @@ use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
 use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -95,42 +94,37 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     let style = arguments.style.as_deref().map(style).transpose()?.unwrap_or_default();
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
-        publish(arguments, &style, &pictures::named_figures(&pictures(arguments)?))?;
-        return Ok(ExitCode::SUCCESS);
+        return publish(arguments, &style, &pictures::named_figures(&pictures(arguments)?));
     }
     if arguments.is_of_pictures() {
         let there = arguments.dir.display();
         return Err(Fault::input(format!("{there}: expected {RECORD_FILE} of `simulate` for figures")));
     }
     if holds(STUDY_FILE) {
-        let study = load_study(&arguments.dir).map_err(Fault::input)?;
-        write_study(&arguments.dir, &study).map_err(Fault::writing)?;
+        let study = load_study(&arguments.dir)?;
+        write_study(&arguments.dir, &study)?;
         publish(arguments, &style, &study::named_figures(&study))?;
         return Ok(study_code(&study));
     }
-    let report = Report::load(&arguments.dir).map_err(Fault::input)?;
-    write_report(&arguments.dir, &report).map_err(Fault::writing)?;
+    let report = Report::load(&arguments.dir)?;
+    write_report(&arguments.dir, &report)?;
     print_text(&format!("{}\n", summary_table_within(&report, width())))?;
     publish(arguments, &style, &named_figures(&report))?;
     Ok(exit_code(&report, false))
 }
 
 /// Draws figures in a style, converts them to the requested formats and prints the path of the page.
-fn publish<F: Borrow<Figure>>(
-    arguments: &Arguments,
-    style: &FigureStyle,
-    figures: &[(String, F)],
-) -> Result<(), Fault> {
+fn publish<F: Borrow<Figure>>(arguments: &Arguments, style: &FigureStyle, figures: &[(String, F)]) -> Outcome {
     let dir = &arguments.dir;
     if arguments.style.is_some() {
-        write_figures(dir, figures, style).map_err(Fault::writing)?;
+        write_figures(dir, figures, style)?;
     }
     for format in FigureFormat::ALL {
         if arguments.figures.iter().any(|asked| asked == format.ending()) {
             let names = figures.iter().map(|(name, _)| name.as_str());
             convert_figures(dir, names, format, style.font.as_deref()).map_err(|error| match error {
                 SaveError::NoFont { .. } => Fault::input(error),
-                error => Fault::writing(error),
+                error => error.into(),
             })?;
         }
     }
@@ -151,8 +145,7 @@ fn style(path: &Path) -> Result<FigureStyle, Fault> {
 /// Writes and returns the figures of a simulation and of the simulations compared with it.
 fn pictures(arguments: &Arguments) -> Result<Vec<Figure>, Fault> {
     let dirs = std::iter::once(&arguments.dir).chain(&arguments.beside);
-    let records: Vec<Record> =
-        dirs.map(|dir| record_json::load(dir).map_err(Fault::input)).collect::<Result<_, _>>()?;
+    let records = dirs.map(|dir| record_json::load(dir)).collect::<Result<Vec<Record>, _>>()?;
     let named: Vec<NamedRecord<'_>> =
         records.iter().map(|record| NamedRecord { name: name(record, &records), record }).collect();
     let plain = FigureOptions::default();
@@ -170,7 +163,7 @@ fn pictures(arguments: &Arguments) -> Result<Vec<Figure>, Fault> {
             file.display()
         )));
     }
-    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures).map_err(Fault::writing)?;
+    write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures)?;
     Ok(figures)
 }
 

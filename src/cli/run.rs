@@ -156,7 +156,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     }
     if kept.is_some() {
         otherwise.iter().for_each(|line| exit::say("differs from the stored results", line));
-        return Ok(if report.red_because.is_empty() { ExitCode::SUCCESS } else { ExitCode::from(RED) });
+        return Ok(if report.red_because.is_empty() { ExitCode::SUCCESS } else { RED });
     }
     Ok(code)
 }

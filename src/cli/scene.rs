@@ -6,7 +6,6 @@ use super::subject;
 use super::value::{path_and_value, positive};
 use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneFormat};
 use grainbench::solver::resolution::Resolution;
-use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -58,10 +57,9 @@ pub(crate) fn old_schema(arguments: &SchemaArguments) -> Outcome {
 
 fn print_schema(kind: Schema) -> Outcome {
     match kind {
-        Schema::File => print_json(&grainbench::scene::schema())?,
-        Schema::Resolved => print_json(&outside::schema())?,
+        Schema::File => print_json(&grainbench::scene::schema()),
+        Schema::Resolved => print_json(&outside::schema()),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 /// Prints the resolved scene or a schema.
@@ -83,6 +81,5 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
     print_with(|out| {
         resolved.write(format, out)?;
         out.write_all(b"\n")
-    })?;
-    Ok(ExitCode::SUCCESS)
+    })
 }

@@ -35,7 +35,6 @@ use grainbench::store::{StagedDir, write_file};
 use serde::Serialize;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 #[derive(clap::Args)]
 pub(crate) struct Arguments {
@@ -205,7 +204,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         snapshots = snapshots.in_short();
     }
     if let (Some(path), Some(checkpoint)) = (&arguments.restart, &from) {
-        snapshots = snapshots.resume(path, checkpoint.output()).map_err(Fault::writing)?;
+        snapshots = snapshots.resume(path, checkpoint.output())?;
     }
     let interrupt = Interrupt::listen();
     let threads = arguments.threads.map_or_else(cores, usize::from);
@@ -232,23 +231,22 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     };
     // Some solvers return all snapshots at the end of the run.
     for snapshot in record.snapshots.drain(..) {
-        snapshots.add(snapshot).map_err(Fault::writing)?;
+        snapshots.add(snapshot)?;
     }
     let formats = formats(&snapshots, arguments);
-    let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-    export::write_run(&record, &mut snapshots, &formats, &mut out).map_err(Fault::writing)?;
-    out.commit().map_err(Fault::writing)?;
+    let mut out = StagedDir::new(&arguments.out)?;
+    export::write_run(&record, &mut snapshots, &formats, &mut out)?;
+    out.commit()?;
     if let Some(path) = &arguments.state {
         let form = if arguments.rounded { EndState::to_rounded_bytes } else { EndState::to_bytes };
         let bytes = state.as_ref().map(form).transpose().map_err(Fault::input)?;
-        write_file(path, bytes.unwrap_or_default()).map_err(Fault::writing)?;
+        write_file(path, bytes.unwrap_or_default())?;
     }
     if arguments.json {
-        print_json(&Summary::new(&record, &snapshots, arguments))?;
-    } else {
-        print(&footer(&record, &snapshots, &formats, arguments))?;
+        let (Record { provenance, cost, .. }, out) = (&record, arguments.out.display().to_string());
+        return print_json(&Summary { provenance, cost, end: snapshots.end(), snapshots: snapshots.len(), out });
     }
-    Ok(ExitCode::SUCCESS)
+    print(&footer(&record, &snapshots, &formats, arguments))
 }
 
 /// Writes a plan of a sweep. Without `--plan`, the plan is written to `--out`, all its tasks are run, and the report is made.
@@ -286,10 +284,9 @@ fn left(error: &RunError, remains: Option<&Series>, mut snapshots: SnapshotStore
     let Some(series) = remains else { return fault(error, arguments) };
     let formats = formats(&snapshots, arguments);
     let mut write = || -> Result<(), Fault> {
-        let mut out = StagedDir::new(&arguments.out).map_err(Fault::writing)?;
-        export::write_remains(&error.to_string(), series, &mut snapshots, &formats, &mut out)
-            .map_err(Fault::writing)?;
-        out.commit().map_err(Fault::writing)
+        let mut out = StagedDir::new(&arguments.out)?;
+        export::write_remains(&error.to_string(), series, &mut snapshots, &formats, &mut out)?;
+        Ok(out.commit()?)
     };
     let out = arguments.out.display();
     let last = if formats.is_empty() { "" } else { " with its last state" };
@@ -588,16 +585,4 @@ struct Summary<'a> {
     end: Option<&'a Brief>,
     snapshots: u64,
     out: String,
-}
-
-impl<'a> Summary<'a> {
-    fn new(record: &'a Record, snapshots: &'a SnapshotStore, arguments: &Arguments) -> Self {
-        Self {
-            provenance: &record.provenance,
-            cost: &record.cost,
-            end: snapshots.end(),
-            snapshots: snapshots.len(),
-            out: arguments.out.display().to_string(),
-        }
-    }
 }

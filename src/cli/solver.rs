@@ -29,7 +29,7 @@ pub(crate) fn is_manifest(name: &str) -> bool {
 
 /// Returns the external solver of a manifest. Its name must not be the name of a built-in solver, because names identify results.
 pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
-    let outside = ExternalProgram::read(Path::new(path)).map_err(Fault::input)?;
+    let outside = ExternalProgram::read(Path::new(path))?;
     let name = outside.manifest().name.as_str();
     if solvers::by_name(name).is_some() {
         return Err(Fault::input(format!("{path}: name: expected an unused name, found `{name}`")));

@@ -34,13 +34,11 @@ impl<'a> Variant<'a> {
             let of_folder =
                 text.rsplit_once('/').filter(|(folder, _)| Path::new(folder).join(folder::CLAIMS).is_file());
             return match of_folder.filter(|_| !is_named) {
-                Some((folder, variant)) => {
-                    Self::of_case(folder::read(Path::new(folder)).map_err(Fault::input)?, Some(variant))
-                }
+                Some((folder, variant)) => Self::of_case(folder::read(Path::new(folder))?, Some(variant)),
                 None => Self::read(text),
             };
         }
-        Ok(Self { case: folder::read(Path::new(text)).map_err(Fault::input)?, variant: None })
+        Ok(Self { case: folder::read(Path::new(text))?, variant: None })
     }
 
     /// Reads `CASE` or `CASE/VARIANT`.

@@ -89,7 +89,7 @@ pub(crate) struct ClaimOptions {
 /// stored measurements.
 pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: bool) -> Result<Report, Fault> {
     let (judged, measured) = if is_whole {
-        (grainbench::peers::kept().map_err(Fault::input)?, grainbench::kept::measured().map_err(Fault::input)?)
+        (grainbench::peers::kept()?, grainbench::kept::measured()?)
     } else {
         (Vec::new(), Measurements::default())
     };

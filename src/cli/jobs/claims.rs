@@ -133,7 +133,7 @@ fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
     if CASES.iter().any(|case| std::ptr::eq(*case, selected.case)) {
         return Ok(Vec::new());
     }
-    folder::files(&selected.case.directory()).map_err(Fault::input)
+    Ok(folder::files(&selected.case.directory())?)
 }
 
 impl Tasks for ClaimStudy {

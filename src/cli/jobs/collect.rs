@@ -10,7 +10,6 @@ use grainbench::reports::trend::{Column, write_trend};
 use grainbench::store::results::FinishedTasks;
 use std::collections::BTreeSet;
 use std::path::{Path, PathBuf, absolute};
-use std::process::ExitCode;
 
 /// Options of the report of a plan.
 #[derive(Default, clap::Args)]
@@ -83,13 +82,13 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     if !earlier.is_empty() {
         let mut columns = earlier;
         columns.push(read_column(&out)?);
-        write_trend(&out, &columns).map_err(Fault::writing)?;
+        write_trend(&out, &columns)?;
     }
     if missing > 0 {
         let what =
             format!("{missing} of {} tasks are not finished; the report contains the finished tasks", plan.tasks.len());
         exit::say("warning", &what);
-        return Ok(ExitCode::from(RED));
+        return Ok(RED);
     }
     Ok(code)
 }

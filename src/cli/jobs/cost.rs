@@ -157,7 +157,7 @@ impl TaskList for CostStudy {
 
 impl Study for CostStudy {
     fn report(&self, results: Vec<Option<Result<Measured, String>>>, how: &ReportOptions<'_>) -> Outcome {
-        let old = how.against.map(points_of).transpose().map_err(Fault::input)?;
+        let old = how.against.map(points_of).transpose()?;
         let (results, has_crash) = outputs(results, how);
         let mut words = self.arguments.command_words("cost");
         if self.wanted.all {

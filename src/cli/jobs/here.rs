@@ -15,7 +15,6 @@ use grainbench::store::log::State;
 use grainbench::store::results::{self, FinishedTasks};
 use std::fs;
 use std::path::Path;
-use std::process::ExitCode;
 use std::sync::Mutex;
 use std::time::{Duration, Instant};
 
@@ -42,7 +41,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
         return Err(Fault::input(format!("--out: {there}: expected a directory without a plan, found a plan")));
     }
     if let Some(path) = against {
-        grainbench::reports::study::points_of(path).map_err(Fault::input)?;
+        grainbench::reports::study::points_of(path)?;
     }
     check_writable(out)?;
     let plan = plan_of(&*study, arguments)?;
@@ -51,7 +50,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
         exit::say("note", &format!("{}: {what}", folder.display()));
     }
     if options.no_cache {
-        results::remove(out).map_err(Fault::writing)?;
+        results::remove(out)?;
     }
     let how = ReportOptions {
         out,
@@ -94,7 +93,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
     let code = report(ReportOptions { end, update_stored, ..how.clone() })?;
     if summary.left > 0 {
         exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
-        return Ok(ExitCode::from(RED));
+        return Ok(RED);
     }
     Ok(code)
 }

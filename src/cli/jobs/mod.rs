@@ -17,21 +17,8 @@ pub(crate) mod watch;
 pub(crate) mod work;
 
 use super::exit::Fault;
-use grainbench::jobs;
 use grainbench::jobs::plan::Plan;
 use std::path::Path;
-
-impl From<jobs::Fault> for Fault {
-    fn from(fault: jobs::Fault) -> Self {
-        match fault {
-            jobs::Fault::Input(words) => Self::input(words),
-            jobs::Fault::Read(error) => Self::input(error),
-            jobs::Fault::Write(error) => Self::writing(error),
-            // A failure of the batch system is not an input error.
-            jobs::Fault::Batch(words) => Self::Broken(words),
-        }
-    }
-}
 
 /// Reads a plan and changes to the directory in which the plan was made, because paths in the plan are relative to it.
 /// The path of the plan becomes absolute.

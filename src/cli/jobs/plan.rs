@@ -8,7 +8,6 @@ use grainbench::jobs::plan::{Head, Plan, check_place};
 use grainbench::reports::number;
 use serde::Serialize;
 use std::path::PathBuf;
-use std::process::ExitCode;
 
 /// Summary of a plan, printed as JSON.
 #[derive(Serialize)]
@@ -32,8 +31,7 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
     let plan = write(arguments)?;
     let Head { tasks, shards, seconds, timed, .. } = plan.head;
     if arguments.json {
-        print_json(&Summary { tasks, shards, seconds, timed, out: &arguments.out })?;
-        return Ok(ExitCode::SUCCESS);
+        return print_json(&Summary { tasks, shards, seconds, timed, out: &arguments.out });
     }
     let times = if timed { ", times are measured" } else { "" };
     print(&format!(
@@ -42,6 +40,5 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
         number::seconds(seconds),
         number::counted(shards as usize, "shard"),
         arguments.out.display()
-    ))?;
-    Ok(ExitCode::SUCCESS)
+    ))
 }

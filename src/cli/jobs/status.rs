@@ -7,7 +7,6 @@ use grainbench::jobs::status::Status;
 use grainbench::reports::number;
 use serde::Serialize;
 use std::path::Path;
-use std::process::ExitCode;
 
 /// Progress of a plan, printed as JSON.
 #[derive(Serialize)]
@@ -24,8 +23,7 @@ pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
     let status = Status::from_plan(&plan)?;
     let queued = slurm::in_queue(&plan.path);
     if json {
-        print_json(&StatusJson { status: &status, queued: queued.ok() })?;
-        return Ok(ExitCode::SUCCESS);
+        return print_json(&StatusJson { status: &status, queued: queued.ok() });
     }
     let mut text = String::new();
     let lines = [
@@ -57,6 +55,5 @@ pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
     if !status.is_whole() {
         text.push_str(&format!("left      about {}\n", number::seconds(status.seconds_left)));
     }
-    print(&text)?;
-    Ok(ExitCode::SUCCESS)
+    print(&text)
 }

@@ -68,7 +68,7 @@ impl<S: Study> AnyStudy for S {
 
 /// Returns the plan of a study in a directory, without writing it.
 pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Plan, Fault> {
-    let words = toml::Value::try_from(arguments).map_err(Fault::input)?;
+    let words = toml::Value::try_from(arguments)?;
     let mut head = Head::new(words, study.is_timed());
     head.shards = arguments.shards.unwrap_or(0);
     head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
@@ -117,7 +117,7 @@ impl ReportOptions<'_> {
     /// Writes and prints a study. The exit code is red if a task crashed.
     pub(super) fn publish(&self, study: &Report, has_crash: bool) -> Outcome {
         if self.is_draft {
-            write_study(self.out, study).map_err(Fault::writing)?;
+            write_study(self.out, study)?;
             return Ok(ExitCode::SUCCESS);
         }
         if let Some(name) = self.update_stored {
@@ -125,7 +125,7 @@ impl ReportOptions<'_> {
         }
         let text = Some(study.text() + &self.end);
         let code = publish_study(study, Output { text, ..Output::new(self.out, self.json, false) })?;
-        Ok(if has_crash { ExitCode::from(RED) } else { code })
+        Ok(if has_crash { RED } else { code })
     }
 }
 

@@ -116,10 +116,10 @@ impl Study for SweepStudy {
         };
         let left = results.into_iter().map(|result| Some(result?.unwrap_or_else(crashed_point))).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
-        write_sweep(how.out, &report).map_err(Fault::writing)?;
+        write_sweep(how.out, &report)?;
         let [within, outside, amber, unjudged] = counts(&report.points);
         if how.json {
-            print(&sweep_json(&report).map_err(Fault::input)?)?;
+            print(&sweep_json(&report)?)?;
         } else {
             let [w, o, a, u] = [within, outside, amber, unjudged].map(|count| number::count(count as u64));
             let unjudged = if unjudged > 0 { format!(", {u} not judged") } else { String::new() };
@@ -129,6 +129,6 @@ impl Study for SweepStudy {
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
         let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.is_judged());
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
-        Ok(if is_red { ExitCode::from(RED) } else { ExitCode::SUCCESS })
+        Ok(if is_red { RED } else { ExitCode::SUCCESS })
     }
 }

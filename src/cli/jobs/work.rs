@@ -64,7 +64,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     }
     if summary.left > 0 {
         exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
-        return Ok(ExitCode::from(RED));
+        return Ok(RED);
     }
     Ok(ExitCode::SUCCESS)
 }
@@ -73,10 +73,9 @@ fn submit(plan: &Plan, options: &WorkOptions) -> Outcome {
     let program = env::current_exe().map_err(|error| Fault::input(format!("this program: {error}")))?;
     let asked = slurm::SubmitRequest { program: &program, again: options.resubmit, options: &options.sbatch };
     match slurm::submit(plan, &asked)? {
-        Some(job) => print(&format!("job {}: shards {} of {}\n", job.job, job.indexes, job.shards))?,
-        None => print("every missing task is queued or running\n")?,
+        Some(job) => print(&format!("job {}: shards {} of {}\n", job.job, job.indexes, job.shards)),
+        None => print("every missing task is queued or running\n"),
     }
-    Ok(ExitCode::SUCCESS)
 }
 
 fn words(summary: &Summary) -> String {
