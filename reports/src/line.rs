@@ -2,9 +2,42 @@
 
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::expect::ExpectedValue;
-use grainbench_harness::verdict::{ControlResult, Outcome, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 
 use crate::number;
+use crate::report::Report;
+
+/// Returns the lines of all results of a report with their reasons, and the number of results of each colour.
+#[must_use]
+pub fn results(report: &Report) -> String {
+    with_reasons(&report.verdicts().collect::<Vec<_>>(), verdict_in_section) + &counts(report)
+}
+
+/// Returns the number of results of each colour.
+#[must_use]
+pub fn counts(report: &Report) -> String {
+    let count = |severity| report.verdicts().filter(|row| row.outcome.severity() == severity).count();
+    let [pass, amber, fail] = [Severity::Green, Severity::Amber, Severity::Red].map(count);
+    format!("{pass} pass, {fail} fail, {amber} amber\n")
+}
+
+/// Returns the lines of results with their reasons. Consecutive results with the same reason share one line with it.
+#[must_use]
+pub fn with_reasons(rows: &[&Verdict], line: fn(&Verdict) -> String) -> String {
+    let mut text = String::new();
+    for group in rows.chunk_by(|a, b| (&a.because, &a.detail) == (&b.because, &b.detail)) {
+        let shares_detail = group.len() > 1;
+        for row in group {
+            let words = if shares_detail { line(&Verdict { detail: None, ..(*row).clone() }) } else { line(row) };
+            text.push_str(&format!("{:<12} {words}\n", row.outcome.word()));
+        }
+        let of_all = if shares_detail { format!("{} results: ", group.len()) } else { String::new() };
+        let detail = group[0].detail.as_deref().filter(|_| shares_detail);
+        let reasons: Vec<&str> = detail.into_iter().chain([group[0].because.as_str()]).collect();
+        text.push_str(&format!("{:<12} {of_all}{}\n", "", reasons.join("; ")));
+    }
+    text
+}
 
 /// Returns the line `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
 #[must_use]

@@ -3,7 +3,7 @@
 use super::exit::{Fault, Outcome, check_writable};
 use super::pattern;
 use super::provenance::provenance;
-use super::publish::{Output, add_reasons, publish};
+use super::publish::ReportArguments;
 use super::subject::{self, Variant};
 use super::value::{path_and_value, positive};
 use glob::Pattern;
@@ -12,7 +12,7 @@ use grainbench::check::{
     ConventionChoice, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, power_words, sentence,
 };
 use grainbench::harness::expect::ExpectedValue;
-use grainbench::harness::verdict::{self, Severity, Verdict};
+use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::observer::Names;
 use grainbench::reference::outputs::{Outputs, Sources, is_of_a_run};
 use grainbench::reference::read_start;
@@ -79,15 +79,8 @@ pub(crate) struct Arguments {
     /// times the work of the comparison, and `full` tries all changes.
     #[arg(long, value_name = "HOW", default_value = "limited", value_parser = ["off", "limited", "full"])]
     power: String,
-    /// Treat amber results as red.
-    #[arg(long)]
-    strict: bool,
-    /// Directory of the report.
-    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
-    out: PathBuf,
-    /// Print the results as JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 /// Checks one output or all outputs of a directory, and writes the report.
@@ -108,17 +101,16 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         }
         (None, None) => Vec::new(),
     };
-    check_writable(&arguments.out)?;
-    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), sections);
+    check_writable(&arguments.report.out)?;
+    let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), sections);
     // Each section needs at least one judged result about a quantity, because the coverage alone does not show that the
     // content is right.
     let is_told = report.sections.iter().all(|section| {
         let mut rows = section.verdicts.iter().skip(1);
         rows.any(|row| row.outcome.is_judged() && (row.value.is_some() || row.outcome.is_red()) && !is_of_power(row))
     });
-    add_reasons(&mut report, !is_told, arguments.strict);
-    let Arguments { out, json, strict, .. } = arguments;
-    publish(&report, &Output { text: Some(text(&report)), ..Output::new(out, *json, *strict) })
+    let text = text(&report);
+    arguments.report.publish(report, !is_told, Some(text))
 }
 
 /// Checks one output. Returns its section and the name of the output for the page.
@@ -132,7 +124,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         subject::tell_implied(&adapted.implied);
         let AdaptedScene { scene: mut own, moved, .. } = adapted;
         if let Some(StartFile { path, names }) = like() {
-            read_start(&path, &names, &mut own).map_err(Fault::input)?;
+            read_start(&path, &names, &mut own)?;
         }
         let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
         let unchanged = subject::scene(scene, &[]).ok().map(|(unchanged, _)| Box::new(unchanged));
@@ -158,7 +150,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         from_first: true,
         snapshot_steps: Vec::new(),
     };
-    let outputs = Outputs::survey(sources).map_err(Fault::input)?;
+    let outputs = Outputs::survey(sources)?;
     let power = match arguments.power.as_str() {
         "off" => Power::Off,
         "full" => Power::Full,
@@ -167,7 +159,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
     let Arguments { partial, allow_unstable, .. } = *arguments;
     let convention = ConventionChoice::by_name(&arguments.convention).unwrap_or_default();
     let options = Options { partial, allow_unstable, power, convention };
-    let section = judge(&subject, &outputs, options).map_err(Fault::input)?;
+    let section = judge(&subject, &outputs, options)?;
     Ok((section, outputs.name()))
 }
 
@@ -311,7 +303,8 @@ fn text(report: &Report) -> String {
         };
         let shown: Vec<&Verdict> = section.verdicts.iter().filter(|row| !is_zero(row)).collect();
         let (power, shown): (Vec<_>, Vec<_>) = shown.into_iter().partition(|row| is_of_power(row));
-        text.push_str(&with_reasons(&shown, if is_of_one_file { line::quantity } else { line::verdict_in_section }));
+        let line = if is_of_one_file { line::quantity } else { line::verdict_in_section };
+        text.push_str(&line::with_reasons(&shown, line));
         let name = |row: &Verdict| row.quantity.split(", ").next().unwrap_or_default().to_owned();
         let zeros: Vec<String> = section.verdicts.iter().filter(is_zero).map(name).collect();
         if !zeros.is_empty() {
@@ -324,36 +317,5 @@ fn text(report: &Report) -> String {
             text.push_str(&format!("{:<12} {}\n", row.outcome.word(), power_words(row)));
         }
     }
-    text + &counts(report)
-}
-
-/// Returns the number of results of each colour.
-fn counts(report: &Report) -> String {
-    let rows = report.sections.iter().flat_map(|section| &section.verdicts);
-    let count = |severity| rows.clone().filter(|row| row.outcome.severity() == severity).count();
-    let [pass, amber, fail] = [Severity::Green, Severity::Amber, Severity::Red].map(count);
-    format!("{pass} pass, {fail} fail, {amber} amber\n")
-}
-
-/// Returns the lines of results with their reasons. Consecutive results with the same reason share one line with it.
-fn with_reasons(rows: &[&Verdict], line: fn(&Verdict) -> String) -> String {
-    let mut text = String::new();
-    for group in rows.chunk_by(|a, b| (&a.because, &a.detail) == (&b.because, &b.detail)) {
-        let shares_detail = group.len() > 1;
-        for row in group {
-            let words = if shares_detail { line(&Verdict { detail: None, ..(*row).clone() }) } else { line(row) };
-            text.push_str(&format!("{:<12} {words}\n", row.outcome.word()));
-        }
-        let of_all = if shares_detail { format!("{} results: ", group.len()) } else { String::new() };
-        let detail = group.first().and_then(|row| row.detail.as_deref()).filter(|_| shares_detail);
-        let reasons = detail.into_iter().chain(group.first().map(|row| row.because.as_str()));
-        text.push_str(&format!("{:<12} {of_all}{}\n", "", reasons.collect::<Vec<_>>().join("; ")));
-    }
-    text
-}
-
-/// Returns a table of all results of a report, followed by the number of results of each colour.
-pub(crate) fn rows(report: &Report) -> String {
-    let rows: Vec<&Verdict> = report.sections.iter().flat_map(|section| &section.verdicts).collect();
-    with_reasons(&rows, line::verdict_in_section) + &counts(report)
+    text + &line::counts(report)
 }

@@ -1,9 +1,8 @@
 //! `grainbench compare`: compares the outputs of two runs.
 
-use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
-use super::publish::{Output, add_reasons, publish};
+use super::publish::ReportArguments;
 use super::value::{path_and_value, positive};
 use grainbench::harness::compare::peers::WIDE;
 use grainbench::harness::evidence::Evidence;
@@ -13,7 +12,7 @@ use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::harness::verdict::{self, Verdict};
 use grainbench::reference::comparison::{self, Comparison, Difference, Key};
 use grainbench::reference::observer::Names;
-use grainbench::reports::{Report, Section, number};
+use grainbench::reports::{Report, Section, line, number};
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -40,15 +39,8 @@ pub(crate) struct Arguments {
     /// are compared.
     #[arg(long)]
     partial: bool,
-    /// Treat amber results as red.
-    #[arg(long)]
-    strict: bool,
-    /// Directory of the report.
-    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
-    out: PathBuf,
-    /// Print the results as JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 /// Compares two outputs and writes the report.
@@ -67,17 +59,19 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         partial: arguments.partial,
     };
     let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(Fault::reading)?;
-    check_writable(&arguments.out)?;
+    check_writable(&arguments.report.out)?;
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];
-    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
+    let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
     let is_mute = !columns.any(|row| row.outcome.is_judged() && !is_label(row));
-    add_reasons(&mut report, is_mute, arguments.strict);
-    let text = Some(format!("{}{}\n", rows(&report), counts(&comparison)));
-    publish(&report, &Output { text, ..Output::new(&arguments.out, arguments.json, arguments.strict) })
+    let text = format!("{}{}\n", line::results(&report), counts(&comparison));
+    arguments.report.publish(report, is_mute, Some(text))
 }
+
+/// Reason of the results about values that only one output has.
+const ALONE: &str = "values in only one file are not compared";
 
 /// Columns that identify or describe grains, not their motion. If only these columns agree, nothing counts as compared.
 const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
@@ -100,6 +94,9 @@ fn names(arguments: &Arguments) -> [String; 2] {
 
 fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     let [a, b] = names(arguments);
+    let open = Verdict { solver: b.clone(), source: a.clone(), ..Verdict::open("compare", "", "1") };
+    let rows =
+        comparison.differences.iter().map(|difference| row(difference, comparison.key, arguments.tolerance, &open));
     Section {
         name: "compare".to_owned(),
         title: format!("{b} against {a}"),
@@ -113,15 +110,10 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
                rounding differences have grown."
             .to_owned(),
         figures: figure(&comparison.differences, comparison.key).into_iter().collect(),
-        verdicts: shared(comparison, arguments.partial, &a, &b)
+        verdicts: shared(comparison, arguments.partial, &open)
             .into_iter()
-            .chain(
-                comparison
-                    .differences
-                    .iter()
-                    .map(|difference| row(difference, comparison.key, arguments.tolerance, &a, &b)),
-            )
-            .chain(lonely(comparison, &a, &b))
+            .chain(rows)
+            .chain(lonely(comparison, [&a, &b], &open))
             .collect(),
         ..Section::default()
     }
@@ -136,17 +128,17 @@ fn counts(comparison: &Comparison) -> String {
 }
 
 /// Returns two results about the coverage: the number of compared samples, and the time or step of the last compared sample.
-fn shared(comparison: &Comparison, partial: bool, a: &str, b: &str) -> [Verdict; 2] {
+fn shared(comparison: &Comparison, partial: bool, open: &Verdict) -> [Verdict; 2] {
     let unit = if comparison.key == Key::Time { "s" } else { "1" };
     let row = |quantity: String, unit: &str, value: f64, least: f64, slack: f64| {
         let scale = if least > 0.0 { least } else { 1.0 };
         let row = Verdict {
-            solver: b.to_owned(),
+            quantity,
+            unit: unit.to_owned(),
             allowed: slack / scale,
-            because: "values in only one file are not compared".to_owned(),
+            because: ALONE.to_owned(),
             evidence: Evidence::Invariant,
-            source: a.to_owned(),
-            ..Verdict::open("compare", quantity, unit)
+            ..open.clone()
         };
         let row = row.judged(&Measurement::new(value, ExpectedValue::Bound(Bound::AtLeast(least)), scale));
         if row.outcome == verdict::Outcome::Fail && partial {
@@ -177,25 +169,20 @@ fn cut(comparison: &Comparison, row: Verdict) -> Verdict {
 }
 
 /// Returns one result for each column that exists in only one output.
-fn lonely(comparison: &Comparison, a: &str, b: &str) -> Vec<Verdict> {
+fn lonely(comparison: &Comparison, files: [&str; 2], open: &Verdict) -> Vec<Verdict> {
     let names =
-        comparison.lonely.iter().zip([a, b]).flat_map(|(names, file)| names.iter().map(move |name| (name, file)));
+        comparison.lonely.iter().zip(files).flat_map(|(names, file)| names.iter().map(move |name| (name, file)));
     let row = |(name, file): (&String, &str)| {
-        let row = Verdict {
-            solver: b.to_owned(),
-            because: "values in only one file are not compared".to_owned(),
-            source: a.to_owned(),
-            ..Verdict::open("compare", quantity(name), "1")
-        };
+        let row = Verdict { quantity: quantity(name), because: ALONE.to_owned(), ..open.clone() };
         row.left(verdict::Outcome::NoReference, format!("only {file} has this column"))
     };
     names.map(row).collect()
 }
 
-fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> Verdict {
+fn row(difference: &Difference, key: Key, tolerance: f64, row: &Verdict) -> Verdict {
     let open = difference.open / difference.scale;
     let row = Verdict {
-        solver: b.to_owned(),
+        quantity: quantity(&difference.name),
         allowed: tolerance + open,
         tolerance: ToleranceOrigin::Required,
         because: format!(
@@ -204,8 +191,7 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
             number::fraction(open)
         ),
         evidence: Evidence::OtherCode,
-        source: a.to_owned(),
-        ..Verdict::open("compare", quantity(&difference.name), "1")
+        ..row.clone()
     };
     let first = difference.course.iter().find(|sample| sample.beyond_digits / difference.scale > tolerance);
     let row = row.judged(&Measurement::new(difference.second, difference.first, difference.scale));
@@ -221,18 +207,12 @@ fn row(difference: &Difference, key: Key, tolerance: f64, a: &str, b: &str) -> V
 /// Plots the differences over time or step.
 fn figure(differences: &[Difference], key: Key) -> Option<Figure> {
     const MOST: usize = 6;
-    let mut curves = Vec::new();
-    for difference in differences {
-        let points: Vec<(f64, f64)> = difference
-            .course
-            .iter()
-            .filter(|sample| sample.off > 0.0 && sample.off.is_finite())
-            .map(|sample| (sample.at, sample.off / difference.scale))
-            .collect();
-        if !points.is_empty() && curves.len() < MOST {
-            curves.push(Curve::new(&difference.name, Stroke::Line, points));
-        }
-    }
+    let curve = |difference: &Difference| {
+        let samples = difference.course.iter().filter(|sample| sample.off > 0.0 && sample.off.is_finite());
+        let points: Vec<(f64, f64)> = samples.map(|sample| (sample.at, sample.off / difference.scale)).collect();
+        (!points.is_empty()).then(|| Curve::new(&difference.name, Stroke::Line, points))
+    };
+    let curves: Vec<Curve> = differences.iter().filter_map(curve).take(MOST).collect();
     (!curves.is_empty()).then(|| {
         Figure::graph(
             "differences",

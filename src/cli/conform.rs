@@ -5,11 +5,10 @@ use super::claims::tasks::ClaimTasks;
 use super::cores::at_once;
 use super::exit::{Fault, Outcome, check_writable};
 use super::provenance::provenance;
-use super::publish::{Output, add_reasons, publish};
+use super::publish::ReportArguments;
 use grainbench::cases::solvers;
 use grainbench::jobs::execute::in_memory;
 use grainbench::reports::Report;
-use std::path::PathBuf;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -17,21 +16,14 @@ pub(crate) struct Arguments {
     /// Names or manifests of solvers. Default: all built-in solvers.
     #[arg(value_name = "NAME|SOLVER.toml")]
     solver: Vec<String>,
-    /// Treat amber results as red.
-    #[arg(long)]
-    strict: bool,
-    /// Directory of the report.
-    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
-    out: PathBuf,
-    /// Print the results as JSON instead of a table.
-    #[arg(long)]
-    json: bool,
+    #[command(flatten)]
+    report: ReportArguments,
 }
 
 /// Tests the conformance properties of the solvers and writes the report.
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
-    check_writable(&arguments.out)?;
+    check_writable(&arguments.report.out)?;
     let owing = owing(&arguments.solver)?;
     if owing.is_empty() {
         let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
@@ -42,7 +34,6 @@ pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let results = in_memory(&tasks, &tasks.order(), at_once(1), &(), &|_| {});
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());
-    let mut report = Report::new(provenance(words, start.elapsed().as_secs_f64()), tasks.sections(results));
-    add_reasons(&mut report, false, arguments.strict);
-    publish(&report, &Output::new(&arguments.out, arguments.json, arguments.strict))
+    let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), tasks.sections(results));
+    arguments.report.publish(report, false, None)
 }

@@ -8,8 +8,31 @@ use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
 use grainbench::reports::{Headline, Report, summary_table_within, write_report, write_report_and_parquet};
 use grainbench::store::StagedDir;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
+
+/// Options for the report of `check`, `compare` and `conform`.
+#[derive(Clone, clap::Args)]
+pub(crate) struct ReportArguments {
+    /// Treat amber results as red.
+    #[arg(long)]
+    strict: bool,
+    /// Directory of the report.
+    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
+    pub(crate) out: PathBuf,
+    /// Print the results as JSON instead of a table.
+    #[arg(long)]
+    json: bool,
+}
+
+impl ReportArguments {
+    /// Writes and prints a report, and returns the exit code. If `is_mute` is true, nothing was judged. The default of `text`
+    /// is the summary of the results.
+    pub(crate) fn publish(&self, mut report: Report, is_mute: bool, text: Option<String>) -> Outcome {
+        add_reasons(&mut report, is_mute, self.strict);
+        publish(&report, &Output { text, ..Output::new(&self.out, self.json, self.strict) })
+    }
+}
 
 /// Directory and form of a report.
 pub(crate) struct Output<'a> {

@@ -1,6 +1,5 @@
 //! `grainbench reference`: makes and verifies stored runs of other programs, and updates stored results and estimates.
 
-use super::check::rows;
 use super::exit::{Fault, Outcome, check_writable, print, say};
 use super::fetch::{Fetch, fetch};
 use super::kept_runs::{KeepArguments, keep};
@@ -14,7 +13,7 @@ use grainbench::cases::{Case, runner};
 use grainbench::harness::run::Set;
 use grainbench::harness::tolerance::ToleranceOrigin;
 use grainbench::reference::stored::{folder, make};
-use grainbench::reports::{Report, Section};
+use grainbench::reports::{Report, Section, line};
 use grainbench::solver::failure::RunError;
 use grainbench::store::{StagedDir, write_file};
 use grainbench::verify::verify as compare;
@@ -203,5 +202,8 @@ fn verify(arguments: &Verify) -> Outcome {
     };
     let words = [vec!["reference verify".to_owned()], arguments.ids.clone()].concat();
     let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
-    publish(&report, &Output { text: Some(rows(&report)), ..Output::new(&arguments.out, arguments.json, false) })
+    publish(
+        &report,
+        &Output { text: Some(line::results(&report)), ..Output::new(&arguments.out, arguments.json, false) },
+    )
 }
