@@ -2,7 +2,7 @@
 
 use super::cache;
 use super::claims::tasks::ClaimTasks;
-use super::claims::{ClaimOptions, narrow, report, words};
+use super::claims::{ClaimOptions, narrow, report};
 use super::cores::at_once;
 use super::earlier::EarlierReport;
 use super::exit::{self, Fault, Outcome, RED, check_writable};
@@ -104,7 +104,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     }
     check_writable(&options.out)?;
     let is_whole = cases.is_empty() && options.filter.is_empty() && !options.retry_failed;
-    let tasks = ClaimTasks::new(selected, options, is_whole)?.cached(cache::open(options.no_cache));
+    let tasks = ClaimTasks::new(cases, selected, options, is_whole)?.cached(cache::open(options.no_cache));
     let selected = &tasks.selected;
     let kept = if options.expect_stored { Some(keep::read(keep::program(selected)?)?) } else { None };
     if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.update_stored) {
@@ -115,7 +115,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let results = perform(&tasks, options);
     let left = results.iter().filter(|result| result.is_none()).count();
     let sections = tasks.sections(results);
-    let mut words = words(cases, options);
+    let mut words = tasks.words.clone();
     if left > 0 {
         let kept = if tasks.cache().is_some() { ", and the next run continues with the finished runs" } else { "" };
         let what = format!("interrupted: {left} checks were omitted; the report contains the finished checks{kept}");
@@ -123,11 +123,10 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
         words.push(interrupted(left));
     }
     if let Some(cache) = tasks.cache() {
-        cache.make_room();
         words.extend(cache::words(cache));
     }
     let provenance = provenance(words, start.elapsed().as_secs_f64());
-    let mut report = report(provenance, sections, is_whole && options.solver.is_empty())?;
+    let mut report = report(provenance, sections, tasks.is_whole)?;
     if let Some(program) = keeping {
         if left > 0 {
             return Err(Fault::input(format!("--update-stored: expected a whole run, found {left} checks left out")));

@@ -15,7 +15,7 @@ use std::sync::Arc;
 use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Solvers that a command line names.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct NamedSolvers {
     strangers: Vec<Arc<ExternalProgram>>,
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier

@@ -138,17 +138,19 @@ impl RunCache {
             let _ = self.runs.put::<RunFile>(name, record);
         }
     }
-
-    /// Removes the least recently used files until the remaining files do not exceed the maximum size.
-    pub fn make_room(&self) {
-        self.runs.make_room::<RunFile>(self.most);
-    }
 }
 
 /// Solvers with a cache of finished runs.
 pub struct CachingSolvers<S> {
     solvers: S,
     cache: Arc<RunCache>,
+}
+
+impl<S> Drop for CachingSolvers<S> {
+    /// Removes the least recently used files until the remaining files do not exceed the maximum size.
+    fn drop(&mut self) {
+        self.cache.runs.make_room::<RunFile>(self.cache.most);
+    }
 }
 
 impl<S: Solvers> CachingSolvers<S> {

@@ -298,16 +298,18 @@ impl Sweep {
 
     /// Runs the task with the given index.
     #[must_use]
-    pub fn run(&self, place: usize, solvers: &[Option<Arc<dyn Solver>>]) -> (State, PointOutput) {
+    pub fn run(&self, place: usize, solvers: &dyn Solvers, names: &[String]) -> (State, PointOutput) {
         let broken = |why: String| failed(why, Outcome::Broken, self.looks.len());
         let Some((point, level)) = self.place(place) else { return broken("the sweep has no such point".to_owned()) };
-        let Some(solver) = &solvers[level.asked] else { return broken("there is no such solver".to_owned()) };
+        let Some(solver) = solvers.find(&names[level.asked]) else {
+            return broken("there is no such solver".to_owned());
+        };
         let source = self.source(&self.set(level, point));
         let scene = match source.scene(&read_grains) {
             Ok(scene) => Arc::new(scene),
             Err(error) => return broken(error.to_string()),
         };
-        match self.ran(&scene, &level.resolution, &**solver) {
+        match self.ran(&scene, &level.resolution, &*solver) {
             Err(error) => failed(error.to_string(), Outcome::from(&error), self.looks.len()),
             Ok((record, timings)) => {
                 let ran = ran(&record);

@@ -1,9 +1,22 @@
-//! Tasks of `run` and `conform`: claims with their controls, figures of cases, and conformance properties.
+//! Tasks of `run` and `conform`, in memory or from a plan: one for each claim with its negative control, one for the
+//! figures of each case, and one for the conformance of each solver.
 
 use super::ClaimOptions;
 use super::conformance::{self as conform, ConformingSolver};
-use crate::cli::select::CaseSelection;
-use crate::cli::{cache, exit};
+use crate::cli::cache;
+use crate::cli::exit::{self, Fault, Outcome};
+use crate::cli::filter::Filters;
+use crate::cli::jobs::arguments::Arguments;
+use crate::cli::jobs::study::{ReportOptions, Study, Tasks, check_ids};
+use crate::cli::provenance::provenance;
+use crate::cli::publish::{Output, add_reasons, publish};
+use crate::cli::select::{self, CaseSelection};
+use crate::cli::solver::is_manifest;
+use crate::cli::strangers::NamedSolvers;
+use grainbench::cases::registry::CASES;
+use grainbench::cases::solvers::{Registry, is_program};
+use grainbench::cases::{folder, stored};
+use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
 use grainbench::harness::figure::Figure;
@@ -13,26 +26,45 @@ use grainbench::harness::runner::{Runner, RunnerOptions};
 use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict;
 use grainbench::jobs::execute::{ResultSink, TaskList};
+use grainbench::jobs::plan::Plan;
+use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::{RunCost, Section};
 use grainbench::solver::Solver;
 use grainbench::solver::failure::RunError;
+use grainbench::store::key;
 use grainbench::store::log::State;
+use grainbench::studies::cost::knobs::nominal_seconds;
 use grainbench::studies::run_cache::RunCache;
-use std::collections::HashSet;
+use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::PathBuf;
 use std::sync::{Arc, OnceLock};
+
+/// Expected duration of the figures of a case, without their runs (s).
+const FIGURES: f64 = 0.5;
+/// Expected duration of the conformance tests of one solver (s).
+const CONFORMANCE: f64 = 2.0;
+/// Expected duration of loading a stored result (s).
+const KEPT: f64 = 0.1;
+/// Expected duration of starting an external program (s).
+const START: f64 = 0.5;
 
 /// Claims of cases and conformance properties of solvers. Tasks of the same case share finished runs.
 pub(crate) struct ClaimTasks {
     pub(crate) selected: Vec<CaseSelection>,
     /// Solvers whose conformance properties are tested.
-    pub(crate) conforming: Vec<ConformingSolver>,
+    conforming: Vec<ConformingSolver>,
     /// True to run the negative controls.
-    pub(crate) controls: bool,
+    controls: bool,
     /// True to run external programs even if a stored run exists.
-    pub(crate) live: bool,
+    live: bool,
     /// True to run all resolution levels.
-    pub(crate) thorough: bool,
+    thorough: bool,
+    /// True if the tasks cover the whole registry with all solvers.
+    pub(crate) is_whole: bool,
+    /// Options for the report, in words.
+    pub(crate) words: Vec<String>,
+    /// External solvers that a plan names.
+    strangers: NamedSolvers,
     data: Option<PathBuf>,
     threads: usize,
     /// All tasks in the order of the report.
@@ -44,7 +76,7 @@ pub(crate) struct ClaimTasks {
 
 /// Task of a run. The numbers are indices of the case, of the claim within the case, and of the solver.
 #[derive(Clone, Copy)]
-pub(crate) enum ClaimTask {
+enum ClaimTask {
     /// A claim and its control.
     Claim(usize, usize),
     /// Figures of a case.
@@ -54,13 +86,34 @@ pub(crate) enum ClaimTask {
 }
 
 impl ClaimTasks {
-    /// Returns the tasks of the selected claims. The conformance of solvers is included if the whole registry is
-    /// selected (`is_whole`) at its default levels or at all levels.
+    /// Returns the tasks of a plan.
+    pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Self, Fault> {
+        let Arguments { cases, solver, levels, filter, no_controls, live, .. } = arguments.clone();
+        let options = ClaimOptions { solver, levels, filter, no_controls, live, threads: 1, ..ClaimOptions::default() };
+        let filters = Filters::read(&options.filter)?;
+        if !filters.outcomes().is_empty() {
+            return Err(Fault::input(
+                "--filter: expected quantity, source or evidence (`outcome` is unknown before the \
+                                     run)",
+            ));
+        }
+        let mut selected = select::select(&cases, &options.solver, &options.levels)?;
+        super::narrow(&mut selected, &options, &filters, None)?;
+        let is_whole = cases.is_empty() && options.filter.is_empty();
+        let tasks = Self::new(&cases, selected, &options, is_whole)?.cached(cache::open(false));
+        let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
+        let (strangers, _) = NamedSolvers::read_for(&manifests, true)?;
+        Ok(Self { strangers, ..tasks })
+    }
+
+    /// Returns the tasks of the selected claims of the named cases. The conformance of solvers is included if the whole
+    /// registry is selected (`is_whole`) at its default levels or at all levels.
     pub(crate) fn new(
+        cases: &[String],
         selected: Vec<CaseSelection>,
         options: &ClaimOptions,
         is_whole: bool,
-    ) -> Result<Self, exit::Fault> {
+    ) -> Result<Self, Fault> {
         let thorough = options.levels.iter().any(|level| level == "all");
         let conforms = is_whole && (options.levels.is_empty() || thorough);
         let conforming = if conforms { conform::owing(&options.solver)? } else { Vec::new() };
@@ -70,6 +123,8 @@ impl ClaimTasks {
             thorough,
             data: options.data.clone(),
             threads: usize::from(options.threads),
+            is_whole: is_whole && options.solver.is_empty(),
+            words: super::words(cases, options),
             ..Self::with(selected, conforming)
         })
     }
@@ -89,6 +144,9 @@ impl ClaimTasks {
             controls: true,
             live: false,
             thorough: false,
+            is_whole: false,
+            words: Vec::new(),
+            strangers: NamedSolvers::default(),
             data: None,
             threads: 1,
             cache: None,
@@ -104,11 +162,6 @@ impl ClaimTasks {
     /// Returns the cache of finished runs.
     pub(crate) const fn cache(&self) -> Option<&Arc<RunCache>> {
         self.cache.as_ref()
-    }
-
-    /// Returns all tasks in the order of the report.
-    pub(crate) fn all(&self) -> &[ClaimTask] {
-        &self.all
     }
 
     /// Returns the indices of all tasks in the order of their execution. Claims that need a new run come first, and claims
@@ -133,7 +186,7 @@ impl ClaimTasks {
     }
 
     /// Returns the name of the case or solver to which a task belongs.
-    pub(crate) fn name(&self, task: ClaimTask) -> String {
+    fn name(&self, task: ClaimTask) -> String {
         match task {
             ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => self.selected[case].case.name.to_owned(),
             ClaimTask::Conformance(solver) => self.conforming[solver].solver.name(),
@@ -141,7 +194,7 @@ impl ClaimTasks {
     }
 
     /// Returns a runner for the selected case with index `case`, set up by the command's options.
-    pub(crate) fn runner(&self, case: usize) -> &Runner {
+    fn runner(&self, case: usize) -> &Runner {
         self.runners[case].get_or_init(|| self.new_runner(case))
     }
 
@@ -222,7 +275,109 @@ impl TaskList for ClaimTasks {
     }
 }
 
+impl Tasks for ClaimTasks {
+    fn is_timed(&self) -> bool {
+        false
+    }
+
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        self.planned(program, true)
+    }
+
+    fn inputs(&self) -> BTreeMap<String, String> {
+        // If a folder cannot be read, the error is reported when the tasks are listed.
+        let files = self.selected.iter().flat_map(|selected| files_of(selected).unwrap_or_default());
+        let mut inputs = self.strangers.inputs();
+        inputs.extend(files.map(|path| (path.display().to_string(), key::of_file(&path))));
+        inputs
+    }
+
+    fn check(&self, plan: &Plan) -> Result<(), Fault> {
+        check_ids(plan, &self.planned(&plan.head.program, false)?)
+    }
+}
+
+impl Study for ClaimTasks {
+    fn report(&self, results: Vec<Option<Result<Section, String>>>, how: &ReportOptions<'_>) -> Outcome {
+        let sections = self.sections(results);
+        let words = self.words.iter().chain(&how.words).cloned().collect();
+        let mut report = super::report(provenance(words, how.seconds), sections, self.is_whole)?;
+        report.red_because.extend(how.unfinished.clone());
+        add_reasons(&mut report, false, how.strict);
+        publish(&report, &Output { parquet: how.parquet, ..Output::new(how.out, how.json, how.strict) })
+    }
+}
+
 impl ClaimTasks {
+    /// Returns the tasks of a plan in the order of the report. Expected durations need the scenes of all claims, so they
+    /// are omitted without `has_seconds`.
+    fn planned(&self, program: &str, has_seconds: bool) -> Result<Vec<Task>, Fault> {
+        let mut tasks = Vec::new();
+        let mut seen: HashMap<String, usize> = HashMap::new();
+        let settings = format!("{} {} {}", !self.controls, self.live, self.thorough);
+        for (at, selected) in self.selected.iter().enumerate() {
+            let stranger = match &selected.stranger {
+                Some(outside) => outside.edition().map_err(Fault::input)?,
+                None => String::new(),
+            };
+            let case = selected.case.name;
+            let content: Vec<String> = files_of(selected)?.iter().map(|path| key::of_file(path)).collect();
+            let content = content.join(" ");
+            let mut rows = String::new();
+            for claim in &selected.claims {
+                let runs = claim.runs.iter().map(Run::key).collect::<Vec<_>>().join("|");
+                let programs = self.programs(selected.case, claim);
+                let words =
+                    format!("{case}|{content}|{stranger}|{programs}|{runs}|{}|{}", claim.quantity, claim.control.name);
+                // Two claims may have equal descriptions, so their ids contain a number.
+                let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
+                rows += &words;
+                let (variant, ours) = claim.runs.first().map_or(("", ""), |run| (run.variant, run.solver));
+                let solver = selected.stranger.as_ref().map_or(ours, |stranger| &stranger.manifest().name);
+                let seconds = if has_seconds { self.seconds(self.runner(at), claim) } else { 0.0 };
+                tasks.push(Task {
+                    scene: format!("{case}/{variant}"),
+                    solver: solver.to_owned(),
+                    level: claim.resolution(),
+                    what: claim.quantity.clone(),
+                    ..Task::new(Id::of_words(program, &["row", &words, &number.to_string(), &settings]), seconds)
+                });
+            }
+            tasks.push(Task {
+                scene: case.to_owned(),
+                what: "figures".to_owned(),
+                ..Task::new(Id::of_words(program, &["figures", &rows, &settings]), FIGURES)
+            });
+        }
+        for conforming in &self.conforming {
+            let solver = conforming.solver.name();
+            let id = Id::of_words(program, &["owed", &solver, &self.strangers.edition(&solver)]);
+            let what = "conformance properties".to_owned();
+            tasks.push(Task { scene: "conformance".to_owned(), solver, what, ..Task::new(id, CONFORMANCE) });
+        }
+        Ok(tasks)
+    }
+
+    /// Returns the hashes of the installed programs that a claim runs. A stored run needs no program.
+    fn programs(&self, case: &Case, claim: &Claim) -> String {
+        let runs = claim.runs.iter().filter(|run| self.live || !stored::exists(case, run));
+        runs.map(|run| Registry.edition(run.solver)).collect::<Vec<_>>().join(" ").trim().to_owned()
+    }
+
+    /// Estimates the duration of a claim with its negative control (s).
+    fn seconds(&self, runner: &Runner, claim: &Claim) -> f64 {
+        let once = |run: &Run| {
+            let start = if is_program(run.solver) { START } else { 0.0 };
+            if run.kept && !self.thorough {
+                return KEPT;
+            }
+            let scene = runner.scene(run);
+            start + scene.map_or(0.0, |scene| nominal_seconds(&scene, &run.resolution))
+        };
+        let all: f64 = claim.runs.iter().map(once).sum();
+        if self.controls { 2.0 * all } else { all }
+    }
+
     /// Judges a claim and its negative control.
     fn claim(&self, case: usize, claim: usize) -> (State, Section) {
         let (claim, runner) = (&self.selected[case].claims[claim], self.runner(case));
@@ -247,6 +402,14 @@ impl ClaimTasks {
         let state = if omitted.is_some() { State::Failed } else { State::Done };
         (state, Section { figures, omitted, runs: runs(runner, |_| true), ..Section::default() })
     }
+}
+
+/// Returns the files that the results of a case depend on; none if the case is built in.
+fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
+    if CASES.iter().any(|case| std::ptr::eq(*case, selected.case)) {
+        return Ok(Vec::new());
+    }
+    Ok(folder::files(&selected.case.directory())?)
 }
 
 /// Returns the cost of the finished runs that `is_meant` selects by their keys.

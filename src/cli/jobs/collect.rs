@@ -1,9 +1,8 @@
 //! `report` of a plan. The report contains the results of all finished tasks, as if one machine had run them.
 
 use super::arguments::Arguments as Planned;
-use super::enter;
-use super::kinds::from_arguments;
 use super::study::ReportOptions;
+use super::{enter, from_arguments};
 use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
 use grainbench::jobs::plan::Plan;
 use grainbench::reports::trend::{Column, write_trend};

@@ -2,7 +2,7 @@
 
 use super::arguments::{Arguments, StudyOptions};
 use super::collect::progress;
-use super::kinds::from_arguments;
+use super::from_arguments;
 use super::study::{ReportOptions, plan_of};
 use super::watch::Follower;
 use super::work::worker;

@@ -2,23 +2,39 @@
 //! Commands for plans: `--plan DIR`, `run --resume DIR` and `report DIR`.
 
 pub(crate) mod arguments;
-mod claims;
 pub(crate) mod collect;
 mod cost;
 mod effects;
 pub(crate) mod here;
-mod kinds;
 pub(crate) mod plan;
 mod stability;
 pub(crate) mod status;
-mod study;
+pub(crate) mod study;
 mod sweep;
 pub(crate) mod watch;
 pub(crate) mod work;
 
+use super::claims::tasks::ClaimTasks;
 use super::exit::Fault;
+use arguments::Arguments;
+use cost::CostStudy;
+use effects::EffectStudy;
 use grainbench::jobs::plan::Plan;
+use stability::StabilityStudy;
 use std::path::Path;
+use study::AnyStudy;
+use sweep::SweepStudy;
+
+/// Returns the study of the kind that the arguments name. If `is_shared` is true, several processes may run its tasks.
+fn from_arguments(arguments: &Arguments, is_shared: bool) -> Result<Box<dyn AnyStudy>, Fault> {
+    Ok(match arguments.what.as_str() {
+        "run" => Box::new(ClaimTasks::from_arguments(arguments)?),
+        "cost" => Box::new(CostStudy::new(arguments, is_shared)?),
+        "stability" => Box::new(StabilityStudy::new(arguments, is_shared)?),
+        "effects" => Box::new(EffectStudy::new(arguments)?),
+        file => Box::new(SweepStudy::new(file)?),
+    })
+}
 
 /// Reads a plan and changes to the directory in which the plan was made, because paths in the plan are relative to it.
 /// The path of the plan becomes absolute.

@@ -1,7 +1,7 @@
 //! `--plan DIR`: writes a plan as a file with one task per line.
 
 use super::arguments::Arguments;
-use super::kinds::from_arguments;
+use super::from_arguments;
 use super::study::plan_of;
 use crate::cli::exit::{Fault, Outcome, print, print_json};
 use grainbench::jobs::plan::{Head, Plan, check_place};

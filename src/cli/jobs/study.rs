@@ -29,13 +29,13 @@ pub(crate) trait Tasks: Sync {
     }
     /// Returns an error if the cases or programs have changed since the plan was written.
     fn check(&self, plan: &Plan) -> Result<(), Fault> {
-        let tasks = self.tasks(&plan.head.program)?;
-        is_plan(plan, tasks.iter().map(|task| task.id).eq(plan.tasks.iter().map(|task| task.id)))
+        check_ids(plan, &self.tasks(&plan.head.program)?)
     }
 }
 
 /// Returns an error if a plan has other tasks.
-pub(super) fn is_plan(plan: &Plan, is_same: bool) -> Result<(), Fault> {
+pub(crate) fn check_ids(plan: &Plan, tasks: &[Task]) -> Result<(), Fault> {
+    let is_same = tasks.iter().map(|task| task.id).eq(plan.tasks.iter().map(|task| task.id));
     let path = plan.path.display();
     let message = "the cases or programs have changed; write the plan again, unchanged tasks stay finished";
     if is_same { Ok(()) } else { Err(Fault::input(format!("{path}: {message}"))) }

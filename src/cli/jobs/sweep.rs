@@ -6,6 +6,7 @@ use crate::cli::exit::{Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
+use grainbench::harness::solvers::Solvers;
 use grainbench::harness::verdict;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::plan::Plan;
@@ -13,17 +14,12 @@ use grainbench::jobs::sweep::Sweep;
 use grainbench::jobs::task::Task;
 use grainbench::reports::number;
 use grainbench::reports::sweep::{PointOutput, QuantityResult, counts, sweep_json, write_sweep};
-use grainbench::solver::Solver;
 use grainbench::store::key;
 use grainbench::store::log::State;
-use grainbench::studies::run_cache::RunCache;
 use std::collections::BTreeMap;
 use std::path::Path;
 use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
-
-/// Solvers in the order of the sweep file; `None` for a solver that is not available.
-type FoundSolvers = Vec<Option<Arc<dyn Solver>>>;
 
 /// Sweep over parameters, with its solvers.
 pub(crate) struct SweepStudy {
@@ -34,10 +30,8 @@ pub(crate) struct SweepStudy {
     /// Solver names in the results.
     names: Vec<String>,
     solvers: NamedSolvers,
-    /// Cache of finished runs, opened with the first run. Timed tasks never use it.
-    cache: OnceLock<Option<Arc<RunCache>>>,
-    /// Solvers in the order of the sweep file, which use the cache.
-    found: OnceLock<FoundSolvers>,
+    /// Solvers that use the cache of finished runs, which is opened with the first run. Timed tasks never use it.
+    cached: OnceLock<Arc<dyn Solvers>>,
 }
 
 impl SweepStudy {
@@ -51,15 +45,7 @@ impl SweepStudy {
         let place = |name: String| if is_manifest(&name) { beside.join(name).display().to_string() } else { name };
         let asked: Vec<String> = sweep.solvers().into_iter().map(place).collect();
         let (solvers, names) = NamedSolvers::read_for(&asked, true)?;
-        Ok(Self { path: file.to_owned(), sweep, asked, names, solvers, cache: OnceLock::new(), found: OnceLock::new() })
-    }
-
-    fn found(&self) -> &[Option<Arc<dyn Solver>>] {
-        self.found.get_or_init(|| {
-            let cache = self.cache.get_or_init(|| if self.is_timed() { None } else { cache::open(false) });
-            let solvers = cache::with(self.solvers.clone(), cache.as_ref());
-            self.names.iter().map(|name| solvers.find(name)).collect()
-        })
+        Ok(Self { path: file.to_owned(), sweep, asked, names, solvers, cached: OnceLock::new() })
     }
 }
 
@@ -93,15 +79,11 @@ impl TaskList for SweepStudy {
     type Output = PointOutput;
 
     fn perform(&self, place: usize, _: &ResultSink<'_, PointOutput>) -> (State, PointOutput) {
-        self.sweep.run(place, self.found())
-    }
-}
-
-impl Drop for SweepStudy {
-    fn drop(&mut self) {
-        if let Some(Some(cache)) = self.cache.get() {
-            cache.make_room();
-        }
+        let solvers = self.cached.get_or_init(|| {
+            let cache = if self.is_timed() { None } else { cache::open(false) };
+            cache::with(self.solvers.clone(), cache.as_ref())
+        });
+        self.sweep.run(place, &**solvers, &self.names)
     }
 }
 

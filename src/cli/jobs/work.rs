@@ -1,9 +1,8 @@
 //! `run --resume DIR`: runs the tasks of a plan or of a shard, on this machine or through a batch system.
 
 use super::arguments::Arguments as Planned;
-use super::enter;
-use super::kinds::from_arguments;
 use super::watch::Follower;
+use super::{enter, from_arguments};
 use crate::cli::cores::cores;
 use crate::cli::exit::{self, Fault, Outcome, RED, print};
 use crate::cli::provenance::provenance;
