@@ -3,16 +3,16 @@
 use super::exit::{Fault, Outcome, check_writable};
 use super::interrupt::Interrupt;
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
+use super::jobs::here::plan_or_perform;
 use super::own;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
 use super::solver;
 use super::step::Step;
-use super::subject::{self, SelectedVariants, selected};
+use super::subject;
 use super::value::{duration, positive};
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::case::Case;
 use grainbench::harness::solvers::Solvers as _;
 use grainbench::reports::number;
 use grainbench::reports::study::Study;
@@ -22,13 +22,10 @@ use grainbench::scene::method::Method;
 use grainbench::solver::resolution::Resolution;
 use grainbench::store::artifact::{Directory, Json};
 use grainbench::store::key;
-use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
 use grainbench::studies::effects::scene::StudyInput;
 use grainbench::studies::own::within::Within;
 use grainbench::studies::run_cache::key_of_run;
 use std::path::PathBuf;
-use std::process::ExitCode;
-use std::sync::Arc;
 use std::time::{Duration, Instant};
 
 #[derive(clap::Args)]
@@ -42,7 +39,7 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "DIR", default_value = "grainbench-effects")]
     out: PathBuf,
     #[command(flatten)]
-    pub(crate) study: StudyOptions,
+    study: StudyOptions,
 }
 
 /// Options for a scene file.
@@ -89,19 +86,19 @@ impl SceneOptions {
 
 impl Arguments {
     /// Returns the arguments of the study of cases.
-    pub(crate) fn planned(&self) -> Planned {
+    fn planned(&self) -> Planned {
         Planned { what: "effects".to_owned(), cases: self.cases.clone(), out: self.out.clone(), ..Planned::default() }
     }
 }
 
-/// Tests the effects of a scene file, or of the scene of a folder without claims; returns `None` if the arguments name neither.
-pub(crate) fn scene_file(arguments: &Arguments) -> Result<Option<ExitCode>, Fault> {
+/// Tests the effects in the named cases, of a scene file, or of the scene of a folder without claims.
+pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     let named = if own::folder(&arguments.cases)?.is_some() { None } else { own::scene(&arguments.cases)? };
     if let Some(scene) = named {
         if arguments.study.plan.is_given() {
             return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
         }
-        return of_scene(&scene, arguments).map(Some);
+        return of_scene(&scene, arguments);
     }
     if !arguments.yours.is_usual() {
         let found = "found no scene file: a case sets its own solvers, steps and quantities";
@@ -109,7 +106,7 @@ pub(crate) fn scene_file(arguments: &Arguments) -> Result<Option<ExitCode>, Faul
             "--solver, --time-step, --time-step-fraction, --matters, --budget: expected a scene file with them, {found}"
         )));
     }
-    Ok(None)
+    plan_or_perform(&arguments.planned(), &arguments.study, None)
 }
 
 /// Tests the effects of a scene file. Finished effects are stored, so that a stopped study continues.
@@ -211,19 +208,4 @@ fn scale_words(matters: f64, is_chaotic: bool, left_out: &[&str]) -> String {
         text += &format!("no time was left for: {}; a larger --budget tests them\n", left_out.join(", "));
     }
     text
-}
-
-/// Returns the study of each named case, with the effects to test.
-pub(crate) fn ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
-    if let Some(case) = own::folder(names)? {
-        let ledger = Ledger::new(case, Arc::new(Registry));
-        let pieces = ledger.pieces();
-        return Ok(vec![(ledger, pieces)]);
-    }
-    let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
-        let ledger = Ledger::new(case, Arc::new(Registry));
-        let pieces = ledger.pieces().into_iter().filter(|piece| variants.contain(piece.variant)).collect();
-        (ledger, pieces)
-    };
-    Ok(selected(names)?.into_iter().map(of_case).collect())
 }

@@ -50,7 +50,6 @@ mod value;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::Fault;
 use grainbench::lanes::Processor;
-use jobs::here::plan_or_perform as study;
 use std::process::ExitCode;
 
 /// Version of the program, and the commit from which it is built.
@@ -182,18 +181,9 @@ pub(crate) fn main() -> ExitCode {
         Command::Check(arguments) => check::check(&arguments),
         Command::Fields(arguments) => fields::fields(&arguments),
         Command::Compare(arguments) => compare::compare(&arguments),
-        Command::Cost(arguments) => arguments.own_scene().and_then(|own| match own {
-            Some(code) => Ok(code),
-            None => study(&arguments.planned(), &arguments.study, arguments.against.as_deref()),
-        }),
-        Command::Stability(arguments) => arguments.own_scene().and_then(|own| match own {
-            Some(code) => Ok(code),
-            None => study(&arguments.planned(), &arguments.study, None),
-        }),
-        Command::Effects(arguments) => effects::scene_file(&arguments).and_then(|own| match own {
-            Some(code) => Ok(code),
-            None => study(&arguments.planned(), &arguments.study, None),
-        }),
+        Command::Cost(arguments) => cost::cost(&arguments),
+        Command::Stability(arguments) => stability::stability(&arguments),
+        Command::Effects(arguments) => effects::effects(&arguments),
         Command::Race(arguments) => race::race(&arguments),
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),

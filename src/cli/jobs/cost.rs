@@ -2,24 +2,28 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::cost;
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
 use crate::cli::strangers::NamedSolvers;
+use crate::cli::subject::selected;
+use grainbench::cases::registry;
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::subject::TargetQuantity;
+use grainbench::harness::case::Case;
+use grainbench::harness::subject::{TargetQuantity, of_each_variant};
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::load::Load;
 use grainbench::reports::study::point::{Point, PointStatus};
-use grainbench::reports::study::points_of;
 use grainbench::reports::study::step::Model;
+use grainbench::reports::study::{Study as Report, points_of};
 use grainbench::store::key;
 use grainbench::store::log::State;
+use grainbench::studies::cost::against::{compare, shared};
 use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
+use std::path::Path;
 
 /// Expected durations (s) of measuring the cost of the parts of a step, and of a step with one and with 10,000 grains.
 const BESIDE: [(&str, f64); 2] = [("prices", 40.0), ("loads", 90.0)];
@@ -49,7 +53,7 @@ pub(crate) enum Measured {
 impl CostStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
         let all = arguments.levels.iter().any(|level| level == "all");
-        let subjects = cost::subjects(&arguments.cases)?;
+        let subjects = subjects(&arguments.cases)?;
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
         let wanted = PointSelection { solvers: named, all, counts: arguments.counts };
         let program = key::of_this_program();
@@ -188,8 +192,53 @@ impl Study for CostStudy {
             study.diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| point.solver.clone()).collect();
         study.sources = own::sources(&asked);
         if let (Some(old), Some(path)) = (&old, how.against) {
-            cost::set_against(&mut study, old, path);
+            set_against(&mut study, old, path);
         }
         how.publish(&study, has_crash)
     }
+}
+
+/// Compares a study with the points of an earlier study, and names the file `path` of that study in the report.
+fn set_against(study: &mut Report, old: &[Point], path: &Path) {
+    let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
+    study.changes = compare(old, &new);
+    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
+    study.against = Some(format!("{name}, {} of {} points compared", shared(old, &new), new.len()));
+}
+
+/// Returns the target quantities of the named cases, in the order of the registry.
+fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
+    if let Some(case) = own::folder(names)? {
+        return Ok(registry::subjects(case));
+    }
+    let mut found = Vec::new();
+    for (case, variants) in selected(names)? {
+        found.extend(registry::subjects(case).into_iter().filter(|subject| variants.contain(subject.variant)));
+        for variant in variants.named() {
+            if found.iter().all(|subject| subject.case.name != case.name || subject.variant != variant) {
+                found.push(of_variant(case, variant)?);
+            }
+        }
+    }
+    if found.is_empty() {
+        return Err(Fault::input(
+            "expected a case with an exact solution for a single run, found none in the selection",
+        ));
+    }
+    Ok(found)
+}
+
+/// Returns the target quantity of a variant that is not among those of the case. The error lists the variants with one.
+fn of_variant(case: &'static Case, variant: &str) -> Result<TargetQuantity, Fault> {
+    let mut all = of_each_variant(case);
+    if let Some(at) = all.iter().position(|subject| subject.variant == variant) {
+        return Ok(all.swap_remove(at));
+    }
+    let mut variants: Vec<&str> = all.iter().map(|subject| subject.variant).collect();
+    variants.sort_unstable();
+    let known = if variants.is_empty() { "no variant has one".to_owned() } else { variants.join(", ") };
+    Err(Fault::input(format!(
+        "{}/{variant}: expected a variant with an exact solution for a single run ({known}), found one without",
+        case.name
+    )))
 }

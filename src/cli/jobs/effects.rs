@@ -2,15 +2,17 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::effects;
 use crate::cli::exit::{Fault, Outcome};
-use crate::cli::own;
-use crate::cli::own::sources;
+use crate::cli::own::{self, sources};
+use crate::cli::subject::{SelectedVariants, selected};
+use grainbench::cases::solvers::Registry;
+use grainbench::harness::case::Case;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::effects::Entry;
 use grainbench::store::log::State;
 use grainbench::studies::effects::ledger::{Ledger, SceneEffect};
+use std::sync::Arc;
 
 /// Expected duration of a test of an effect (s).
 const SECONDS: f64 = 0.5;
@@ -27,7 +29,7 @@ pub(crate) struct EffectStudy {
 impl EffectStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
         let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
-        for (number, (ledger, of_case)) in effects::ledgers(&arguments.cases)?.into_iter().enumerate() {
+        for (number, (ledger, of_case)) in case_ledgers(&arguments.cases)?.into_iter().enumerate() {
             ledgers.push(ledger);
             pieces.extend(of_case.into_iter().map(|piece| (number, piece)));
         }
@@ -75,4 +77,19 @@ impl Study for EffectStudy {
         study.sources = sources(&solvers.collect::<Vec<_>>());
         how.publish(&study, has_crash)
     }
+}
+
+/// Returns the study of each named case, with the effects to test.
+fn case_ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
+    if let Some(case) = own::folder(names)? {
+        let ledger = Ledger::new(case, Arc::new(Registry));
+        let pieces = ledger.pieces();
+        return Ok(vec![(ledger, pieces)]);
+    }
+    let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
+        let ledger = Ledger::new(case, Arc::new(Registry));
+        let pieces = ledger.pieces().into_iter().filter(|piece| variants.contain(piece.variant)).collect();
+        (ledger, pieces)
+    };
+    Ok(selected(names)?.into_iter().map(of_case).collect())
 }

@@ -3,13 +3,14 @@
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
 use crate::cli::exit::{Fault, Outcome};
-use crate::cli::stability::{self, BAR, WorkItem};
+use crate::cli::own::sources;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
+use grainbench::reports::study::Study as Report;
 use grainbench::reports::study::stability::{HardCaseResult, Limit};
 use grainbench::scene::scene::Scene;
 use grainbench::store::log::State;
@@ -19,6 +20,10 @@ use grainbench::studies::stability::limit;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
+/// Case in which the stability limit of grid methods is measured.
+const BAR: &str = "vibrating-bar";
+/// Numbers of cells along the bar, from coarse to fine.
+const BAR_CELLS: [f64; 3] = [25.0, 50.0, 100.0];
 /// Expected duration of finding a stability limit with contact springs (s).
 const SPRINGS: f64 = 0.5;
 /// Expected duration of finding a stability limit with a grid (s per cell).
@@ -36,6 +41,13 @@ pub(crate) struct StabilityStudy {
     arguments: Arguments,
 }
 
+/// Work item of the study: a stability limit or a hard case, by its index, with its solver.
+enum WorkItem {
+    Assembly(usize, String),
+    Bar(&'static str, f64),
+    Hard(usize, String),
+}
+
 /// Result of a task.
 #[derive(Serialize, Deserialize)]
 pub(crate) enum Tested {
@@ -47,7 +59,7 @@ impl StabilityStudy {
     pub(crate) fn new(arguments: &Arguments, is_shared: bool) -> Result<Self, Fault> {
         let (assemblies, hard) = (assembly::all()?, hard::all()?);
         let (solvers, named) = NamedSolvers::read_for(&arguments.solver, is_shared)?;
-        let items = stability::select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;
+        let items = select(&arguments.cases, [&named, &solvers.names()], &assemblies, &hard)?;
         let bar = registry::by_name(BAR).ok_or_else(|| Fault::input("expected the case of a vibrating bar"))?;
         Ok(Self { assemblies, hard, bar: bar.variant(PLAIN)?, items, solvers, arguments: arguments.clone() })
     }
@@ -135,7 +147,51 @@ impl Study for StabilityStudy {
                 Tested::Hard(row) => study.hard.push(row),
             }
         }
-        study.sources = stability::sources_of(&study);
+        study.sources = sources_of(&study);
         how.publish(&study, has_crash)
     }
+}
+
+/// Returns the hashes of the sources of all solvers in the study, by solver name.
+fn sources_of(study: &Report) -> BTreeMap<String, String> {
+    let limits = study.limits.iter().map(|row| row.solver.clone());
+    let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
+    sources(&asked)
+}
+
+/// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of
+/// the bar and of hard cases. `solvers` contains the selected names, and `strangers` the names of the external solvers.
+fn select(
+    cases: &[String],
+    [solvers, strangers]: [&[String]; 2],
+    assemblies: &[Assembly],
+    hard: &[HardCase],
+) -> Result<Vec<WorkItem>, Fault> {
+    let named = |name: &str| name.replace(' ', "-");
+    let mut known: Vec<String> = assemblies.iter().map(|assembly| named(assembly.name)).collect();
+    known.push(BAR.to_owned());
+    known.extend(hard.iter().map(|case| case.name.clone()));
+    if let Some(name) = cases.iter().find(|name| name.is_empty() || !known.iter().any(|known| known.starts_with(*name)))
+    {
+        return Err(Fault::unknown("an assembly or a hard case", name, known.iter().map(String::as_str)));
+    }
+    let case = |name: &str| cases.is_empty() || cases.iter().any(|wanted| name.starts_with(wanted));
+    let solver = |name: &str| solvers.is_empty() || solvers.iter().any(|wanted| wanted == name);
+    let theirs = || strangers.iter().map(String::as_str);
+    let mut pieces = Vec::new();
+    for (at, _) in assemblies.iter().enumerate().filter(|(_, assembly)| case(&named(assembly.name))) {
+        let asked = limit::SPRINGS.into_iter().filter(|name| solver(name)).chain(theirs());
+        pieces.extend(asked.map(|name| WorkItem::Assembly(at, name.to_owned())));
+    }
+    for setting in limit::GRIDS.into_iter().filter(|name| case(BAR) && solver(name)) {
+        pieces.extend(BAR_CELLS.map(|cells| WorkItem::Bar(setting, cells)));
+    }
+    for (at, hard) in hard.iter().enumerate().filter(|(_, hard)| case(&hard.name)) {
+        let asked = hard.asked.iter().copied().filter(|name| solver(name)).chain(theirs());
+        pieces.extend(asked.map(|name| WorkItem::Hard(at, name.to_owned())));
+    }
+    if pieces.is_empty() {
+        return Err(Fault::input("expected at least one case for the selected solvers, found none"));
+    }
+    Ok(pieces)
 }
