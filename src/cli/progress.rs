@@ -5,14 +5,14 @@ use std::fmt::Write;
 use std::io::IsTerminal;
 use std::time::Duration;
 
-/// Progress bar on the standard error; empty if the standard error is not a terminal.
-pub(crate) struct Progress(Option<ProgressBar>);
+/// Progress bar on the standard error; hidden if the standard error is not a terminal.
+pub(crate) struct Progress(ProgressBar);
 
 impl Progress {
     /// Creates a bar for `total` items. `what` is the name of the items in the plural.
     pub(crate) fn new(total: u64, what: &str) -> Self {
         if !std::io::stderr().is_terminal() {
-            return Self(None);
+            return Self(ProgressBar::hidden());
         }
         let bar = ProgressBar::with_draw_target(Some(total), ProgressDrawTarget::stderr());
         let template = format!("{{bar:30}} {{human_pos}}/{{human_len}} {what}, {{left}}  {{msg}}");
@@ -22,45 +22,40 @@ impl Progress {
             }));
         }
         bar.enable_steady_tick(Duration::from_millis(200));
-        Self(Some(bar))
+        Self(bar)
     }
 
     /// Shows the name of the current item.
     pub(crate) fn now(&self, what: &str) {
-        if let Some(bar) = &self.0 {
-            bar.set_message(what.to_owned());
-        }
+        self.0.set_message(what.to_owned());
     }
 
     /// Prints a permanent line, above the bar if there is one.
     pub(crate) fn tell(&self, line: &str) {
-        match &self.0 {
-            Some(bar) => bar.println(line),
-            None => eprintln!("{line}"),
-        }
+        if self.0.is_hidden() { eprintln!("{line}") } else { self.0.println(line) }
     }
 
     /// Increases the number of finished items by one.
     pub(crate) fn advance(&self) {
-        if let Some(bar) = &self.0 {
-            bar.inc(1);
-        }
+        self.0.inc(1);
     }
 
     /// Sets the number of items that were finished before. The estimate of the remaining time starts here.
     pub(crate) fn from(&self, done: u64) {
-        if let Some(bar) = &self.0 {
-            bar.set_position(done);
-            bar.reset_eta();
-        }
+        self.0.set_position(done);
+        self.0.reset_eta();
     }
 
     /// Sets the number of finished items and the total.
     pub(crate) fn set(&self, done: u64, total: u64) {
-        if let Some(bar) = &self.0 {
-            bar.set_length(total);
-            bar.set_position(done);
-        }
+        self.0.set_length(total);
+        self.0.set_position(done);
+    }
+}
+
+impl Drop for Progress {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
     }
 }
 
@@ -72,14 +67,6 @@ fn left(done: u64, estimate: Duration) -> String {
         seconds @ 1..60 => format!("{seconds} s left"),
         seconds @ 60..3600 => format!("{} min {} s left", seconds / 60, seconds % 60),
         seconds => format!("{} h {} min left", seconds / 3600, seconds % 3600 / 60),
-    }
-}
-
-impl Drop for Progress {
-    fn drop(&mut self) {
-        if let Some(bar) = &self.0 {
-            bar.finish_and_clear();
-        }
     }
 }
 
