@@ -22,6 +22,16 @@ pub struct Place<'a> {
     pub every: u64,
 }
 
+impl Place<'_> {
+    /// Writes a checkpoint in one atomic operation.
+    ///
+    /// # Errors
+    /// When the disk rejects the write.
+    pub fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
+        write_file(self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))
+    }
+}
+
 /// Runs a scene from its start or from a checkpoint of the same run. The checkpoint was written by this function or by
 /// `simulate --checkpoint`.
 ///
@@ -78,8 +88,7 @@ impl Observer for CheckpointWriter<'_> {
 
     fn checkpoint(&mut self, checkpoint: Checkpoint) -> Result<(), CheckpointError> {
         let taken = format!("{TAKEN}{:?}", self.before + self.begun.elapsed().as_secs_f64());
-        let bytes = checkpoint.with_output(taken.into_bytes()).to_bytes()?;
-        write_file(self.place.path, bytes).map_err(|error| CheckpointError::NotStored(error.to_string()))
+        self.place.put(&checkpoint.with_output(taken.into_bytes()))
     }
 
     fn snapshot(&mut self, snapshot: Snapshot) -> Result<Option<Snapshot>, StorageError> {

@@ -1,44 +1,25 @@
 //! Checkpoint files.
 
 use super::exit::Fault;
-use grainbench::solver::checkpoint::{Checkpoint, CheckpointError};
-use grainbench::store::write_file;
+use grainbench::solver::checkpoint::Checkpoint;
 use std::fs;
 use std::io::ErrorKind;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
-/// File of the checkpoints of a run. Each checkpoint replaces the previous one.
-pub(crate) struct Store {
-    pub(crate) path: PathBuf,
-    /// Number of steps between checkpoints.
-    pub(crate) every: u64,
-}
-
-impl Store {
-    /// Returns an error if the path exists and is not a checkpoint, because a checkpoint would replace it.
-    pub(crate) fn refuse_others(&self) -> Result<(), Fault> {
-        let refused = |found: &str| {
-            let there = self.path.display();
-            Err(Fault::input(format!(
-                "--checkpoint {there}: expected no file, or a checkpoint to replace; found {found}"
-            )))
-        };
-        match fs::symlink_metadata(&self.path) {
-            Err(error) if error.kind() == ErrorKind::NotFound => Ok(()),
-            Err(error) => refused(&error.to_string()),
-            Ok(metadata) if !metadata.is_file() => refused("something that is not a file"),
-            Ok(_) => match Checkpoint::is_one(&self.path) {
-                Ok(true) => Ok(()),
-                Ok(false) => refused("another file"),
-                Err(error) => refused(&error.to_string()),
-            },
-        }
-    }
-
-    /// Writes a checkpoint in one atomic operation.
-    pub(crate) fn put(&self, checkpoint: &Checkpoint) -> Result<(), CheckpointError> {
-        write_file(&self.path, checkpoint.to_bytes()?).map_err(|error| CheckpointError::NotStored(error.to_string()))
-    }
+/// Returns an error if the path exists and is not a checkpoint, because a checkpoint would replace it.
+pub(crate) fn refuse_others(path: &Path) -> Result<(), Fault> {
+    let found = match fs::symlink_metadata(path) {
+        Err(error) if error.kind() == ErrorKind::NotFound => return Ok(()),
+        Err(error) => error.to_string(),
+        Ok(metadata) if !metadata.is_file() => "something that is not a file".to_owned(),
+        Ok(_) => match Checkpoint::is_one(path) {
+            Ok(true) => return Ok(()),
+            Ok(false) => "another file".to_owned(),
+            Err(error) => error.to_string(),
+        },
+    };
+    let there = path.display();
+    Err(Fault::input(format!("--checkpoint {there}: expected no file, or a checkpoint to replace; found {found}")))
 }
 
 /// Reads a checkpoint from a file.

@@ -1,6 +1,6 @@
 //! `grainbench simulate`: simulates a scene with one solver and writes the record.
 
-use super::checkpoint::{self, Store};
+use super::checkpoint::{self, refuse_others};
 use super::cores::{MOST_THREADS, cores};
 use super::exit::{Fault, Outcome, check_writable, print, print_json};
 use super::interrupt::Interrupt;
@@ -19,6 +19,7 @@ use grainbench::jobs::shard;
 use grainbench::jobs::sweep::Sweep;
 use grainbench::reports::export::{self, SnapshotFormat};
 use grainbench::reports::{SnapshotStore, number};
+use grainbench::resume::Place;
 use grainbench::scene::effects::Effects;
 use grainbench::scene::end_state::EndState;
 use grainbench::scene::method::Method;
@@ -190,13 +191,13 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     check_writable(&arguments.out)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
-    let store = arguments.checkpoint.clone().map(|path| Store { path, every: arguments.checkpoint_every });
+    let store = arguments.checkpoint.as_deref().map(|path| Place { path, every: arguments.checkpoint_every });
     let (method, critical) = (Method::from_name(&arguments.solver), scene.critical_time_step());
     if let Some(store) = &store {
-        store.refuse_others()?;
+        refuse_others(store.path)?;
     }
     let mut snapshots = match &store {
-        Some(store) => SnapshotStore::for_checkpoint(&store.path),
+        Some(store) => SnapshotStore::for_checkpoint(store.path),
         None => SnapshotStore::for_output(&arguments.out),
     };
     snapshots = snapshots.holding(&scene.columns);
@@ -207,9 +208,8 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         snapshots = snapshots.resume(path, checkpoint.output())?;
     }
     let interrupt = Interrupt::listen();
-    let threads = arguments.threads.map_or_else(cores, usize::from);
     let mut watcher = Watcher {
-        threads,
+        arguments,
         method,
         critical,
         header,
@@ -217,8 +217,6 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         store,
         snapshots,
         remains: None,
-        wants_state: arguments.state.is_some(),
-        allow_unstable: arguments.allow_unstable,
         state: None,
         interrupt,
     };
@@ -435,26 +433,22 @@ fn footer(
 }
 
 /// Observer of a run. It prints the header when the solver accepts the run, shows the progress, and stores the output.
-struct Watcher {
-    threads: usize,
+struct Watcher<'a> {
+    arguments: &'a Arguments,
     method: Option<Method>,
     critical: f64,
     header: Option<String>,
     progress: Option<Progress>,
-    store: Option<Store>,
+    store: Option<Place<'a>>,
     snapshots: SnapshotStore,
     /// Time series of a failed or interrupted run.
     remains: Option<Series>,
-    /// True if the final state was requested by `--state`.
-    wants_state: bool,
     /// Final state of the run.
     state: Option<EndState>,
-    /// True if time steps at or above the critical one are accepted.
-    allow_unstable: bool,
     interrupt: Interrupt,
 }
 
-impl Watcher {
+impl Watcher<'_> {
     /// Returns the estimated duration of a run (s); `None` if it is below 10 s.
     fn estimate(&self, ahead: RunOutline) -> Option<f64> {
         let seconds = ahead.steps as f64 * ahead.particles as f64 / A_SECOND;
@@ -496,15 +490,15 @@ fn rough(seconds: f64) -> String {
     format!("{} {unit}", number::significant(size, 2))
 }
 
-impl Observer for Watcher {
+impl Observer for Watcher<'_> {
     fn options(&self) -> RunOptions {
         RunOptions {
-            threads: self.threads,
+            threads: self.arguments.threads.map_or_else(cores, usize::from),
             checkpoint_interval: self.store.as_ref().map(|store| store.every),
             most_rows: self.snapshots.most_rows(),
-            allow_unstable: self.allow_unstable,
+            allow_unstable: self.arguments.allow_unstable,
             keep_snapshots: false,
-            end_state: self.wants_state,
+            end_state: self.arguments.state.is_some(),
         }
     }
 
