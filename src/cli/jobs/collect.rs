@@ -65,7 +65,7 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let finished = FinishedTasks::read(&plan.path, true).map_err(Fault::input)?;
     let (missing, unfinished, seconds) = progress(&plan, &finished);
     let how = ReportOptions {
-        out: &out,
+        out: out.clone(),
         strict: arguments.strict,
         parquet: arguments.parquet,
         json: arguments.json,
@@ -73,9 +73,7 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
         words: words(&plan, &finished, unfinished.clone()),
         unfinished,
         seconds,
-        is_draft: false,
-        update_stored: None,
-        end: String::new(),
+        ..ReportOptions::default()
     };
     let code = study.report_of(&plan, &finished, &how)?;
     if !earlier.is_empty() {

@@ -52,19 +52,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
     if options.no_cache {
         results::remove(out)?;
     }
-    let how = ReportOptions {
-        out,
-        strict: false,
-        parquet: false,
-        json: arguments.json,
-        against,
-        unfinished: None,
-        words: Vec::new(),
-        seconds: 0.0,
-        is_draft: false,
-        update_stored: None,
-        end: String::new(),
-    };
+    let how = ReportOptions { out: out.clone(), json: arguments.json, against, ..ReportOptions::default() };
     let report = |how: ReportOptions<'_>| {
         let finished = FinishedTasks::read(out, true).map_err(Fault::input)?;
         let (missing, unfinished, seconds) = progress(&plan, &finished);

@@ -14,7 +14,7 @@ use grainbench::reports::study::{Study as Report, write_study};
 use grainbench::store::log::Worker;
 use grainbench::store::results::FinishedTasks;
 use std::collections::BTreeMap;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Tasks of one kind of work.
@@ -85,10 +85,10 @@ pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Pla
 }
 
 /// Directory, format and comparison of a report.
-#[derive(Clone)]
+#[derive(Clone, Default)]
 pub(crate) struct ReportOptions<'a> {
     /// Directory of the report.
-    pub(crate) out: &'a Path,
+    pub(crate) out: PathBuf,
     pub(crate) strict: bool,
     pub(crate) parquet: bool,
     pub(crate) json: bool,
@@ -117,14 +117,14 @@ impl ReportOptions<'_> {
     /// Writes and prints a study. The exit code is red if a task crashed.
     pub(super) fn publish(&self, study: &Report, has_crash: bool) -> Outcome {
         if self.is_draft {
-            write_study(self.out, study)?;
+            write_study(&self.out, study)?;
             return Ok(ExitCode::SUCCESS);
         }
         if let Some(name) = self.update_stored {
             keep_study(name, study)?;
         }
         let text = Some(study.text() + &self.end);
-        let code = publish_study(study, Output { text, ..Output::new(self.out, self.json, false) })?;
+        let code = publish_study(study, Output { text, ..Output::new(&self.out, self.json, false) })?;
         Ok(if has_crash { RED } else { code })
     }
 }

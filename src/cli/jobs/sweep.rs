@@ -98,7 +98,7 @@ impl Study for SweepStudy {
         };
         let left = results.into_iter().map(|result| Some(result?.unwrap_or_else(crashed_point))).collect();
         let report = self.sweep.report(&self.names, provenance(options, how.seconds), left);
-        write_sweep(how.out, &report)?;
+        write_sweep(&how.out, &report)?;
         let [within, outside, amber, unjudged] = counts(&report.points);
         if how.json {
             print(&sweep_json(&report)?)?;
