@@ -1,6 +1,5 @@
 //! Executor of a list of tasks. It distributes the tasks over threads and hands over each result as soon as it is known.
 
-use crate::share::share;
 use crate::task::Task;
 use grainbench_store::WriteError;
 use grainbench_store::log::State;
@@ -9,7 +8,7 @@ use serde::de::DeserializeOwned;
 use std::any::Any;
 use std::collections::BTreeSet;
 use std::panic::{AssertUnwindSafe, catch_unwind};
-use std::sync::atomic::{AtomicBool, AtomicUsize, Ordering};
+use std::sync::atomic::{AtomicUsize, Ordering};
 use std::sync::{Mutex, MutexGuard, PoisonError};
 use std::time::Instant;
 
@@ -73,27 +72,19 @@ pub struct ResultSink<'a, T> {
     store: &'a Store<'a, T>,
     finished: Mutex<BTreeSet<usize>>,
     fault: Mutex<Option<WriteError>>,
-    stops: AtomicBool,
     failed: AtomicUsize,
 }
 
 impl<'a, T> ResultSink<'a, T> {
     /// Returns a sink that stores results with a function.
     pub fn new(watch: &'a dyn Watch, store: &'a Store<'a, T>) -> Self {
-        Self {
-            watch,
-            store,
-            finished: Mutex::default(),
-            fault: Mutex::default(),
-            stops: AtomicBool::new(false),
-            failed: AtomicUsize::new(0),
-        }
+        Self { watch, store, finished: Mutex::default(), fault: Mutex::default(), failed: AtomicUsize::new(0) }
     }
 
     /// Returns true if another task may be started.
     #[must_use]
     pub fn goes_on(&self) -> bool {
-        !self.stops.load(Ordering::Relaxed) && self.watch.goes_on()
+        locked(&self.fault).is_none() && self.watch.goes_on()
     }
 
     /// Reports the name of the current task.
@@ -107,7 +98,6 @@ impl<'a, T> ResultSink<'a, T> {
             return;
         }
         if let Err(error) = (self.store)(place, state, seconds, result) {
-            self.stops.store(true, Ordering::Relaxed);
             locked(&self.fault).get_or_insert(error);
             return;
         }
@@ -146,11 +136,14 @@ pub(crate) fn locked<T>(mutex: &Mutex<T>) -> MutexGuard<'_, T> {
 
 /// Performs groups of tasks on up to `at_once` threads. If a task panics, it is recorded as crashed, and the others
 /// continue.
+///
+/// The threads are not from a pool, because a task may wait for a run that another task has started. A waiting thread of
+/// a pool could start another task, and a run could then wait for itself.
 pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sink: &ResultSink<'_, L::Output>) {
-    let perform = |group: usize| {
+    let perform = |group: &[usize]| {
         let start = Instant::now();
-        if let Err(reason) = catch_unwind(AssertUnwindSafe(|| list.perform_group(&groups[group], sink))) {
-            for &place in &groups[group] {
+        if let Err(reason) = catch_unwind(AssertUnwindSafe(|| list.perform_group(group, sink))) {
+            for &place in group {
                 let is_stored = locked(&sink.finished).contains(&place);
                 if !is_stored {
                     sink.crashed(place, start, &*reason);
@@ -158,7 +151,17 @@ pub fn execute<L: TaskList>(list: &L, groups: &[Vec<usize>], at_once: usize, sin
             }
         }
     };
-    share(groups.len(), at_once, || sink.goes_on(), perform);
+    let next = AtomicUsize::new(0);
+    let take = || if sink.goes_on() { groups.get(next.fetch_add(1, Ordering::Relaxed)) } else { None };
+    std::thread::scope(|scope| {
+        for _ in 0..at_once.clamp(1, groups.len().max(1)) {
+            scope.spawn(|| {
+                while let Some(group) = take() {
+                    perform(group);
+                }
+            });
+        }
+    });
 }
 
 /// Performs all tasks in memory on up to `at_once` threads, in the order `order` of their indices. Calls `observe` with each

@@ -12,7 +12,6 @@ pub mod fault;
 pub mod lease;
 pub mod plan;
 pub mod shard;
-pub mod share;
 pub mod slurm;
 pub mod status;
 pub mod sweep;
