@@ -12,7 +12,7 @@ use grainbench_store::{WriteError, machine};
 use std::collections::BTreeSet;
 use std::fs;
 use std::sync::Mutex;
-use std::sync::atomic::{AtomicBool, Ordering};
+use std::sync::mpsc::{self, RecvTimeoutError};
 use std::time::{Duration, Instant};
 
 /// Number of renewals of a lease within the time in which it expires.
@@ -146,7 +146,9 @@ pub fn work<L: TaskList>(
             let _ = lease.as_ref().map(|lease| lease.renew(sink.done()));
             let _ = file.sync();
         };
-        with_a_heart(seconds / BEATS, renew, || execute(list, &groups(&plan.tasks, &mine), asked.jobs, &sink));
+        with_a_heart(Duration::from_secs_f64(seconds / BEATS), renew, || {
+            execute(list, &groups(&plan.tasks, &mine), asked.jobs, &sink)
+        });
         file.sync()?;
         drop(lease);
         (summary.done, summary.failed) = (sink.done(), sink.failed());
@@ -163,33 +165,18 @@ pub fn work<L: TaskList>(
     Ok(summary)
 }
 
-/// Runs `work` while a second thread calls `beat` every `every` seconds.
-fn with_a_heart<T>(every: f64, beat: impl Fn() + Sync, work: impl FnOnce() -> T) -> T {
-    let is_over = AtomicBool::new(false);
+/// Runs `work` while a second thread calls `beat` at intervals of `every`.
+fn with_a_heart<T>(every: Duration, beat: impl Fn() + Sync, work: impl FnOnce() -> T) -> T {
+    let (sender, receiver) = mpsc::channel::<()>();
+    let beat = &beat;
     std::thread::scope(|scope| {
-        let beats = scope.spawn(|| {
-            let mut last = Instant::now();
-            while !is_over.load(Ordering::Relaxed) {
-                std::thread::park_timeout(Duration::from_secs_f64(every));
-                if last.elapsed().as_secs_f64() >= every {
-                    last = Instant::now();
-                    beat();
-                }
+        scope.spawn(move || {
+            while receiver.recv_timeout(every) == Err(RecvTimeoutError::Timeout) {
+                beat();
             }
         });
-        let over = HeartbeatGuard(&is_over, beats.thread().clone());
-        let done = work();
-        drop(over);
-        done
+        // The sender is dropped after the work, even if the work panics. The second thread then ends.
+        let _sender = sender;
+        work()
     })
-}
-
-/// Guard that stops the heartbeat thread, even if the work panics.
-struct HeartbeatGuard<'a>(&'a AtomicBool, std::thread::Thread);
-
-impl Drop for HeartbeatGuard<'_> {
-    fn drop(&mut self) {
-        self.0.store(true, Ordering::Relaxed);
-        self.1.unpark();
-    }
 }
