@@ -28,6 +28,11 @@ impl Fault {
         Self::Input(format!("{place}: expected {expected}, found {found}"))
     }
 
+    /// Returns an input error whose place is a line of a file. `line` is its index, from 0.
+    pub fn in_line(path: &Path, line: usize, expected: impl Display, found: impl Display) -> Self {
+        Self::expected(format_args!("{}:{}", path.display(), line + 1), expected, found)
+    }
+
     /// Returns an input error whose place is a file.
     pub fn in_file(path: &Path, expected: impl Display, found: impl Display) -> Self {
         Self::expected(path.display(), expected, found)

@@ -211,15 +211,10 @@ fn read_tasks(path: &Path, text: &str) -> Result<Vec<Task>, Fault> {
     for (at, line) in text.lines().enumerate() {
         let task: Task = serde_json::from_str(line).map_err(|error| {
             let found = tamed(&error.to_string(), |_| false);
-            Fault::expected(
-                format!("{}:{}", path.display(), at + 1),
-                "a task in the form that `--plan DIR` writes",
-                found,
-            )
+            Fault::in_line(path, at, "a task in the form that `--plan DIR` writes", found)
         })?;
         if !(task.seconds.is_finite() && task.seconds >= 0.0) {
-            let place = format!("{}:{}", path.display(), at + 1);
-            return Err(Fault::expected(place, "`seconds` of zero or more", task.seconds));
+            return Err(Fault::in_line(path, at, "`seconds` of zero or more", task.seconds));
         }
         tasks.push(task);
     }

@@ -35,28 +35,18 @@ pub struct Job {
     pub indexes: String,
 }
 
-/// Program, options and permission for a submission.
-#[derive(Clone, Debug)]
-pub struct SubmitRequest<'a> {
-    /// Path of this program on the nodes.
-    pub program: &'a Path,
-    /// True to submit the remaining shards of a plan that was submitted before.
-    pub again: bool,
-    /// Options for `sbatch`.
-    pub options: &'a [String],
-}
-
-/// Submits the shards with unfinished tasks; returns `None` if there are none.
+/// Submits the shards with unfinished tasks; returns `None` if there are none. `program` is the path of this program on
+/// the nodes, and `options` are given to `sbatch`. If `again` is true, the plan may have been submitted before.
 ///
 /// # Errors
 /// When Slurm does not answer or rejects the job, when an option would change the job array, or when the plan was
 /// submitted before and `again` is not set.
-pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fault> {
-    if let Some(option) = asked.options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
+pub fn submit(plan: &Plan, program: &Path, options: &[String], again: bool) -> Result<Option<Job>, Fault> {
+    if let Some(option) = options.iter().find(|option| OURS.iter().any(|ours| is_option(option, ours))) {
         return Err(Fault::expected("options for sbatch", "an environment without shards", format!("`{option}`")));
     }
     let before = jobs(&plan.path)?;
-    if !asked.again && !before.is_empty() {
+    if !again && !before.is_empty() {
         let found =
             format!("earlier job {}", before.iter().map(|job| job.job.to_string()).collect::<Vec<_>>().join(", "));
         return Err(Fault::in_file(&plan.path, "a plan that was not submitted yet, or `--resubmit`", found));
@@ -72,10 +62,10 @@ pub fn submit(plan: &Plan, asked: &SubmitRequest<'_>) -> Result<Option<Job>, Fau
     fs::create_dir_all(&folder).map_err(|source| WriteError::new(&folder, source))?;
     let indexes = ranges(&open);
     let script = folder.join(format!("submit-{}.sh", before.len() + 1));
-    write_file(&script, text(plan, asked.program, shards, &indexes))?;
+    write_file(&script, text(plan, program, shards, &indexes))?;
     let mut command = Command::new("sbatch");
     let output = fs::canonicalize(&folder).unwrap_or(folder.clone()).join("%A_%a.out");
-    command.arg("--parsable").arg(format!("--output={}", output.display())).args(asked.options).arg(&script);
+    command.arg("--parsable").arg(format!("--output={}", output.display())).args(options).arg(&script);
     let answer = ask(&mut command)?;
     // The answer is `JOB` or `JOB;CLUSTER`.
     let number = answer.trim().split(';').next().and_then(|number| number.parse().ok());
@@ -103,13 +93,8 @@ fn jobs(plan: &Path) -> Result<Vec<Job>, Fault> {
     };
     let read = |(at, line): (usize, &str)| {
         let job: Result<Job, _> = serde_json::from_str(line);
-        job.ok().filter(|job| (1..=MOST).contains(&job.shards)).ok_or_else(|| {
-            Fault::expected(
-                format!("{}:{}", path.display(), at + 1),
-                "a submission record of this program",
-                "other text",
-            )
-        })
+        let job = job.ok().filter(|job| (1..=MOST).contains(&job.shards));
+        job.ok_or_else(|| Fault::in_line(&path, at, "a submission record of this program", "other text"))
     };
     text.lines().enumerate().map(read).collect()
 }

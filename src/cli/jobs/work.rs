@@ -70,8 +70,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
 
 fn submit(plan: &Plan, options: &WorkOptions) -> Outcome {
     let program = env::current_exe().map_err(|error| Fault::input(format!("this program: {error}")))?;
-    let asked = slurm::SubmitRequest { program: &program, again: options.resubmit, options: &options.sbatch };
-    match slurm::submit(plan, &asked)? {
+    match slurm::submit(plan, &program, &options.sbatch, options.resubmit)? {
         Some(job) => print(&format!("job {}: shards {} of {}\n", job.job, job.indexes, job.shards)),
         None => print("every missing task is queued or running\n"),
     }
