@@ -107,22 +107,20 @@ fn grid(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
     // The points are counted before they are created, because they may not fit into memory.
     let length = |factor: &Factor| factor.values.as_ref().map_or(factor.count.unwrap_or(0) as usize, Vec::len);
     let count = file.factors.values().try_fold(1_usize, |count, factor| count.checked_mul(length(factor)));
-    let Some(count) = count.filter(|count| *count <= MOST) else {
+    if count.is_none_or(|count| count > MOST) {
         let found = count.map_or_else(|| "more than can be counted".to_owned(), |count| count.to_string());
         return Err(Fault::in_file(path, format!("at most {MOST} points"), found));
-    };
-    let factors: Vec<Vec<Value>> = file.factors.values().map(values).collect();
-    let point = |mut place: usize| {
-        let mut point: Vec<Value> = Vec::with_capacity(factors.len());
+    }
+    let mut points = vec![Vec::new()];
+    for factor in file.factors.values() {
         // The last factor changes fastest.
-        for values in factors.iter().rev() {
-            point.push(values[place % values.len()].clone());
-            place /= values.len();
-        }
-        point.reverse();
-        point
-    };
-    Ok((0..count).map(point).collect())
+        let values = &values(factor);
+        let further = |point: &Vec<Value>| {
+            values.iter().map(|value| [&point[..], std::slice::from_ref(value)].concat()).collect::<Vec<_>>()
+        };
+        points = points.iter().flat_map(further).collect();
+    }
+    Ok(points)
 }
 
 fn by_lot(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
