@@ -1,6 +1,6 @@
 //! `grainbench check`: judges the output of any program against a case or scene.
 
-use super::exit::{Fault, Outcome, check_writable};
+use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::pattern;
 use super::provenance::provenance;
 use super::publish::ReportArguments;
@@ -227,9 +227,7 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     not_judged.extend(beside_cases.into_iter().chain(beside).map(place));
     if sections.is_empty() && not_judged.is_empty() {
         let folder = folder.display();
-        return Err(Fault::input(format!(
-            "{folder}: expected outputs in its folders `CASE` or `CASE/VARIANT`, found none"
-        )));
+        refuse!("{folder}: expected outputs in its folders `CASE` or `CASE/VARIANT`, found none");
     }
     sections.extend((!not_judged.is_empty()).then(|| section_of_not_judged(folder, &not_judged)));
     Ok(sections)

@@ -1,6 +1,6 @@
 //! `grainbench compare`: compares the outputs of two runs.
 
-use super::exit::{Fault, Outcome, check_writable};
+use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::provenance::provenance;
 use super::publish::ReportArguments;
 use super::value::{path_and_value, positive};
@@ -48,9 +48,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     if arguments.time_step.len() > 2 {
         let found = arguments.time_step.len();
-        return Err(Fault::input(format!(
-            "--time-step: expected one time step for both files or one for each, found {found}"
-        )));
+        refuse!("--time-step: expected one time step for both files or one for each, found {found}");
     }
     let options = comparison::Options {
         columns: arguments.columns.clone(),

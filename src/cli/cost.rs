@@ -1,6 +1,6 @@
 //! `grainbench cost`: measures error against computing time.
 
-use super::exit::{Fault, Outcome};
+use super::exit::{Outcome, refuse};
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::jobs::here::plan_or_perform;
 use super::own;
@@ -73,7 +73,7 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         return plan_or_perform(&arguments.planned(), study, arguments.against.as_deref());
     };
     if arguments.levels != "default" || arguments.prices || study.plan.is_given() {
-        return Err(Fault::input(format!("{path}: expected `--budget`, found `--levels`, `--prices` or `--plan`")));
+        refuse!("{path}: expected `--budget`, found `--levels`, `--prices` or `--plan`");
     }
     let input = own::Input {
         path,

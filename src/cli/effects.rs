@@ -1,6 +1,6 @@
 //! `grainbench effects`: measures the influence of each physical effect.
 
-use super::exit::{Fault, Outcome, check_writable};
+use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::interrupt::Interrupt;
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::jobs::here::plan_or_perform;
@@ -96,15 +96,15 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     let named = if own::folder(&arguments.cases)?.is_some() { None } else { own::scene(&arguments.cases)? };
     if let Some(scene) = named {
         if arguments.study.plan.is_given() {
-            return Err(Fault::input(format!("{scene}: expected cases with `--plan`, found a scene file")));
+            refuse!("{scene}: expected cases with `--plan`, found a scene file");
         }
         return of_scene(&scene, arguments);
     }
     if !arguments.yours.is_usual() {
         let found = "found no scene file: a case sets its own solvers, steps and quantities";
-        return Err(Fault::input(format!(
+        refuse!(
             "--solver, --time-step, --time-step-fraction, --matters, --budget: expected a scene file with them, {found}"
-        )));
+        );
     }
     plan_or_perform(&arguments.planned(), &arguments.study, None)
 }
@@ -115,9 +115,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let (scene, _) = subject::scene(name, &[])?;
     let solver = solver::find(&yours.solver)?;
     if scene.probes.is_empty() {
-        return Err(Fault::input(format!(
-            "{name}: expected probes, because they show the influence of an effect, found none"
-        )));
+        refuse!("{name}: expected probes, because they show the influence of an effect, found none");
     }
     check_writable(&arguments.out)?;
     // The files of an external program may change between two runs.

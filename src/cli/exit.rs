@@ -35,6 +35,14 @@ const MOST_ON_A_LINE: usize = 6;
 /// Exit code for bad input or usage; it is also the exit code of clap.
 const BAD_INPUT: u8 = 2;
 
+/// Returns from a function with an error for bad input. The arguments are those of `format!`.
+macro_rules! refuse {
+    ($($message:tt)*) => {
+        return Err($crate::cli::exit::Fault::input(format_args!($($message)*)))
+    };
+}
+pub(crate) use refuse;
+
 impl Fault {
     /// Returns an error for bad input or usage.
     pub(crate) fn input(message: impl Display) -> Self {

@@ -1,6 +1,6 @@
 //! `grainbench fields`: computes continuum fields from grains or material points, cell by cell.
 
-use super::exit::{Fault, Outcome, check_writable, print, print_json, say};
+use super::exit::{Fault, Outcome, check_writable, print, print_json, refuse, say};
 use super::value::{path_and_value, positive, whole};
 use grainbench::fields::column::COLUMNS;
 use grainbench::fields::contact_stress::Stress;
@@ -124,20 +124,18 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         let needs_time = if arguments.between { Some("--between") } else { None };
         let needs_time = needs_time.or((!arguments.tracers.is_empty()).then_some("--tracers"));
         if let Some(flag) = needs_time.filter(|_| !snapshot.time.is_finite()) {
-            return Err(Fault::input(format!("{flag}: expected a dump with times, or the option `--time-step`")));
+            refuse!("{flag}: expected a dump with times, or the option `--time-step`");
         }
         if let Some(flag) = needs_time.filter(|_| !snapshot.points.is_empty()) {
-            return Err(Fault::input(format!(
-                "{flag}: expected grains with ids, found material points, which have no ids"
-            )));
+            refuse!("{flag}: expected grains with ids, found material points, which have no ids");
         }
         course.add(snapshot);
         if course.grid.cells() * course.frames.len() > MOST_ELEMENTS {
-            return Err(Fault::input(format!(
+            refuse!(
                 "expected at most {} elements in all frames, found more; use larger cells or fewer frames (--from, \
                  --to)",
                 number::count(MOST_ELEMENTS as u64)
-            )));
+            );
         }
         Ok(())
     };
@@ -154,7 +152,7 @@ pub(crate) fn fields(arguments: &Arguments) -> Outcome {
         } else {
             ""
         };
-        return Err(Fault::input(format!("{there}: expected {what} in the selected time interval, found fewer{hint}")));
+        refuse!("{there}: expected {what} in the selected time interval, found fewer{hint}");
     };
     let summary = Summary::new(&course, there.to_string(), usize::from(arguments.blocks));
     write_elements(&arguments.out, &course, &summary, arguments.parquet)?;
@@ -175,10 +173,7 @@ fn of_directory(
         (arguments.time_step.is_some(), "--time-step"),
     ];
     if let Some((_, flag)) = beside_a_dump.into_iter().find(|(given, _)| *given) {
-        return Err(Fault::input(format!(
-            "{flag}: expected a dump with this option, found the directory {}",
-            dir.display()
-        )));
+        refuse!("{flag}: expected a dump with this option, found the directory {}", dir.display());
     }
     refuse_mixed(dir).map_err(Fault::input)?;
     each_snapshot(dir, Fault::input, take)
@@ -202,7 +197,7 @@ fn of_dump(
         // If the dump has no times, `--from` and `--to` would select nothing without any message.
         let mut first = GrainDump::open(path, None, beside.clone())?;
         if first.read()?.is_some_and(|snapshot| !snapshot.time.is_finite()) {
-            return Err(Fault::input("--from, --to: expected a dump with times, or the option `--time-step`"));
+            refuse!("--from, --to: expected a dump with times, or the option `--time-step`");
         }
     }
     let mut dump = GrainDump::open(path, arguments.contacts.as_deref(), beside)?;
@@ -242,16 +237,14 @@ fn begin(snapshot: &Snapshot, arguments: &Arguments) -> Result<Course, Fault> {
     let size = size_of(&arguments.cell, "--cell", [low, high], dimension)?;
     let cells: f64 = (0..dimension).map(|axis| ((high[axis] - low[axis]) / size[axis]).round().max(1.0)).product();
     if cells > MOST_CELLS {
-        return Err(Fault::input(format!(
-            "--cell: expected at most {MOST_CELLS} cells, found {cells}; use larger cells"
-        )));
+        refuse!("--cell: expected at most {MOST_CELLS} cells, found {cells}; use larger cells");
     }
     let up = match arguments.up.as_deref() {
         None => (dimension - 1, true),
         Some(word) => (usize::from(word.as_bytes()[word.len() - 1] - b'x'), !word.starts_with('-')),
     };
     if up.0 >= dimension {
-        return Err(Fault::input("--up: expected x or y in two dimensions, found z"));
+        refuse!("--up: expected x or y in two dimensions, found z");
     }
     let masks = Masks {
         fewest: arguments.fewest.max(1),
@@ -280,24 +273,22 @@ fn size_of(given: &[f64], flag: &str, [low, high]: [Vector3<f64>; 2], dimension:
         [all] => Vector3::repeat(all),
         [x, y] if dimension == 2 => Vector3::new(x, y, 1.0),
         [x, y, z] if dimension == 3 => Vector3::new(x, y, z),
-        _ => return Err(Fault::input(format!("{flag}: expected a number or {dimension}, found {}", given.len()))),
+        _ => refuse!("{flag}: expected a number or {dimension}, found {}", given.len()),
     };
     let size = if dimension == 2 { Vector3::new(size.x, size.y, high.z - low.z) } else { size };
     for axis in 0..dimension {
         let length = high[axis] - low[axis];
         let name = ["x", "y", "z"][axis];
         if !(length > 0.0 && length.is_finite()) {
-            return Err(Fault::input(format!(
+            refuse!(
                 "expected a box with a width above zero along {name}, found {length} m from {} to {}; set --low and \
                  --high",
-                low[axis], high[axis]
-            )));
+                low[axis],
+                high[axis]
+            );
         }
         if size[axis] > length * (1.0 + 1e-9) {
-            return Err(Fault::input(format!(
-                "{flag}: expected at most {length} m, the width of the box along {name}, found {}",
-                size[axis]
-            )));
+            refuse!("{flag}: expected at most {length} m, the width of the box along {name}, found {}", size[axis]);
         }
     }
     Ok(size)

@@ -1,6 +1,6 @@
 //! `--filter`: selects results by their properties and outcomes.
 
-use super::exit::Fault;
+use super::exit::{Fault, refuse};
 use glob::{MatchOptions, Pattern};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::evidence::Evidence;
@@ -67,7 +67,7 @@ impl Filters {
 fn read(text: &str) -> Result<Filter, Fault> {
     let Some((key, what)) = text.split_once('=') else {
         let expected = KEYS.map(|key| format!("{key}=…")).join(", ");
-        return Err(Fault::input(format!("--filter: expected one of {expected}, found `{text}`")));
+        refuse!("--filter: expected one of {expected}, found `{text}`");
     };
     match key {
         "quantity" => pattern(what).map(Filter::Quantity),

@@ -1,6 +1,6 @@
 //! `grainbench init`: writes the files of a new solver, case or scene. They are the files of `examples`.
 
-use super::exit::{Fault, Outcome, print};
+use super::exit::{Fault, Outcome, print, refuse};
 use super::publish::write_files;
 use grainbench::store::{StagedDir, write_file};
 use std::path::{Path, PathBuf};
@@ -69,10 +69,7 @@ pub(crate) fn init(command: &Command) -> Outcome {
             let is_toml = file.extension().is_some_and(|end| end == "toml");
             if !is_toml || file.symlink_metadata().is_ok() {
                 let found = if is_toml { "an existing file" } else { "another name" };
-                return Err(Fault::input(format!(
-                    "{}: expected the name of a new `.toml` file, found {found}",
-                    file.display()
-                )));
+                refuse!("{}: expected the name of a new `.toml` file, found {found}", file.display());
             }
             write_file(file, CASE[0].1)?;
             format!("grainbench simulate {} --solver dem", file.display())
@@ -85,10 +82,7 @@ pub(crate) fn init(command: &Command) -> Outcome {
 fn write(dir: &Path, files: Files) -> Result<(), Fault> {
     if let Some(entry) = dir.read_dir().ok().and_then(|mut entries| entries.next()) {
         let found = entry.map_or_else(|error| error.to_string(), |entry| entry.file_name().display().to_string());
-        return Err(Fault::input(format!(
-            "{}: expected a new or empty directory, found `{found}` in it",
-            dir.display()
-        )));
+        refuse!("{}: expected a new or empty directory, found `{found}` in it", dir.display());
     }
     write_files(StagedDir::new(dir)?.without_manifest(), files)
 }

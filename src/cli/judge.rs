@@ -1,6 +1,6 @@
 //! `grainbench judge`: judges one solver.
 
-use super::exit::{Fault, Outcome};
+use super::exit::{Fault, Outcome, refuse};
 use super::run::{RunOptions, judge_by};
 use super::solver;
 use grainbench::cases::solvers;
@@ -65,7 +65,7 @@ fn manifest_of_function(name: &str) -> Result<(TempDir, PathBuf), Fault> {
         let is_package = last.contains("No module named grainbench") || last.contains("No module named 'grainbench'");
         let help = if is_package { " (`pip install ./python` in the source tree installs the package)" } else { "" };
         let expected = "expected a function under `@grainbench.solver`";
-        return Err(Fault::input(format!("{name}: {expected}; python3 reports: {last}{help}")));
+        refuse!("{name}: {expected}; python3 reports: {last}{help}");
     }
     let writing = |error| Fault::input(format!("cannot write the manifest of `{name}`: {error}"));
     let folder = tempfile::tempdir().map_err(writing)?;

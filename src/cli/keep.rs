@@ -1,7 +1,7 @@
 //! Stored results. `run --update-stored` stores the results of an external solver next to its manifest, and `--expect-stored`
 //! compares with them. `cost`, `stability` and `effects` with `--update-stored` store a study in the source tree.
 
-use super::exit::Fault;
+use super::exit::{Fault, refuse};
 use super::select::CaseSelection;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::reference::outside::STORED;
@@ -18,7 +18,7 @@ const UNKNOWN: &str = "unknown";
 pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {
     let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
     let Some(Some(program)) = programs.next() else {
-        return Err(Fault::input("--update-stored: expected the manifest of one program, found a built-in solver"));
+        refuse!("--update-stored: expected the manifest of one program, found a built-in solver");
     };
     let is_it =
         |other: Option<&ExternalProgram>| other.is_some_and(|other| other.manifest().name == program.manifest().name);

@@ -2,7 +2,7 @@
 
 use super::checkpoint::read;
 use super::cores::MOST_THREADS;
-use super::exit::{Fault, Outcome, print, say};
+use super::exit::{Fault, Outcome, print, refuse, say};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance;
@@ -68,7 +68,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
     if let Some(letters) = &arguments.run
         && !known.iter().filter(is_named).flat_map(|case| kept::all(case)).any(|wanted| is_meant(&wanted))
     {
-        return Err(Fault::input(format!("--run: expected part of the name of a stored run, found `{letters}`")));
+        refuse!("--run: expected part of the name of a stored run, found `{letters}`");
     }
     for case in known.iter().filter(is_named) {
         let (afresh, threads) = (Some(Set::Paper), usize::from(arguments.threads));

@@ -1,6 +1,6 @@
 //! Cost, stability and effects of a scene of the user's, which has no exact solution.
 
-use super::exit::{Fault, Outcome, check_writable};
+use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance::provenance;
@@ -111,7 +111,7 @@ pub(crate) fn scene(names: &[String]) -> Result<Option<String>, Fault> {
     let is_scene = |name: &&String| is_file(name) || (!is_case(name) && Path::new(name).is_dir());
     let Some(name) = names.iter().find(is_scene) else { return Ok(None) };
     if names.len() > 1 {
-        return Err(Fault::input(format!("{name}: expected one scene alone, found {} names", names.len())));
+        refuse!("{name}: expected one scene alone, found {} names", names.len());
     }
     Ok(Some(if is_file(name) { name.clone() } else { Path::new(name).join(SCENE).display().to_string() }))
 }
@@ -140,15 +140,13 @@ pub(crate) fn edition(case: &Case) -> String {
 fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
     let (scene, _) = subject::scene(path, &[])?;
     if scene.probes.is_empty() {
-        return Err(Fault::input(format!(
+        refuse!(
             "{path}: expected probes, whose values are compared between levels, found none; for example `[probes]` with `all = \
              {{ system = true }}`"
-        )));
+        );
     }
     if !matches!(scene.duration, SceneDuration::Seconds(_)) {
-        return Err(Fault::input(format!(
-            "{path}: duration: expected seconds, because time steps change; found cycles"
-        )));
+        refuse!("{path}: duration: expected seconds, because time steps change; found cycles");
     }
     let (series, _) = Recorder::new(&scene, 1.0, 1).finish();
     let columns: Vec<&str> = series.columns.iter().map(|column| column.name.as_str()).collect();

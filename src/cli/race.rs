@@ -1,6 +1,6 @@
 //! `grainbench race`: measures the throughput of our solvers and of other programs, in turn on the same scenes.
 
-use super::exit::{Fault, Outcome, RED, check_writable, print, print_text};
+use super::exit::{Fault, Outcome, RED, check_writable, print, print_text, refuse};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::write_files;
@@ -128,7 +128,7 @@ fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
         None => subject::scene(name, &[])?,
     };
     if scene.grains.is_empty() {
-        return Err(Fault::input(format!("expected a scene with grains, found none in `{name}`")));
+        refuse!("expected a scene with grains, found none in `{name}`");
     }
     let of_case = case.map(|case| case.default_level.resolution);
     let resolution = match of_case {

@@ -1,6 +1,6 @@
 //! `grainbench report`: writes a page from stored results.
 
-use super::exit::{Fault, Outcome, print, print_text};
+use super::exit::{Fault, Outcome, print, print_text, refuse};
 use super::jobs::collect::{CollectOptions, collect};
 use super::jobs::status::status;
 use super::publish::{exit_code, study_code};
@@ -66,7 +66,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if Plan::is_in(&arguments.dir) {
         if arguments.style.is_some() || !arguments.figures.is_empty() {
             let found = "found a plan, whose report is in its own directory";
-            return Err(Fault::input(format!("--style, --figures: expected the directory of a report, {found}")));
+            refuse!("--style, --figures: expected the directory of a report, {found}");
         }
         return if arguments.progress {
             status(&arguments.dir, arguments.collect.json)
@@ -76,9 +76,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     if let Some(option) = arguments.collect.given().or_else(|| arguments.progress.then_some("--progress")) {
         let there = arguments.dir.display();
-        return Err(Fault::input(format!(
-            "{option}: expected the directory of a plan, found {there}, which has no plan"
-        )));
+        refuse!("{option}: expected the directory of a plan, found {there}, which has no plan");
     }
     for dir in std::iter::once(&arguments.dir).chain(&arguments.beside) {
         refuse_mixed(dir).map_err(Fault::input)?;
@@ -87,10 +85,10 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if ![RECORD_FILE, BROKEN_FILE, REPORT_FILE, STUDY_FILE].into_iter().any(holds) {
         let found = if arguments.dir.is_dir() { "another" } else { "none" };
         let there = arguments.dir.display();
-        return Err(Fault::input(format!(
+        refuse!(
             "{there}: expected a directory written by `run`, `cost`, `stability`, `effects` or `simulate`, found \
              {found}"
-        )));
+        );
     }
     let style = arguments.style.as_deref().map(style).transpose()?.unwrap_or_default();
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
@@ -98,7 +96,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     }
     if arguments.is_of_pictures() {
         let there = arguments.dir.display();
-        return Err(Fault::input(format!("{there}: expected {RECORD_FILE} of `simulate` for figures")));
+        refuse!("{there}: expected {RECORD_FILE} of `simulate` for figures");
     }
     if holds(STUDY_FILE) {
         let study = load_study(&arguments.dir)?;
@@ -157,11 +155,11 @@ fn pictures(arguments: &Arguments) -> Result<Vec<Figure>, Fault> {
     let figures = record_figures::figures(&named, &shown);
     if figures.is_empty() {
         let file = arguments.dir.join(RECORD_FILE);
-        return Err(Fault::input(format!(
+        refuse!(
             "{}: expected snapshots or samples of probes, found none (`simulate --write parquet` stores the snapshots \
              of a large run)",
             file.display()
-        )));
+        );
     }
     write_pictures(&arguments.dir, &records.iter().collect::<Vec<_>>(), &figures)?;
     Ok(figures)

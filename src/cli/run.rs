@@ -5,7 +5,7 @@ use super::claims::tasks::ClaimTasks;
 use super::claims::{ClaimOptions, narrow, report};
 use super::cores::at_once;
 use super::earlier::EarlierReport;
-use super::exit::{self, Fault, Outcome, RED, check_writable};
+use super::exit::{self, Fault, Outcome, RED, check_writable, refuse};
 use super::filter::Filters;
 use super::jobs;
 use super::jobs::arguments::PlanOptions;
@@ -108,7 +108,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let selected = &tasks.selected;
     let kept = if options.expect_stored { Some(keep::read(keep::program(selected)?)?) } else { None };
     if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.update_stored) {
-        return Err(Fault::input(format!("--update-stored: expected all cases, found `{part}` named")));
+        refuse!("--update-stored: expected all cases, found `{part}` named");
     }
     let keeping = if options.update_stored { Some(keep::program(selected)?) } else { None };
     let start = Instant::now();
@@ -129,7 +129,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let mut report = report(provenance, sections, tasks.is_whole)?;
     if let Some(program) = keeping {
         if left > 0 {
-            return Err(Fault::input(format!("--update-stored: expected a whole run, found {left} checks left out")));
+            refuse!("--update-stored: expected a whole run, found {left} checks left out");
         }
         keep(program, &report)?;
     }
@@ -179,9 +179,7 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     needed.sort_by_key(|data| data.name);
     needed.dedup_by_key(|data| data.name);
     if needed.is_empty() {
-        return Err(Fault::input(
-            "--data: expected claims that start from third-party data, found none in the selection",
-        ));
+        refuse!("--data: expected claims that start from third-party data, found none in the selection");
     }
     let not_made: Vec<SceneDataError> = needed.iter().filter_map(|data| (data.scene)(folder).err()).collect();
     let is_wrong = |reason: &SceneDataError| matches!(reason, SceneDataError::Wrong(_));
@@ -189,7 +187,7 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
     if any_is_wrong || not_made.len() == needed.len() {
         let reasons =
             not_made.into_iter().filter(|reason| !any_is_wrong || is_wrong(reason)).map(SceneDataError::into_words);
-        return Err(Fault::input(format!("--data: {}", reasons.collect::<Vec<_>>().join("; "))));
+        refuse!("--data: {}", reasons.collect::<Vec<_>>().join("; "));
     }
     Ok(())
 }

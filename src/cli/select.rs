@@ -1,6 +1,6 @@
 //! Selection of claims by the command line.
 
-use super::exit::Fault;
+use super::exit::{Fault, refuse};
 use super::names::{level_of, levels, push_new, row, solvers};
 use super::pattern;
 use super::solver;
@@ -40,7 +40,7 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
     }
     selected.retain(|selected| !selected.claims.is_empty());
     if selected.is_empty() {
-        return Err(Fault::input("expected at least one solver-independent claim in the selected cases, found none"));
+        refuse!("expected at least one solver-independent claim in the selected cases, found none");
     }
     Ok(selected)
 }
@@ -93,7 +93,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     selected.retain(|selected| !selected.claims.is_empty());
     // Without any claim, the run would be green although nothing was checked.
     if selected.is_empty() {
-        return Err(Fault::input("expected at least one claim for the selected cases, solvers and levels, found none"));
+        refuse!("expected at least one claim for the selected cases, solvers and levels, found none");
     }
     Ok(selected)
 }

@@ -2,7 +2,7 @@
 
 use super::checkpoint::{self, refuse_others};
 use super::cores::{MOST_THREADS, cores};
-use super::exit::{Fault, Outcome, check_writable, print, print_json};
+use super::exit::{Fault, Outcome, check_writable, print, print_json, refuse};
 use super::interrupt::Interrupt;
 use super::jobs;
 use super::jobs::collect::{CollectOptions, collect};
@@ -165,16 +165,14 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     }
     let mut source = SceneSource::read(&arguments.scene)?;
     if arguments.solver.is_empty() {
-        return Err(Fault::input("--solver: expected a solver, such as `dem`, found none"));
+        refuse!("--solver: expected a solver, such as `dem`, found none");
     }
     if let Some(variant) = &arguments.variant {
         source = source.variant(variant);
     }
     if arguments.set.len() > MOST_OVERRIDES {
         let found = arguments.set.len();
-        return Err(Fault::input(format!(
-            "--set: expected at most {MOST_OVERRIDES} keys, found {found}: edit the scene"
-        )));
+        refuse!("--set: expected at most {MOST_OVERRIDES} keys, found {found}: edit the scene");
     }
     for (path, value) in &arguments.set {
         source = source.set(path, value);
@@ -184,9 +182,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
     let resolution = resolution(arguments, &scene, solver.as_ref())?;
     if arguments.state.is_some() && Method::from_name(&arguments.solver) != Some(Method::Dem) {
         let solver = &arguments.solver;
-        return Err(Fault::input(format!(
-            "--state: expected `dem`, found `{solver}`, which does not report its final state"
-        )));
+        refuse!("--state: expected `dem`, found `{solver}`, which does not report its final state");
     }
     check_writable(&arguments.out)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
@@ -261,7 +257,7 @@ fn sweep(arguments: &Arguments) -> Outcome {
         ("--allow-unstable", arguments.allow_unstable),
     ];
     if let Some((name, _)) = given.iter().find(|(_, is_given)| *is_given) {
-        return Err(Fault::input(format!("{name}: not supported with a sweep")));
+        refuse!("{name}: not supported with a sweep");
     }
     [Method::Dem, Method::Grid].into_iter().try_for_each(|method| arguments.refuse_others(method))?;
     let out = arguments.plan.as_ref().unwrap_or(&arguments.out).clone();
@@ -320,9 +316,7 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
         let points = arguments.points.unwrap_or(Resolution::POINTS);
         let courant = arguments.courant.unwrap_or(Resolution::COURANT);
         if courant >= 1.0 && !arguments.allow_unstable {
-            return Err(Fault::input(format!(
-                "Courant number: expected less than 1, found {courant} (--allow-unstable permits it)"
-            )));
+            refuse!("Courant number: expected less than 1, found {courant} (--allow-unstable permits it)");
         }
         return Ok(Resolution::Grid { cells, points, courant });
     }
@@ -335,11 +329,11 @@ fn resolution(arguments: &Arguments, scene: &Scene, solver: &dyn Solver) -> Resu
         Resolution::Grid { .. } | Resolution::Rigid { .. } => return Ok(resolution),
     };
     if scene.is_unstable_at(step) && !arguments.allow_unstable {
-        return Err(Fault::input(format!(
+        refuse!(
             "time step: expected less than the critical step 2√(m_min/k_max) = {critical:.6e} s, found {step:.6e} s, {} of \
              it (--allow-unstable permits it)",
             number::significant(step / critical, 4)
-        )));
+        );
     }
     let stable = stable_fraction(scene);
     if scene.grains.len() > 2 && step > stable * critical {

@@ -1,6 +1,6 @@
 //! Solver named on the command line: a built-in solver, or an external solver by its manifest.
 
-use super::exit::Fault;
+use super::exit::{Fault, refuse};
 use grainbench::cases::solvers;
 use grainbench::reference::outside::ExternalProgram;
 use grainbench::solver::Solver;
@@ -32,7 +32,7 @@ pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
     let outside = ExternalProgram::read(Path::new(path))?;
     let name = outside.manifest().name.as_str();
     if solvers::by_name(name).is_some() {
-        return Err(Fault::input(format!("{path}: name: expected an unused name, found `{name}`")));
+        refuse!("{path}: name: expected an unused name, found `{name}`");
     }
     Ok(Arc::new(outside))
 }

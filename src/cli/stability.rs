@@ -1,6 +1,6 @@
 //! `grainbench stability`: finds the largest stable time steps and runs hard cases.
 
-use super::exit::{Fault, Outcome};
+use super::exit::{Outcome, refuse};
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::jobs::here::plan_or_perform;
 use super::own;
@@ -45,7 +45,7 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
         return plan_or_perform(&arguments.planned(), study, None);
     };
     if study.plan.is_given() {
-        return Err(Fault::input(format!("{path}: expected cases with `--plan`, found a scene file")));
+        refuse!("{path}: expected cases with `--plan`, found a scene file");
     }
     let input = own::Input {
         path,

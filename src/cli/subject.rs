@@ -1,6 +1,6 @@
 //! Scene of a command, from a case or from a file.
 
-use super::exit::{self, Fault};
+use super::exit::{self, Fault, refuse};
 use super::names::variants;
 use grainbench::adapt::{AdaptedScene, adapted};
 use grainbench::cases::folder;
@@ -146,7 +146,7 @@ pub(crate) fn exact_scene(text: &str) -> Result<(Scene, Resolution), Fault> {
     let run =
         run.min_by_key(|run| !matches!(run.resolution, Resolution::TimeStep(_) | Resolution::CriticalFraction(_)));
     let Some(run) = run else {
-        return Err(Fault::input(format!("expected a case with a solver-independent claim, found `{text}`")));
+        refuse!("expected a case with a solver-independent claim, found `{text}`");
     };
     let mut scene = named.case.variant(run.variant)?;
     if let Some((_, change)) = &run.adjustment {

@@ -5,7 +5,7 @@ pub(crate) mod tasks;
 
 use super::cores::MOST_THREADS;
 use super::earlier::EarlierReport;
-use super::exit::Fault;
+use super::exit::{Fault, refuse};
 use super::filter::Filters;
 use super::select::CaseSelection;
 use super::value::whole;
@@ -125,7 +125,7 @@ pub(crate) fn narrow(
     if selected.is_empty() {
         let what =
             if before.is_some() { "that was red or omitted in the earlier report" } else { "that matches the filters" };
-        return Err(Fault::input(format!("expected at least one claim {what}, found none")));
+        refuse!("expected at least one claim {what}, found none");
     }
     Ok(())
 }

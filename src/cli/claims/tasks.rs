@@ -4,7 +4,7 @@
 use super::ClaimOptions;
 use super::conformance::{self as conform, ConformingSolver};
 use crate::cli::cache;
-use crate::cli::exit::{self, Fault, Outcome};
+use crate::cli::exit::{self, Fault, Outcome, refuse};
 use crate::cli::filter::Filters;
 use crate::cli::jobs::arguments::Arguments;
 use crate::cli::jobs::study::{ReportOptions, Study, Tasks, check_ids};
@@ -92,10 +92,10 @@ impl ClaimTasks {
         let options = ClaimOptions { solver, levels, filter, no_controls, live, threads: 1, ..ClaimOptions::default() };
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
-            return Err(Fault::input(
+            refuse!(
                 "--filter: expected quantity, source or evidence (`outcome` is unknown before the \
-                                     run)",
-            ));
+                                     run)"
+            );
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
         super::narrow(&mut selected, &options, &filters, None)?;

@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::exit::{Fault, Outcome};
+use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::own;
 use crate::cli::strangers::NamedSolvers;
 use crate::cli::subject::selected;
@@ -63,7 +63,7 @@ impl CostStudy {
         };
         let sets: Vec<PointSet> = subjects.into_iter().map(set).collect();
         if sets.iter().all(|set| set.count() == 0) {
-            return Err(Fault::input("expected at least one point, found none for the selected cases and solvers"));
+            refuse!("expected at least one point, found none for the selected cases and solvers");
         }
         let prices = !arguments.counts && (arguments.prices || arguments.cases.is_empty());
         Ok(Self { sets, solvers, wanted, prices, arguments: arguments.clone() })
@@ -221,9 +221,7 @@ fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
         }
     }
     if found.is_empty() {
-        return Err(Fault::input(
-            "expected a case with an exact solution for a single run, found none in the selection",
-        ));
+        refuse!("expected a case with an exact solution for a single run, found none in the selection");
     }
     Ok(found)
 }

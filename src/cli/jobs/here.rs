@@ -7,7 +7,7 @@ use super::study::{ReportOptions, plan_of};
 use super::watch::Follower;
 use super::work::worker;
 use crate::cli::cores::cores;
-use crate::cli::exit::{self, Fault, Outcome, RED, check_writable};
+use crate::cli::exit::{self, Fault, Outcome, RED, check_writable, refuse};
 use grainbench::jobs::plan::{Plan, RUNNING};
 use grainbench::jobs::shard::Shard;
 use grainbench::jobs::work::WorkRequest;
@@ -38,7 +38,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
     let study = from_arguments(arguments, false)?;
     if Plan::is_in(out) {
         let there = out.display();
-        return Err(Fault::input(format!("--out: {there}: expected a directory without a plan, found a plan")));
+        refuse!("--out: {there}: expected a directory without a plan, found a plan");
     }
     if let Some(path) = against {
         grainbench::reports::study::points_of(path)?;

@@ -2,7 +2,7 @@
 
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
-use crate::cli::exit::{Fault, Outcome};
+use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::own::sources;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::registry;
@@ -191,7 +191,7 @@ fn select(
         pieces.extend(asked.map(|name| WorkItem::Hard(at, name.to_owned())));
     }
     if pieces.is_empty() {
-        return Err(Fault::input("expected at least one case for the selected solvers, found none"));
+        refuse!("expected at least one case for the selected solvers, found none");
     }
     Ok(pieces)
 }

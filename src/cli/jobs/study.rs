@@ -2,7 +2,7 @@
 //! directory of a command, or in the directory of a plan.
 
 use super::arguments::Arguments;
-use crate::cli::exit::{self, Fault, Outcome, RED};
+use crate::cli::exit::{self, Fault, Outcome, RED, refuse};
 use crate::cli::keep::keep_study;
 use crate::cli::provenance::{self, provenance};
 use crate::cli::publish::{Output, publish_study};
@@ -76,10 +76,10 @@ pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Pla
     head.inputs = study.inputs();
     let tasks = study.tasks(&head.program)?;
     if tasks.is_empty() {
-        return Err(Fault::input("expected at least one task, found none for the selected cases and solvers"));
+        refuse!("expected at least one task, found none for the selected cases and solvers");
     }
     if tasks.len() > u32::MAX as usize {
-        return Err(Fault::input(format!("expected at most 4294967295 tasks, found {}", tasks.len())));
+        refuse!("expected at most 4294967295 tasks, found {}", tasks.len());
     }
     Ok(Plan { path: arguments.out.clone(), head, tasks })
 }

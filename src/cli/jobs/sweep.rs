@@ -2,7 +2,7 @@
 
 use super::study::{ReportOptions, Study, Tasks};
 use crate::cli::cache;
-use crate::cli::exit::{Fault, Outcome, RED, print};
+use crate::cli::exit::{Fault, Outcome, RED, print, refuse};
 use crate::cli::provenance::provenance;
 use crate::cli::solver::is_manifest;
 use crate::cli::strangers::NamedSolvers;
@@ -37,7 +37,7 @@ pub(crate) struct SweepStudy {
 impl SweepStudy {
     pub(crate) fn new(file: &str) -> Result<Self, Fault> {
         if !is_manifest(file) {
-            return Err(Fault::input(format!("{file}: expected the file of a sweep (`.toml`), found another name")));
+            refuse!("{file}: expected the file of a sweep (`.toml`), found another name");
         }
         let sweep = Sweep::read(Path::new(file))?;
         let beside = Path::new(file).parent().unwrap_or(Path::new(""));

@@ -4,7 +4,7 @@ use super::arguments::Arguments as Planned;
 use super::watch::Follower;
 use super::{enter, from_arguments};
 use crate::cli::cores::cores;
-use crate::cli::exit::{self, Fault, Outcome, RED, print};
+use crate::cli::exit::{self, Fault, Outcome, RED, print, refuse};
 use crate::cli::provenance::provenance;
 use grainbench::jobs::plan::Plan;
 use grainbench::jobs::shard::Shard;
@@ -49,7 +49,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     study.check(&plan)?;
     let jobs = match (jobs, plan.head.timed) {
         (Some(2..), true) => {
-            return Err(Fault::input("--jobs: expected 1, because times are measured, found more"));
+            refuse!("--jobs: expected 1, because times are measured, found more");
         }
         (_, true) => 1,
         (Some(jobs), false) => usize::from(jobs),
