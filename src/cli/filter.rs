@@ -6,6 +6,7 @@ use grainbench::harness::claim::Claim;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::verdict::Outcome;
 use grainbench::reports::headline::OUTCOMES;
+use std::mem::discriminant;
 
 /// Options for matching patterns: letter case is ignored, and `*` matches any text.
 const LOOSE: MatchOptions =
@@ -35,16 +36,15 @@ impl Filters {
 
     /// Returns true if the filters by quantity, source and evidence select the claim. These properties are known before a run.
     pub(crate) fn means(&self, claim: &Claim) -> bool {
-        self.of_one_key(|filter| match filter {
-            Filter::Quantity(pattern) => Some(pattern.matches_with(&claim.quantity, LOOSE)),
-            _ => None,
-        }) && self.of_one_key(|filter| match filter {
-            Filter::Source(pattern) => Some(pattern.matches_with(&claim.source.words(), LOOSE)),
-            _ => None,
-        }) && self.of_one_key(|filter| match filter {
-            Filter::Evidence(evidence) => Some(claim.evidence() == *evidence),
-            _ => None,
-        })
+        let matches = |filter: &Filter| match filter {
+            Filter::Quantity(pattern) => pattern.matches_with(&claim.quantity, LOOSE),
+            Filter::Source(pattern) => pattern.matches_with(&claim.source.words(), LOOSE),
+            Filter::Evidence(evidence) => claim.evidence() == *evidence,
+            Filter::Outcome(_) => true,
+        };
+        let has_match =
+            |key: &Filter| self.0.iter().any(|other| discriminant(other) == discriminant(key) && matches(other));
+        self.0.iter().all(has_match)
     }
 
     /// Returns the outcomes that the filters name; empty if no filter names an outcome.
@@ -54,13 +54,6 @@ impl Filters {
             _ => None,
         };
         self.0.iter().filter_map(outcome).collect()
-    }
-
-    /// Returns true if one of the filters of a key matches, or if there is no filter with this key. `passes` returns
-    /// `None` for a filter with another key.
-    fn of_one_key(&self, passes: impl Fn(&Filter) -> Option<bool>) -> bool {
-        let mut answers = self.0.iter().filter_map(passes).peekable();
-        answers.peek().is_none() || answers.any(|passes| passes)
     }
 }
 
