@@ -35,12 +35,14 @@ pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> 
     read_json(&program.folder().join(STORED)).map_err(|found| Fault::input(wrong(found)))
 }
 
-/// Returns the differences between the stored and the present name and version of an external solver, in words.
-pub(crate) fn other_program(program: &ExternalProgram, kept: &ExternalResults) -> Vec<String> {
+/// Returns the differences between a report and the stored results of an external solver, in words: of name, version and
+/// results.
+pub(crate) fn differences(program: &ExternalProgram, kept: &ExternalResults, report: &Report) -> Vec<String> {
     let version = program.version().unwrap_or_else(|| UNKNOWN.to_owned());
     let pairs = [("name", &program.manifest().name, &kept.program), ("version", &version, &kept.version)];
     let other = pairs.into_iter().filter(|(_, is, was)| is != was);
-    other.map(|(what, is, was)| format!("{what} {is}; kept: {was}")).collect()
+    let other = other.map(|(what, is, was)| format!("{what} {is}; kept: {was}"));
+    other.chain(kept.otherwise(&report.sections)).collect()
 }
 
 /// Stores a study in the source tree, for the first screen of the report.

@@ -6,7 +6,7 @@ use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
 use super::strangers::NamedSolvers;
-use super::subject::{self, Variant};
+use super::subject::{self, Variant, is_scene_file};
 use super::value::duration;
 use grainbench::cases::folder::{self as case_folder, CLAIMS};
 use grainbench::cases::registry::CASES;
@@ -107,13 +107,12 @@ impl Input<'_> {
 /// Returns the path of the scene that the arguments name: a file, or the scene of a folder; none for cases.
 pub(crate) fn scene(names: &[String]) -> Result<Option<String>, Fault> {
     let is_case = |name: &str| CASES.iter().any(|case| name.split('/').next() == Some(case.name));
-    let is_file = |name: &str| Path::new(name).extension().is_some_and(|end| end.eq_ignore_ascii_case("toml"));
-    let is_scene = |name: &&String| is_file(name) || (!is_case(name) && Path::new(name).is_dir());
+    let is_scene = |name: &&String| is_scene_file(name) || (!is_case(name) && Path::new(name).is_dir());
     let Some(name) = names.iter().find(is_scene) else { return Ok(None) };
     if names.len() > 1 {
         refuse!("{name}: expected one scene alone, found {} names", names.len());
     }
-    Ok(Some(if is_file(name) { name.clone() } else { Path::new(name).join(SCENE).display().to_string() }))
+    Ok(Some(if is_scene_file(name) { name.clone() } else { Path::new(name).join(SCENE).display().to_string() }))
 }
 
 /// Returns the case of the folder with claims that the arguments name; none for scene files, folders without claims, and cases.

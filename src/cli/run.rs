@@ -18,9 +18,7 @@ use super::select::{self, CaseSelection};
 use super::undeclared;
 use grainbench::harness::data::{Data, SceneDataError};
 use grainbench::jobs::execute::in_memory;
-use grainbench::reference::outside::ExternalProgram;
-use grainbench::reports::judged::ExternalResults;
-use grainbench::reports::{Report, Section, line};
+use grainbench::reports::{Section, line};
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 use std::time::Instant;
@@ -138,7 +136,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     }
     add_reasons(&mut report, false, options.strict && !options.expect_stored);
     let otherwise = match &kept {
-        Some(kept) => otherwise_than_kept(keep::program(selected)?, kept, &report),
+        Some(kept) => keep::differences(keep::program(selected)?, kept, &report),
         None => Vec::new(),
     };
     report.red_because.extend(otherwise.iter().map(|line| format!("differs from the stored results: {line}")));
@@ -163,13 +161,6 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
 /// Returns the reason why an interrupted run is red. [`EarlierReport`] recognizes this text.
 fn interrupted(left: usize) -> String {
     format!("interrupted: {left} checks left out")
-}
-
-/// Returns the differences between a report and the stored results of an external solver, in words.
-fn otherwise_than_kept(program: &ExternalProgram, kept: &ExternalResults, report: &Report) -> Vec<String> {
-    let mut otherwise = keep::other_program(program, kept);
-    otherwise.extend(kept.otherwise(&report.sections));
-    otherwise
 }
 
 /// Returns an error if no claim uses the data directory, if it contains none of the needed data, or if its data are damaged.
