@@ -4,8 +4,7 @@ use super::exit::{Fault, refuse};
 use super::names::{level_of, levels, push_new, row, solvers};
 use super::pattern;
 use super::solver;
-use super::subject::Variant;
-use grainbench::cases::registry::CASES;
+use super::subject::{SelectedVariants, Variant, by_case};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::{Run, Set};
@@ -60,21 +59,12 @@ pub(crate) fn select_fair(cases: &[String], levels: &[String]) -> Result<Vec<Cas
 fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Result<Vec<CaseSelection>, Fault> {
     let cases = pattern::expanded(cases)?;
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
-    let in_registry = |named: &&Variant<'_>| CASES.iter().any(|case| std::ptr::eq(*case, named.case));
-    let folders = named.iter().filter(|named| !in_registry(named)).map(|named| named.case);
-    let mut selected = Vec::new();
-    for case in CASES.iter().copied().chain(folders) {
-        let mine: Vec<&Variant<'_>> = named.iter().filter(|named| std::ptr::eq(named.case, case)).collect();
-        if mine.is_empty() && !named.is_empty() {
-            continue;
-        }
+    let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
         let mut claims = (case.claims)();
-        if !mine.is_empty() && mine.iter().all(|named| named.variant.is_some()) {
-            let wanted = |variant: &str| mine.iter().any(|named| named.variant == Some(variant));
-            claims.retain(|claim| row(claim).is_some_and(|run| wanted(run.variant)));
-        }
-        selected.push(CaseSelection { case, claims, stranger: None, is_part: false });
-    }
+        claims.retain(|claim| row(claim).is_some_and(|run| variants.contain(run.variant)));
+        CaseSelection { case, claims, stranger: None, is_part: false }
+    };
+    let mut selected: Vec<CaseSelection> = by_case(&named).into_iter().map(of_case).collect();
     refuse_unknown_solvers(&selected, solvers)?;
     let levels = wanted_levels(&selected, levels)?;
     for CaseSelection { case, claims, .. } in &mut selected {

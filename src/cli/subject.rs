@@ -89,13 +89,20 @@ impl<'a> SelectedVariants<'a> {
 
 /// Returns the cases that `CASE` and `CASE/VARIANT` name, in the order of the registry; all cases if there are no names.
 pub(crate) fn selected(names: &[String]) -> Result<Vec<(&'static Case, SelectedVariants<'_>)>, Fault> {
-    let named = names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>()?;
+    names.iter().map(|name| Variant::read(name)).collect::<Result<Vec<_>, _>>().map(|named| by_case(&named))
+}
+
+/// Returns the named cases with their variants: cases of the registry in its order, then folders. Without names, returns
+/// all cases of the registry.
+pub(crate) fn by_case<'a>(named: &[Variant<'a>]) -> Vec<(&'static Case, SelectedVariants<'a>)> {
+    let is_of_registry = |case: &&'static Case| CASES.iter().any(|known| std::ptr::eq(*known, *case));
+    let folders = named.iter().map(|named| named.case).filter(|case| !is_of_registry(case));
     let of_case = |case: &'static Case| {
-        let mine = named.iter().filter(|named| named.case.name == case.name);
+        let mine = named.iter().filter(|named| std::ptr::eq(named.case, case));
         let variants: Vec<Option<&str>> = mine.map(|named| named.variant).collect();
         (named.is_empty() || !variants.is_empty()).then_some((case, SelectedVariants(variants)))
     };
-    Ok(CASES.iter().filter_map(|case| of_case(case)).collect())
+    CASES.iter().copied().chain(folders).filter_map(of_case).collect()
 }
 
 /// Returns true if a text names a scene file.
