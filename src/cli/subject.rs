@@ -23,22 +23,21 @@ pub(crate) struct Variant<'a> {
 impl<'a> Variant<'a> {
     /// Reads `CASE`, `CASE/VARIANT`, or the path of the folder of a case, with or without `/VARIANT`.
     pub(crate) fn read_with_folders(text: &'a str) -> Result<Self, Fault> {
-        let is_named = CASES.iter().any(|case| text.split('/').next() == Some(case.name));
-        if is_named || !Path::new(text).is_dir() {
-            if is_named && Path::new(text).join(folder::CLAIMS).is_file() {
-                exit::say(
-                    "warning",
-                    &format!("`{text}` selects the built-in case; write ./{text} to select the folder"),
-                );
+        let is_folder = |path: &str| Path::new(path).join(folder::CLAIMS).is_file();
+        if CASES.iter().any(|case| text.split('/').next() == Some(case.name)) {
+            if is_folder(text) {
+                let message = format!("`{text}` selects the built-in case; write ./{text} to select the folder");
+                exit::say("warning", &message);
             }
-            let of_folder =
-                text.rsplit_once('/').filter(|(folder, _)| Path::new(folder).join(folder::CLAIMS).is_file());
-            return match of_folder.filter(|_| !is_named) {
-                Some((folder, variant)) => Self::of_case(folder::read(Path::new(folder))?, Some(variant)),
-                None => Self::read(text),
-            };
+            return Self::read(text);
         }
-        Ok(Self { case: folder::read(Path::new(text))?, variant: None })
+        if Path::new(text).is_dir() {
+            return Ok(Self { case: folder::read(Path::new(text))?, variant: None });
+        }
+        match text.rsplit_once('/').filter(|(folder, _)| is_folder(folder)) {
+            Some((folder, variant)) => Self::of_case(folder::read(Path::new(folder))?, Some(variant)),
+            None => Self::read(text),
+        }
     }
 
     /// Reads `CASE` or `CASE/VARIANT`.
