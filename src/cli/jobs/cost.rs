@@ -34,6 +34,8 @@ const ROUNDS: u32 = 5;
 pub(crate) struct CostStudy {
     /// Points of each target quantity.
     sets: Vec<PointSet>,
+    /// Index of the target quantity, and of the point in its set, of each task that measures a point.
+    places: Vec<(usize, usize)>,
     solvers: NamedSolvers,
     wanted: PointSelection,
     prices: bool,
@@ -62,11 +64,13 @@ impl CostStudy {
             PointSet::new(subject, &wanted, &solvers, &program)
         };
         let sets: Vec<PointSet> = subjects.into_iter().map(set).collect();
-        if sets.iter().all(|set| set.count() == 0) {
+        let of_set = |(number, set): (usize, &PointSet)| (0..set.count()).map(move |point| (number, point));
+        let places: Vec<(usize, usize)> = sets.iter().enumerate().flat_map(of_set).collect();
+        if places.is_empty() {
             refuse!("expected at least one point, found none for the selected cases and solvers");
         }
         let prices = !arguments.counts && (arguments.prices || arguments.cases.is_empty());
-        Ok(Self { sets, solvers, wanted, prices, arguments: arguments.clone() })
+        Ok(Self { sets, places, solvers, wanted, prices, arguments: arguments.clone() })
     }
 
     /// Returns the number of tasks before the first point.
@@ -76,15 +80,7 @@ impl CostStudy {
 
     /// Returns the index of the target quantity of a task, and the index of its point.
     fn place(&self, place: usize) -> Option<(usize, usize)> {
-        let mut at = place.checked_sub(self.beside())?;
-        for (number, set) in self.sets.iter().enumerate() {
-            let count = set.count();
-            if at < count {
-                return Some((number, at));
-            }
-            at -= count;
-        }
-        None
+        self.places.get(place.checked_sub(self.beside())?).copied()
     }
 }
 
