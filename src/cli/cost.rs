@@ -77,13 +77,12 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     }
     let input = own::Input {
         path,
-        words: [&cases[..], solver].concat(),
+        names: cases,
         solvers: solver,
         quantities: quantity,
         window: *window,
-        no_cache: study.no_cache,
+        study,
         out: &arguments.out,
-        json: study.json,
     };
     own::cost(&input, own)
 }

@@ -2,6 +2,7 @@
 
 use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::interrupt::Interrupt;
+use super::jobs::arguments::StudyOptions;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
@@ -66,17 +67,16 @@ impl Options {
 pub(crate) struct Input<'a> {
     /// Path of the scene.
     pub(crate) path: String,
-    /// Words of the command line, for the report.
-    pub(crate) words: Vec<String>,
+    /// Name of the scene on the command line.
+    pub(crate) names: &'a [String],
     /// Names or manifests of the solvers; the usual ones if empty.
     pub(crate) solvers: &'a [String],
     /// Target quantities; all if empty.
     pub(crate) quantities: &'a [String],
     /// Window of time (s) whose means are compared.
     pub(crate) window: Option<(f64, f64)>,
-    pub(crate) no_cache: bool,
+    pub(crate) study: &'a StudyOptions,
     pub(crate) out: &'a Path,
-    pub(crate) json: bool,
 }
 
 impl Input<'_> {
@@ -89,14 +89,14 @@ impl Input<'_> {
                 "--window: expected a window within 0..{duration}, the duration of {}, found {from}..",
                 self.path
             ))),
-            window => Ok(Self { window, path: self.path.clone(), words: self.words.clone(), ..*self }),
+            window => Ok(Self { window, path: self.path.clone(), ..*self }),
         }
     }
 
     /// Returns the words of the command for the report.
     fn words(&self, command: &str, budget: Duration) -> Vec<String> {
         let mut words = vec![command.to_owned()];
-        words.extend(self.words.iter().cloned());
+        words.extend(self.names.iter().chain(self.solvers).cloned());
         words.extend(self.quantities.iter().map(|quantity| format!("--quantity {quantity}")));
         words.extend(self.window.map(|(from, to)| format!("--window {from}..{to}")));
         words.push(format!("--budget {}s", budget.as_secs_f64()));
@@ -168,7 +168,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     let input = &input.within(&scene)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.no_cache)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
     let words = input.words("cost", options.budget());
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -193,7 +193,7 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
         return Err(stopped());
     }
     drop(follower);
-    publish_study(&study, Output::new(input.out, input.json, false))
+    publish_study(&study, Output::new(input.out, input.study.json, false))
 }
 
 /// Returns the study of a scene.
@@ -248,7 +248,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.no_cache)?;
+    let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
@@ -264,7 +264,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     let mut written = Study::new(provenance(input.words("stability", options.budget()), start.elapsed().as_secs_f64()));
     written.limits = limits;
     written.sources = sources(&study.names);
-    publish_study(&written, Output::new(input.out, input.json, false))
+    publish_study(&written, Output::new(input.out, input.study.json, false))
 }
 
 /// Returns hashes of the solvers' sources, by solver name.

@@ -47,15 +47,6 @@ pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     if study.plan.is_given() {
         refuse!("{path}: expected cases with `--plan`, found a scene file");
     }
-    let input = own::Input {
-        path,
-        words: [&cases[..], solver].concat(),
-        solvers: solver,
-        quantities: &[],
-        window: None,
-        no_cache: study.no_cache,
-        out,
-        json: study.json,
-    };
+    let input = own::Input { path, names: cases, solvers: solver, quantities: &[], window: None, study, out };
     own::stability(&input, own)
 }
