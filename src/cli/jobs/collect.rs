@@ -63,24 +63,22 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let study = from_arguments(&Planned::read(&plan)?, true)?;
     study.check(&plan)?;
     let finished = FinishedTasks::read(&plan.path, true).map_err(Fault::input)?;
-    let (missing, unfinished, seconds) = progress(&plan, &finished);
     let how = ReportOptions {
         out: out.clone(),
         strict: arguments.strict,
         parquet: arguments.parquet,
         json: arguments.json,
         against: against.as_deref(),
-        words: words(&plan, &finished, unfinished.clone()),
-        unfinished,
-        seconds,
+        words: words(&plan, &finished),
         ..ReportOptions::default()
     };
-    let code = study.report_of(&plan, &finished, &how)?;
+    let code = study.report_of(&plan, &finished, how)?;
     if !earlier.is_empty() {
         let mut columns = earlier;
         columns.push(read_column(&out)?);
         write_trend(&out, &columns)?;
     }
+    let missing = plan.tasks.iter().filter(|task| !finished.entries.contains_key(&task.id)).count();
     if missing > 0 {
         let what =
             format!("{missing} of {} tasks are not finished; the report contains the finished tasks", plan.tasks.len());
@@ -90,20 +88,9 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     Ok(code)
 }
 
-/// Returns the number of tasks without a result, a text with the numbers of finished and of all tasks if a task is not
-/// finished, and the duration of the finished tasks (s).
-pub(super) fn progress(plan: &Plan, finished: &FinishedTasks) -> (usize, Option<String>, f64) {
-    let done: Vec<f64> =
-        plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.seconds).collect();
-    let missing = plan.tasks.len() - done.len();
-    let unfinished = (missing > 0).then(|| format!("unfinished: {} of {} tasks", done.len(), plan.tasks.len()));
-    (missing, unfinished, done.iter().sum())
-}
-
-/// Returns texts for the report: the machines that ran the tasks, and the largest system load during timed tasks. If
-/// tasks are missing, the first text is the number of finished tasks.
-fn words(plan: &Plan, finished: &FinishedTasks, unfinished: Option<String>) -> Vec<String> {
-    let mut words: Vec<String> = unfinished.into_iter().collect();
+/// Returns texts for the report: the machines that ran the tasks, and the largest system load during timed tasks.
+fn words(plan: &Plan, finished: &FinishedTasks) -> Vec<String> {
+    let mut words = Vec::new();
     let used: BTreeSet<usize> =
         plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id)).map(|entry| entry.worker).collect();
     let mut machines: BTreeSet<String> = BTreeSet::new();

@@ -1,7 +1,6 @@
 //! Tasks of a command without `--plan`. They run in its output directory, and an interrupted command continues there.
 
 use super::arguments::{Arguments, StudyOptions};
-use super::collect::progress;
 use super::from_arguments;
 use super::study::{ReportOptions, plan_of};
 use super::watch::Follower;
@@ -55,10 +54,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
     let how = ReportOptions { out: out.clone(), json: arguments.json, against, ..ReportOptions::default() };
     let report = |how: ReportOptions<'_>| {
         let finished = FinishedTasks::read(out, true).map_err(Fault::input)?;
-        let (missing, unfinished, seconds) = progress(&plan, &finished);
-        let words = unfinished.clone().into_iter().collect();
-        let update_stored = how.update_stored.filter(|_| missing == 0);
-        study.report_of(&plan, &finished, &ReportOptions { unfinished, words, seconds, update_stored, ..how })
+        study.report_of(&plan, &finished, how)
     };
     let written = Mutex::new(Instant::now());
     let draft = || {

@@ -52,8 +52,9 @@ pub(crate) trait Study: Tasks + TaskList {
 pub(crate) trait AnyStudy: Tasks {
     /// Runs a shard of a plan.
     fn work(&self, plan: &Plan, asked: &WorkRequest, worker: &Worker, watch: &dyn Watch) -> Result<Summary, Fault>;
-    /// Writes the report of the finished tasks of a plan.
-    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome;
+    /// Writes the report of the finished tasks of a plan, and adds to the options how much is finished. A study with
+    /// unfinished tasks is not stored.
+    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: ReportOptions<'_>) -> Outcome;
 }
 
 impl<S: Study> AnyStudy for S {
@@ -61,8 +62,15 @@ impl<S: Study> AnyStudy for S {
         Ok(work(plan, asked, worker, watch, self)?)
     }
 
-    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: &ReportOptions<'_>) -> Outcome {
-        self.report(plan.tasks.iter().map(|task| finished.result(task.id)).collect(), how)
+    fn report_of(&self, plan: &Plan, finished: &FinishedTasks, how: ReportOptions<'_>) -> Outcome {
+        let entries = plan.tasks.iter().filter_map(|task| finished.entries.get(&task.id));
+        let (all, done) = (plan.tasks.len(), entries.clone().count());
+        let unfinished = (done < all).then(|| format!("unfinished: {done} of {all} tasks"));
+        let words = unfinished.iter().cloned().chain(how.words).collect();
+        let update_stored = how.update_stored.filter(|_| unfinished.is_none());
+        let seconds = entries.map(|entry| entry.seconds).sum();
+        let results = plan.tasks.iter().map(|task| finished.result(task.id)).collect();
+        self.report(results, &ReportOptions { unfinished, words, update_stored, seconds, ..how })
     }
 }
 
