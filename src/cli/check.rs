@@ -115,15 +115,13 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
 
 /// Checks one output. Returns its section and the name of the output for the page.
 fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
-    let like = || {
-        let names = Names(arguments.map.clone());
-        arguments.like.clone().map(|path| StartFile { path, names })
-    };
+    let names = || Names(arguments.map.clone());
+    let like = arguments.like.clone().map(|path| StartFile { path, names: names() });
     let subject = if subject::is_scene_file(scene) {
         let (adapted, _) = subject::adapted_scene(scene, &arguments.set)?;
         subject::tell_implied(&adapted.implied);
         let AdaptedScene { scene: mut own, moved, .. } = adapted;
-        if let Some(StartFile { path, names }) = like() {
+        if let Some(StartFile { path, names }) = like {
             read_start(&path, &names, &mut own)?;
         }
         let name = Path::new(scene).file_stem().unwrap_or_default().to_string_lossy().into_owned();
@@ -131,18 +129,16 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         DeclaredScene::Scene { name, scene: Box::new(own), own: unchanged, moved }
     } else {
         let Variant { case, variant } = Variant::read_with_folders(scene)?;
-        DeclaredScene::Case { case, variant, set: &arguments.set, like: like() }
+        DeclaredScene::Case { case, variant, set: &arguments.set, like }
     };
     let beside = || {
-        arguments
-            .dump
-            .first()
-            .and_then(|dump| LOGS.map(|log| dump.with_file_name(log)).into_iter().find(|log| log.is_file()))
+        let first = arguments.dump.first()?;
+        LOGS.map(|log| first.with_file_name(log)).into_iter().find(|log| log.is_file())
     };
     let sources = Sources {
         files: arguments.dump.clone(),
         log: arguments.log.clone().or_else(beside),
-        names: Names(arguments.map.clone()),
+        names: names(),
         time_step: arguments.time_step,
         frame_interval: arguments.frame_interval,
         most_rows: Some(most_rows(&subject)?),
@@ -174,6 +170,7 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
     let mut ignored: Vec<Pattern> =
         arguments.ignore.iter().map(|name| pattern::read("--ignore", name)).collect::<Result<_, _>>()?;
     ignored.extend(LOGS.iter().chain(&INPUTS).filter_map(|name| Pattern::new(name).ok()));
+    let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
     let found = |folder: &Path| -> Result<(Vec<PathBuf>, Vec<PathBuf>), Fault> {
         let unreadable = |error: io::Error| {
             Fault::input(format!("{}: expected a folder that can be read, found {error}", folder.display()))
@@ -181,13 +178,31 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
         let entries = fs::read_dir(folder).map_err(unreadable)?;
         let paths = entries.map(|entry| entry.map(|entry| entry.path()));
         let mut paths = paths.collect::<io::Result<Vec<_>>>().map_err(unreadable)?;
-        let name = |path: &Path| path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         paths.retain(|path| !ignored.iter().any(|pattern| pattern.matches(&name(path))));
         paths.sort();
         Ok(paths.into_iter().partition(|path| path.is_dir()))
     };
-    let (mut sections, mut not_judged) = (Vec::new(), Vec::new());
-    let mut judge = |scene: &str, files: Vec<PathBuf>| -> Result<(), Fault> {
+    // Each folder of a case or a variant with its scene and its files.
+    let mut folders: Vec<(PathBuf, String, Vec<PathBuf>)> = Vec::new();
+    let (of_cases, mut misplaced) = found(folder)?;
+    for of_case in of_cases {
+        let case = name(&of_case);
+        let (variants, files) = found(&of_case)?;
+        if !files.is_empty() || variants.is_empty() {
+            folders.push((of_case, case.clone(), files));
+        }
+        for of_variant in variants {
+            let (deeper, files) = found(&of_variant)?;
+            let scene = format!("{case}/{}", name(&of_variant));
+            folders.push((of_variant, scene, files));
+            misplaced.extend(deeper);
+        }
+    }
+    let (mut sections, mut not_judged, mut empty) = (Vec::new(), Vec::new(), Vec::new());
+    for (folder, scene, files) in folders {
+        if files.is_empty() {
+            empty.push((folder, without_output(&scene)));
+        }
         let mut dump = Vec::new();
         for file in files {
             match is_of_a_run(&file) {
@@ -196,35 +211,12 @@ fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {
             }
         }
         if !dump.is_empty() {
-            let arguments = Arguments { dump, ..arguments.clone() };
-            sections.push(one(&arguments, scene)?.0);
-        }
-        Ok(())
-    };
-    let mut empty = Vec::new();
-    let (of_cases, beside_cases) = found(folder)?;
-    let mut beside = Vec::new();
-    for of_case in of_cases {
-        let name = of_case.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        let (variants, files) = found(&of_case)?;
-        if files.is_empty() && variants.is_empty() {
-            empty.push((of_case, without_output(&name)));
-        }
-        judge(&name, files)?;
-        for of_variant in variants {
-            let variant = of_variant.file_name().unwrap_or_default().to_string_lossy().into_owned();
-            let (folders, files) = found(&of_variant)?;
-            let scene = format!("{name}/{variant}");
-            if files.is_empty() {
-                empty.push((of_variant, without_output(&scene)));
-            }
-            judge(&scene, files)?;
-            beside.extend(folders);
+            sections.push(one(&Arguments { dump, ..arguments.clone() }, &scene)?.0);
         }
     }
     let place = |path: PathBuf| (path, "it is not in a folder `CASE` or `CASE/VARIANT`".to_owned());
     not_judged.extend(empty);
-    not_judged.extend(beside_cases.into_iter().chain(beside).map(place));
+    not_judged.extend(misplaced.into_iter().map(place));
     if sections.is_empty() && not_judged.is_empty() {
         let folder = folder.display();
         refuse!("{folder}: expected outputs in its folders `CASE` or `CASE/VARIANT`, found none");
