@@ -17,7 +17,7 @@ use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::{REPORT_FILE, named_figures};
 use grainbench::reports::study::{self, STUDY_FILE, load_study, write_study};
-use grainbench::reports::{SaveError, summary_table_within, write_pictures, write_report};
+use grainbench::reports::{summary_table_within, write_pictures, write_report};
 use grainbench::solver::record::Record;
 use grainbench::store::refuse_mixed;
 use std::borrow::Borrow;
@@ -120,10 +120,7 @@ fn publish<F: Borrow<Figure>>(arguments: &Arguments, style: &FigureStyle, figure
     for format in FigureFormat::ALL {
         if arguments.figures.iter().any(|asked| asked == format.ending()) {
             let names = figures.iter().map(|(name, _)| name.as_str());
-            convert_figures(dir, names, format, style.font.as_deref()).map_err(|error| match error {
-                SaveError::NoFont { .. } => Fault::input(error),
-                error => error.into(),
-            })?;
+            convert_figures(dir, names, format, style.font.as_deref())?;
         }
     }
     print(&format!("{}\n", dir.join("index.html").display()))
