@@ -46,15 +46,10 @@ pub enum JudgementError {
 }
 
 /// Failed results of a solver. `Debug` prints the same lines as `Display`, so that a failed test shows them.
-#[derive(Clone, PartialEq, Eq)]
+#[derive(Clone, PartialEq, Eq, Error)]
+#[error("{}", .lines.join("\n"))]
 pub struct SolverRejection {
     lines: Vec<String>,
-}
-
-impl fmt::Display for SolverRejection {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}", self.lines.join("\n"))
-    }
 }
 
 impl fmt::Debug for SolverRejection {
@@ -62,8 +57,6 @@ impl fmt::Debug for SolverRejection {
         write!(formatter, "the solver does not pass:\n{self}")
     }
 }
-
-impl std::error::Error for SolverRejection {}
 
 fn names() -> String {
     registry::CASES.iter().map(|case| case.name).collect::<Vec<_>>().join(", ")
