@@ -184,13 +184,10 @@ impl Study for CostStudy {
             study.diagrams.push(set.diagram(points));
         }
         study.diagrams.retain(|diagram| !diagram.points.is_empty());
-        let asked: Vec<String> =
-            study.diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| point.solver.clone()).collect();
-        study.sources = own::sources(&asked);
         if let (Some(old), Some(path)) = (&old, how.against) {
             set_against(&mut study, old, path);
         }
-        how.publish(&study, has_crash)
+        how.publish(study, has_crash)
     }
 }
 

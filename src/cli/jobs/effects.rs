@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
 use crate::cli::exit::{Fault, Outcome};
-use crate::cli::own::{self, sources};
+use crate::cli::own;
 use crate::cli::subject::{SelectedVariants, selected};
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
@@ -73,9 +73,7 @@ impl Study for EffectStudy {
         let (results, has_crash) = outputs(results, how);
         let mut study = how.study(self.arguments.command_words("effects"));
         study.ledger.extend(results.into_iter().flatten().flatten());
-        let solvers = study.ledger.iter().flat_map(|entry| entry.shifts.iter().map(|shift| shift.solver.clone()));
-        study.sources = sources(&solvers.collect::<Vec<_>>());
-        how.publish(&study, has_crash)
+        how.publish(study, has_crash)
     }
 }
 

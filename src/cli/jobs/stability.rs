@@ -3,14 +3,12 @@
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, Tasks, outputs};
 use crate::cli::exit::{Fault, Outcome, refuse};
-use crate::cli::own::sources;
 use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
-use grainbench::reports::study::Study as Report;
 use grainbench::reports::study::stability::{HardCaseResult, Limit};
 use grainbench::scene::scene::Scene;
 use grainbench::store::log::State;
@@ -147,16 +145,8 @@ impl Study for StabilityStudy {
                 Tested::Hard(row) => study.hard.push(row),
             }
         }
-        study.sources = sources_of(&study);
-        how.publish(&study, has_crash)
+        how.publish(study, has_crash)
     }
-}
-
-/// Returns the hashes of the sources of all solvers in the study, by solver name.
-fn sources_of(study: &Report) -> BTreeMap<String, String> {
-    let limits = study.limits.iter().map(|row| row.solver.clone());
-    let asked: Vec<String> = limits.chain(study.hard.iter().map(|row| row.solver.clone())).collect();
-    sources(&asked)
 }
 
 /// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of

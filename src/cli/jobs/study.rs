@@ -4,6 +4,7 @@
 use super::arguments::Arguments;
 use crate::cli::exit::{self, Fault, Outcome, RED, refuse};
 use crate::cli::keep::keep_study;
+use crate::cli::own::sources;
 use crate::cli::provenance::{self, provenance};
 use crate::cli::publish::{Output, publish_study};
 use grainbench::jobs::execute::{TaskList, Watch};
@@ -122,17 +123,22 @@ impl ReportOptions<'_> {
         Report::new(provenance(words.into_iter().chain(self.words.iter().cloned()).collect(), self.seconds))
     }
 
-    /// Writes and prints a study. The exit code is red if a task crashed.
-    pub(super) fn publish(&self, study: &Report, has_crash: bool) -> Outcome {
+    /// Adds the hashes of the solvers' sources to a study, and writes and prints it. The exit code is red if a task
+    /// crashed.
+    pub(super) fn publish(&self, mut study: Report, has_crash: bool) -> Outcome {
+        let points = study.diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| &point.solver);
+        let limits = study.limits.iter().map(|limit| &limit.solver).chain(study.hard.iter().map(|row| &row.solver));
+        let shifts = study.ledger.iter().flat_map(|entry| &entry.shifts).map(|shift| &shift.solver);
+        study.sources = sources(&points.chain(limits).chain(shifts).cloned().collect::<Vec<_>>());
         if self.is_draft {
-            write_study(&self.out, study)?;
+            write_study(&self.out, &study)?;
             return Ok(ExitCode::SUCCESS);
         }
         if let Some(name) = self.update_stored {
-            keep_study(name, study)?;
+            keep_study(name, &study)?;
         }
         let text = Some(study.text() + &self.end);
-        let code = publish_study(study, Output { text, ..Output::new(&self.out, self.json, false) })?;
+        let code = publish_study(&study, Output { text, ..Output::new(&self.out, self.json, false) })?;
         Ok(if has_crash { RED } else { code })
     }
 }
