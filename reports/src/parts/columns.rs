@@ -2,24 +2,30 @@
 
 use nalgebra::Vector3;
 
+/// A value of a row.
+pub(super) enum Value<'r> {
+    /// Integer.
+    Whole(&'r mut i64),
+    /// Number, which may be NaN.
+    Number(&'r mut f64),
+    /// Number that may be absent.
+    Told(&'r mut Option<f64>),
+    /// Boolean value.
+    Flag(&'r mut bool),
+    /// Text.
+    Word(&'r mut String),
+}
+
 /// Visitor of the columns of a row, in a fixed order. One implementation reads values from the row; another one writes
 /// values to it.
 pub(super) trait Columns {
-    /// Visits an integer.
-    fn whole(&mut self, name: &'static str, value: &mut i64);
-    /// Visits a number, which may be NaN.
-    fn number(&mut self, name: &'static str, value: &mut f64);
-    /// Visits a number that may be absent.
-    fn optional(&mut self, name: &'static str, value: &mut Option<f64>);
-    /// Visits a Boolean value.
-    fn flag(&mut self, name: &'static str, value: &mut bool);
-    /// Visits a text.
-    fn word(&mut self, name: &'static str, value: &mut String);
+    /// Visits a value.
+    fn visit(&mut self, name: &'static str, value: Value<'_>);
 
-    /// Visits the components of a vector.
-    fn vector(&mut self, names: [&'static str; 3], value: &mut Vector3<f64>) {
-        for (name, value) in names.into_iter().zip(value.iter_mut()) {
-            self.number(name, value);
+    /// Visits several numbers, such as the components of a vector.
+    fn numbers<'r, const N: usize>(&mut self, names: [&'static str; N], values: impl IntoIterator<Item = &'r mut f64>) {
+        for (name, value) in names.into_iter().zip(values) {
+            self.visit(name, Value::Number(value));
         }
     }
 
@@ -29,7 +35,7 @@ pub(super) trait Columns {
         let mut numbers = value.unwrap_or([0.0; N]);
         for (name, number) in names.into_iter().zip(&mut numbers) {
             let mut component = value.is_some().then_some(*number);
-            self.optional(name, &mut component);
+            self.visit(name, Value::Told(&mut component));
             all &= component.is_some();
             *number = component.unwrap_or(*number);
         }
@@ -74,129 +80,81 @@ pub(crate) enum Values {
 }
 
 /// Buffer of columns that is filled row by row.
-#[derive(Debug, Default)]
-pub(super) struct ColumnBuffer {
-    pub(super) columns: Vec<(&'static str, Values)>,
-    at: usize,
+#[derive(Default)]
+struct ColumnBuffer {
+    columns: Vec<(&'static str, Values)>,
+    /// Index of the next column; none while the first visit creates the columns.
+    next: Option<usize>,
 }
 
-impl ColumnBuffer {
-    /// Returns the columns of some rows. Without rows, all columns are empty.
-    pub(super) fn from_rows<R: Row>(rows: &mut [R]) -> Self {
-        let mut gathered = Self::default();
-        R::blank().visit(&mut gathered);
-        for (_, values) in &mut gathered.columns {
-            match values {
-                Values::Whole(values) => values.clear(),
-                Values::Number(values) => values.clear(),
-                Values::Told(values) => values.clear(),
-                Values::Flag(values) => values.clear(),
-                Values::Word(values) => values.clear(),
-            }
-        }
-        for row in rows {
-            gathered.at = 0;
-            row.visit(&mut gathered);
-        }
-        gathered
+/// Returns the names and the values of the columns of some rows. Without rows, all columns are empty.
+pub(super) fn columns_of<R: Row>(rows: &mut [R]) -> Vec<(&'static str, Values)> {
+    let mut buffer = ColumnBuffer::default();
+    R::blank().visit(&mut buffer);
+    for row in rows {
+        buffer.next = Some(0);
+        row.visit(&mut buffer);
     }
-
-    fn column(&mut self, name: &'static str, empty: Values) -> &mut Values {
-        if self.at == self.columns.len() {
-            self.columns.push((name, empty));
-        }
-        self.at += 1;
-        &mut self.columns[self.at - 1].1
-    }
+    buffer.columns
 }
 
 impl Columns for ColumnBuffer {
-    fn whole(&mut self, name: &'static str, value: &mut i64) {
-        if let Values::Whole(values) = self.column(name, Values::Whole(Vec::new())) {
-            values.push(*value);
+    fn visit(&mut self, name: &'static str, value: Value<'_>) {
+        let Some(next) = &mut self.next else {
+            let empty = match value {
+                Value::Whole(_) => Values::Whole(Vec::new()),
+                Value::Number(_) => Values::Number(Vec::new()),
+                Value::Told(_) => Values::Told(Vec::new()),
+                Value::Flag(_) => Values::Flag(Vec::new()),
+                Value::Word(_) => Values::Word(Vec::new()),
+            };
+            return self.columns.push((name, empty));
+        };
+        match (&mut self.columns[*next].1, value) {
+            (Values::Whole(values), Value::Whole(value)) => values.push(*value),
+            (Values::Number(values), Value::Number(value)) => values.push(*value),
+            (Values::Told(values), Value::Told(value)) => values.push(*value),
+            (Values::Flag(values), Value::Flag(value)) => values.push(*value),
+            (Values::Word(values), Value::Word(value)) => values.push(value.clone()),
+            _ => {}
         }
-    }
-
-    fn number(&mut self, name: &'static str, value: &mut f64) {
-        if let Values::Number(values) = self.column(name, Values::Number(Vec::new())) {
-            values.push(*value);
-        }
-    }
-
-    fn optional(&mut self, name: &'static str, value: &mut Option<f64>) {
-        if let Values::Told(values) = self.column(name, Values::Told(Vec::new())) {
-            values.push(*value);
-        }
-    }
-
-    fn flag(&mut self, name: &'static str, value: &mut bool) {
-        if let Values::Flag(values) = self.column(name, Values::Flag(Vec::new())) {
-            values.push(*value);
-        }
-    }
-
-    fn word(&mut self, name: &'static str, value: &mut String) {
-        if let Values::Word(values) = self.column(name, Values::Word(Vec::new())) {
-            values.push(value.clone());
-        }
+        *next += 1;
     }
 }
 
 /// Visitor that writes the values of columns to rows. If a column lacks a value, an optional number becomes absent, and any
 /// other value keeps its default.
-pub(super) struct RowWriter<'v> {
+struct RowWriter<'v> {
     columns: &'v [Values],
     row: usize,
-    at: usize,
+    next: usize,
 }
 
-impl<'v> RowWriter<'v> {
-    /// Returns `count` rows with the values of the columns.
-    pub(super) fn rows<R: Row>(columns: &'v [Values], count: usize) -> Vec<R> {
-        let row = |row: usize| {
-            let mut filled = R::blank();
-            filled.visit(&mut Self { columns, row, at: 0 });
-            filled
-        };
-        (0..count).map(row).collect()
-    }
-
-    fn next(&mut self) -> Option<&'v Values> {
-        self.at += 1;
-        self.columns.get(self.at - 1)
-    }
+/// Returns `count` rows with the values of the columns.
+pub(super) fn rows_of<R: Row>(columns: &[Values], count: usize) -> Vec<R> {
+    let row = |row: usize| {
+        let mut filled = R::blank();
+        filled.visit(&mut RowWriter { columns, row, next: 0 });
+        filled
+    };
+    (0..count).map(row).collect()
 }
 
 impl Columns for RowWriter<'_> {
-    fn whole(&mut self, _name: &'static str, value: &mut i64) {
-        if let Some(Values::Whole(values)) = self.next() {
-            *value = values.get(self.row).copied().unwrap_or(*value);
+    fn visit(&mut self, _name: &'static str, value: Value<'_>) {
+        fn set<T: Clone>(value: &mut T, stored: Option<&T>) {
+            if let Some(stored) = stored {
+                value.clone_from(stored);
+            }
         }
-    }
-
-    fn number(&mut self, _name: &'static str, value: &mut f64) {
-        if let Some(Values::Number(values)) = self.next() {
-            *value = values.get(self.row).copied().unwrap_or(*value);
+        match (self.columns.get(self.next), value) {
+            (Some(Values::Whole(values)), Value::Whole(value)) => set(value, values.get(self.row)),
+            (Some(Values::Number(values)), Value::Number(value)) => set(value, values.get(self.row)),
+            (Some(Values::Told(values)), Value::Told(value)) => *value = values.get(self.row).copied().flatten(),
+            (Some(Values::Flag(values)), Value::Flag(value)) => set(value, values.get(self.row)),
+            (Some(Values::Word(values)), Value::Word(value)) => set(value, values.get(self.row)),
+            _ => {}
         }
-    }
-
-    fn optional(&mut self, _name: &'static str, value: &mut Option<f64>) {
-        if let Some(Values::Told(values)) = self.next() {
-            *value = values.get(self.row).copied().flatten();
-        }
-    }
-
-    fn flag(&mut self, _name: &'static str, value: &mut bool) {
-        if let Some(Values::Flag(values)) = self.next() {
-            *value = values.get(self.row).copied().unwrap_or(*value);
-        }
-    }
-
-    fn word(&mut self, _name: &'static str, value: &mut String) {
-        if let Some(Values::Word(values)) = self.next()
-            && let Some(word) = values.get(self.row)
-        {
-            value.clone_from(word);
-        }
+        self.next += 1;
     }
 }

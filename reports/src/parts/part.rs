@@ -3,6 +3,7 @@
 
 use std::fs;
 use std::io;
+use std::iter;
 use std::path::{Path, PathBuf};
 
 use grainbench_solver::record::{BodyState, ContactState, GrainState, PointState, Snapshot, WallState};
@@ -65,47 +66,29 @@ pub(super) fn files(folder: &Path) -> Vec<(String, PathBuf)> {
     named.into_iter().filter(|(_, path)| path.is_file()).collect()
 }
 
-/// Writer of a table. It creates the file of the table when the first row is added.
-struct LazyTable<R> {
-    writer: Option<TableWriter<SnapshotRow<R>>>,
-}
-
-impl<R: Row> LazyTable<R> {
-    fn add(
-        &mut self,
-        directory: &Path,
-        without: &[&'static str],
-        rows: impl Iterator<Item = SnapshotRow<R>>,
-    ) -> io::Result<()> {
-        let mut rows = rows.peekable();
-        if rows.peek().is_none() {
-            return Ok(());
-        }
-        let writer = match &mut self.writer {
-            Some(writer) => writer,
-            none => none.insert(TableWriter::new(directory, without)?),
-        };
-        writer.add(rows)
+/// Adds rows to a table. The file of the table is created when the first row is added.
+fn add<R: Row>(
+    writer: &mut Option<TableWriter>,
+    directory: &Path,
+    without: &[&'static str],
+    rows: impl Iterator<Item = R>,
+) -> io::Result<()> {
+    let mut rows = rows.peekable();
+    if rows.peek().is_none() {
+        return Ok(());
     }
-
-    fn bytes(&self) -> usize {
-        self.writer.as_ref().map_or(0, TableWriter::bytes)
-    }
-
-    fn close(self) -> io::Result<Option<blake3::Hash>> {
-        self.writer.map(TableWriter::close).transpose()
-    }
+    let writer = match writer {
+        Some(writer) => writer,
+        none => none.insert(TableWriter::new::<R>(directory, without)?),
+    };
+    writer.add(rows)
 }
 
 /// A part that is being written to a hidden folder.
 pub(super) struct OpenPart {
     directory: TempDir,
-    frames: LazyTable<Frame>,
-    grains: LazyTable<GrainState>,
-    contacts: LazyTable<ContactState>,
-    walls: LazyTable<WallState>,
-    bodies: LazyTable<BodyState>,
-    points: LazyTable<PointState>,
+    /// Writers in the order of [`TABLES`]; none for a table without rows.
+    writers: [Option<TableWriter>; TABLES.len()],
     rows: u64,
     /// Columns of the grains table that are not written.
     without: Vec<&'static str>,
@@ -117,17 +100,7 @@ impl OpenPart {
     pub(super) fn begin(folder: &Path, without: &[&'static str]) -> io::Result<Self> {
         let directory = temporary_in(folder)?;
         fs::create_dir(directory.path().join("part"))?;
-        Ok(Self {
-            directory,
-            frames: LazyTable { writer: None },
-            grains: LazyTable { writer: None },
-            contacts: LazyTable { writer: None },
-            walls: LazyTable { writer: None },
-            bodies: LazyTable { writer: None },
-            points: LazyTable { writer: None },
-            rows: 0,
-            without: without.to_vec(),
-        })
+        Ok(Self { directory, writers: Default::default(), rows: 0, without: without.to_vec() })
     }
 
     /// Adds snapshots. `first` is the index of the first of them in the run.
@@ -143,40 +116,27 @@ impl OpenPart {
             })
         }
         let directory = self.directory.path().join("part");
-        self.frames.add(
-            &directory,
-            &[],
-            rows(first, snapshots, |snapshot| std::iter::once(Frame::from_snapshot(snapshot))),
-        )?;
-        self.grains.add(
-            &directory,
-            &self.without,
-            rows(first, snapshots, |snapshot| snapshot.grains.iter().cloned()),
-        )?;
-        self.contacts.add(
-            &directory,
-            &[],
-            rows(first, snapshots, |snapshot| snapshot.told_contacts().iter().copied()),
-        )?;
-        self.walls.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.walls.iter().cloned()))?;
-        self.bodies.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.bodies.iter().cloned()))?;
-        self.points.add(&directory, &[], rows(first, snapshots, |snapshot| snapshot.points.iter().copied()))?;
+        let [frames, grains, contacts, walls, bodies, points] = &mut self.writers;
+        add(frames, &directory, &[], rows(first, snapshots, |snapshot| iter::once(Frame::from_snapshot(snapshot))))?;
+        add(grains, &directory, &self.without, rows(first, snapshots, |snapshot| snapshot.grains.iter().cloned()))?;
+        add(contacts, &directory, &[], rows(first, snapshots, |snapshot| snapshot.told_contacts().iter().copied()))?;
+        add(walls, &directory, &[], rows(first, snapshots, |snapshot| snapshot.walls.iter().cloned()))?;
+        add(bodies, &directory, &[], rows(first, snapshots, |snapshot| snapshot.bodies.iter().cloned()))?;
+        add(points, &directory, &[], rows(first, snapshots, |snapshot| snapshot.points.iter().copied()))?;
         self.rows += snapshots.iter().map(rows_of).sum::<u64>();
         Ok(())
     }
 
     /// Returns the number of bytes written so far.
     pub(super) fn bytes(&self) -> usize {
-        let Self { frames, grains, contacts, walls, bodies, points, .. } = self;
-        [frames.bytes(), grains.bytes(), contacts.bytes(), walls.bytes(), bodies.bytes(), points.bytes()].iter().sum()
+        self.writers.iter().flatten().map(TableWriter::bytes).sum()
     }
 
     /// Closes the part and moves it to the folder. `number` is the number of the part.
     pub(super) fn close(self, folder: &Path, number: usize) -> io::Result<Seal> {
-        let Self { directory, frames, grains, contacts, walls, bodies, points, rows, .. } = self;
-        let hashes =
-            [frames.close()?, grains.close()?, contacts.close()?, walls.close()?, bodies.close()?, points.close()?];
-        let hash = together(&hashes);
+        let Self { directory, writers, rows, .. } = self;
+        let hashes = writers.into_iter().map(|writer| writer.map(TableWriter::close).transpose());
+        let hash = together(&hashes.collect::<io::Result<Vec<_>>>()?);
         // The name contains the hash, so that a part never replaces a different part.
         let name = format!("{number:06}-{}", &hash.to_hex()[..8]);
         let place = folder.join(&name);

@@ -1,7 +1,7 @@
 //! Rows of the tables of a part, one for each snapshot, grain, contact, wall, body or material point. Units are SI, as
 //! in [`grainbench_solver::record`].
 
-use super::columns::{Columns as Visit, Row};
+use super::columns::{Columns as Visit, Row, Value};
 use grainbench_scene::columns::{Chosen, Columns};
 use grainbench_solver::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
 use nalgebra::Vector3;
@@ -63,13 +63,13 @@ impl Row for Frame {
 
     fn visit(&mut self, columns: &mut impl Visit) {
         let snapshot = &mut self.0;
-        columns.vector(["low_x", "low_y", "low_z"], &mut snapshot.bounds.0);
-        columns.vector(["high_x", "high_y", "high_z"], &mut snapshot.bounds.1);
+        columns.numbers(["low_x", "low_y", "low_z"], &mut snapshot.bounds.0);
+        columns.numbers(["high_x", "high_y", "high_z"], &mut snapshot.bounds.1);
         for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut snapshot.periodic) {
-            columns.flag(name, periodic);
+            columns.visit(name, Value::Flag(periodic));
         }
         let mut has_contacts = snapshot.contacts.is_some();
-        columns.flag("contacts_told", &mut has_contacts);
+        columns.visit("contacts_told", Value::Flag(&mut has_contacts));
         snapshot.contacts = has_contacts.then(Vec::new);
     }
 }
@@ -98,15 +98,15 @@ impl Row for GrainState {
     fn visit(&mut self, columns: &mut impl Visit) {
         whole(columns, "id", &mut self.id);
         whole(columns, "material", &mut self.material);
-        columns.number("radius", &mut self.radius);
-        columns.number("mass", &mut self.mass);
-        columns.vector(PLACE, &mut self.position);
-        columns.vector(VELOCITY, &mut self.velocity);
-        columns.vector(SPIN, &mut self.spin);
-        columns.optional("angle", &mut self.angle);
+        columns.visit("radius", Value::Number(&mut self.radius));
+        columns.visit("mass", Value::Number(&mut self.mass));
+        columns.numbers(PLACE, &mut self.position);
+        columns.numbers(VELOCITY, &mut self.velocity);
+        columns.numbers(SPIN, &mut self.spin);
+        columns.visit("angle", Value::Told(&mut self.angle));
         columns.told_vector(FORCE, &mut self.force);
         columns.told_vector(TORQUE, &mut self.torque);
-        columns.number("plastic_strain", &mut self.plastic_strain);
+        columns.visit("plastic_strain", Value::Number(&mut self.plastic_strain));
         columns.told_apart(VIRIAL, &mut self.virial);
         columns.told_apart(MEAN_VIRIAL, &mut self.mean_virial);
     }
@@ -136,19 +136,19 @@ impl Row for ContactState {
             Partner::Wall(place) => ("wall", i64::from(place)),
         };
         let mut kind = word.to_owned();
-        columns.word("partner", &mut kind);
-        columns.whole("partner_number", &mut number);
+        columns.visit("partner", Value::Word(&mut kind));
+        columns.visit("partner_number", Value::Whole(&mut number));
         self.partner = match kind.as_str() {
             "grain" => Partner::Grain(number as u32),
             "body" => Partner::Body(number as u32),
             _ => Partner::Wall(number as u16),
         };
-        columns.vector(PLACE, &mut self.point);
-        columns.vector(["normal_x", "normal_y", "normal_z"], &mut self.normal);
-        columns.number("overlap", &mut self.overlap);
-        columns.number("normal_force", &mut self.normal_force);
-        columns.vector(["shear_x", "shear_y", "shear_z"], &mut self.shear_force);
-        columns.flag("slipping", &mut self.slipping);
+        columns.numbers(PLACE, &mut self.point);
+        columns.numbers(["normal_x", "normal_y", "normal_z"], &mut self.normal);
+        columns.visit("overlap", Value::Number(&mut self.overlap));
+        columns.visit("normal_force", Value::Number(&mut self.normal_force));
+        columns.numbers(["shear_x", "shear_y", "shear_z"], &mut self.shear_force);
+        columns.visit("slipping", Value::Flag(&mut self.slipping));
     }
 }
 
@@ -168,8 +168,8 @@ impl Row for WallState {
     }
 
     fn visit(&mut self, columns: &mut impl Visit) {
-        columns.word("name", &mut self.name);
-        columns.flag("infinite", &mut self.infinite);
+        columns.visit("name", Value::Word(&mut self.name));
+        columns.visit("infinite", Value::Flag(&mut self.infinite));
         let mut corners = [0, 1, 2, 3].map(|at| self.corners.get(at).copied());
         for (names, corner) in CORNERS.into_iter().zip(&mut corners) {
             columns.told_vector(names, corner);
@@ -196,14 +196,14 @@ impl Row for BodyState {
     }
 
     fn visit(&mut self, columns: &mut impl Visit) {
-        columns.word("name", &mut self.name);
-        columns.number("mass", &mut self.mass);
-        columns.number("inertia", &mut self.inertia);
-        columns.vector(PLACE, &mut self.position);
-        columns.vector(VELOCITY, &mut self.velocity);
-        columns.vector(SPIN, &mut self.spin);
-        columns.number("angle", &mut self.angle);
-        columns.vector(FORCE, &mut self.force);
+        columns.visit("name", Value::Word(&mut self.name));
+        columns.visit("mass", Value::Number(&mut self.mass));
+        columns.visit("inertia", Value::Number(&mut self.inertia));
+        columns.numbers(PLACE, &mut self.position);
+        columns.numbers(VELOCITY, &mut self.velocity);
+        columns.numbers(SPIN, &mut self.spin);
+        columns.visit("angle", Value::Number(&mut self.angle));
+        columns.numbers(FORCE, &mut self.force);
     }
 }
 
@@ -229,18 +229,16 @@ impl Row for PointState {
             Owner::Body(place) => ("body", i64::from(place)),
         };
         let mut kind = word.to_owned();
-        columns.word("owner", &mut kind);
-        columns.whole("owner_number", &mut number);
+        columns.visit("owner", Value::Word(&mut kind));
+        columns.visit("owner_number", Value::Whole(&mut number));
         self.owner = if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) };
-        columns.vector(PLACE, &mut self.position);
-        columns.vector(["ux", "uy", "uz"], &mut self.displacement);
-        columns.vector(VELOCITY, &mut self.velocity);
-        for (name, stress) in ["sxx", "syy", "szz", "sxy", "syz", "szx"].into_iter().zip(&mut self.stress) {
-            columns.number(name, stress);
-        }
-        columns.number("plastic_strain", &mut self.plastic_strain);
-        columns.number("rotation", &mut self.rotation);
-        columns.number("volume", &mut self.volume);
+        columns.numbers(PLACE, &mut self.position);
+        columns.numbers(["ux", "uy", "uz"], &mut self.displacement);
+        columns.numbers(VELOCITY, &mut self.velocity);
+        columns.numbers(["sxx", "syy", "szz", "sxy", "syz", "szx"], &mut self.stress);
+        columns.visit("plastic_strain", Value::Number(&mut self.plastic_strain));
+        columns.visit("rotation", Value::Number(&mut self.rotation));
+        columns.visit("volume", Value::Number(&mut self.volume));
     }
 }
 
@@ -264,7 +262,7 @@ impl<R: Row> Row for SnapshotRow<R> {
     fn visit(&mut self, columns: &mut impl Visit) {
         whole(columns, "snapshot", &mut self.snapshot);
         whole(columns, "step", &mut self.step);
-        columns.number("time", &mut self.time);
+        columns.visit("time", Value::Number(&mut self.time));
         self.row.visit(columns);
     }
 }
@@ -273,6 +271,6 @@ impl<R: Row> Row for SnapshotRow<R> {
 /// contain no such value.
 fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Visit, name: &'static str, value: &mut T) {
     let mut number = (*value).try_into().unwrap_or(i64::MAX);
-    columns.whole(name, &mut number);
+    columns.visit(name, Value::Whole(&mut number));
     *value = T::try_from(number).unwrap_or(*value);
 }

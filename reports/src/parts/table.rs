@@ -2,7 +2,6 @@
 
 use std::fs::File;
 use std::io::{self, Write};
-use std::marker::PhantomData;
 use std::path::Path;
 use std::sync::Arc;
 
@@ -16,7 +15,7 @@ use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
 
-use super::columns::{ColumnBuffer, Row, RowWriter, Values};
+use super::columns::{Row, Values, columns_of, rows_of};
 
 /// Number of rows that are converted to columns at a time. These rows are in memory twice while they are written.
 const GROUP: usize = 1 << 13;
@@ -27,17 +26,16 @@ const REPEATED: [&str; 8] = ["snapshot", "step", "time", "material", "radius", "
 /// Column of consecutive numbers. Their differences are small, so that storing differences saves space.
 const COUNTED: &str = "id";
 
-/// A table that is being written.
-pub(super) struct TableWriter<R> {
-    file: SerializedFileWriter<HashedFile>,
+/// Table of a part that is being written.
+pub(super) struct TableWriter {
+    table: GroupedTable<HashedFile>,
     /// Names of the columns that are not written.
     without: Vec<&'static str>,
-    row: PhantomData<R>,
 }
 
-impl<R: Row> TableWriter<R> {
-    /// Creates a file for the table, without the columns in `without`.
-    pub(super) fn new(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
+impl TableWriter {
+    /// Creates a file for the table of a type of row, without the columns in `without`.
+    pub(super) fn new<R: Row>(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
         let file = HashedFile { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
         let mut properties =
             WriterProperties::builder().set_compression(Compression::SNAPPY).set_dictionary_enabled(false);
@@ -46,7 +44,7 @@ impl<R: Row> TableWriter<R> {
         }
         // Bytes of the same significance are stored together, which compresses well. Leading bytes are similar, and the
         // last bytes of rounded numbers are zero.
-        let mut columns = ColumnBuffer::from_rows::<R>(&mut []).columns;
+        let mut columns = columns_of::<R>(&mut []);
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
             let encoding = match values {
@@ -56,36 +54,32 @@ impl<R: Row> TableWriter<R> {
             };
             properties = properties.set_column_encoding(ColumnPath::from(*name), encoding);
         }
-        let schema = schema(R::TABLE, columns.iter().map(|(name, values)| (*name, values))).map_err(io_error)?;
-        let file = SerializedFileWriter::new(file, schema, Arc::new(properties.build())).map_err(io_error)?;
-        Ok(Self { file, without: without.to_vec(), row: PhantomData })
+        let table = GroupedTable::with_properties(R::TABLE, &columns, properties.build(), file)?;
+        Ok(Self { table, without: without.to_vec() })
     }
 
-    /// Adds rows.
-    pub(super) fn add(&mut self, mut rows: impl Iterator<Item = R>) -> io::Result<()> {
+    /// Adds rows of the type for which the table was created.
+    pub(super) fn add<R: Row>(&mut self, mut rows: impl Iterator<Item = R>) -> io::Result<()> {
         loop {
             let mut group: Vec<R> = rows.by_ref().take(GROUP).collect();
             if group.is_empty() {
                 return Ok(());
             }
-            let gathered = ColumnBuffer::from_rows(&mut group);
+            let mut columns = columns_of(&mut group);
             drop(group);
-            let mut writer = self.file.next_row_group().map_err(io_error)?;
-            for (_, values) in gathered.columns.iter().filter(|(name, _)| !self.without.contains(name)) {
-                write(&mut writer, values).map_err(io_error)?;
-            }
-            writer.close().map_err(io_error)?;
+            columns.retain(|(name, _)| !self.without.contains(name));
+            self.table.add(&columns)?;
         }
     }
 
     /// Returns the number of bytes written so far.
     pub(super) fn bytes(&self) -> usize {
-        self.file.bytes_written()
+        self.table.file.bytes_written()
     }
 
     /// Closes the file and returns the hash of its content.
     pub(super) fn close(self) -> io::Result<blake3::Hash> {
-        let mut hashed = self.file.into_inner().map_err(io_error)?;
+        let mut hashed = self.table.file.into_inner().map_err(io_error)?;
         hashed.flush()?;
         hashed.file.sync_all()?;
         Ok(hashed.hash.finalize())
@@ -127,7 +121,7 @@ impl<R: Row> TableReader<R> {
         let group = file.get_row_group(self.group).map_err(io_error)?;
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
-        let shapes = ColumnBuffer::from_rows::<R>(&mut []).columns;
+        let shapes = columns_of::<R>(&mut []);
         let names = group.metadata().schema_descr();
         let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
             let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {
@@ -148,7 +142,7 @@ impl<R: Row> TableReader<R> {
             })
         };
         let columns = shapes.iter().map(column).collect::<Result<Vec<Values>, _>>().map_err(io_error)?;
-        Ok(RowWriter::rows(&columns, count))
+        Ok(rows_of(&columns, count))
     }
 }
 
@@ -174,14 +168,25 @@ pub(crate) struct GroupedTable<W: Write + Send> {
 
 impl<W: Write + Send> GroupedTable<W> {
     /// Begins a table with the names and types of the columns in `like`.
-    pub(crate) fn new(table: &str, like: &[(String, Values)], file: W) -> io::Result<Self> {
+    pub(crate) fn new(table: &str, like: &[(impl AsRef<str>, Values)], file: W) -> io::Result<Self> {
         let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-        let schema = schema(table, like.iter().map(|(name, values)| (name.as_str(), values))).map_err(io_error)?;
+        Self::with_properties(table, like, properties, file)
+    }
+
+    fn with_properties(
+        table: &str,
+        like: &[(impl AsRef<str>, Values)],
+        properties: WriterProperties,
+        file: W,
+    ) -> io::Result<Self> {
+        let fields = like.iter().map(|(name, values)| field(name.as_ref(), values)).collect::<Result<_, _>>();
+        let schema = fields.and_then(|fields| Type::group_type_builder(table).with_fields(fields).build());
+        let schema = schema.map(Arc::new).map_err(io_error)?;
         Ok(Self { file: SerializedFileWriter::new(file, schema, Arc::new(properties)).map_err(io_error)? })
     }
 
     /// Adds a group of rows. The columns have equal length and are in the order of the table.
-    pub(crate) fn add(&mut self, columns: &[(String, Values)]) -> io::Result<()> {
+    pub(crate) fn add(&mut self, columns: &[(impl AsRef<str>, Values)]) -> io::Result<()> {
         let mut group = self.file.next_row_group().map_err(io_error)?;
         columns.iter().try_for_each(|(_, values)| write(&mut group, values)).map_err(io_error)?;
         group.close().map(drop).map_err(io_error)
@@ -191,11 +196,6 @@ impl<W: Write + Send> GroupedTable<W> {
     pub(crate) fn close(self) -> io::Result<()> {
         self.file.close().map(drop).map_err(io_error)
     }
-}
-
-fn schema<'a>(table: &str, columns: impl Iterator<Item = (&'a str, &'a Values)>) -> Result<Arc<Type>, ParquetError> {
-    let fields = columns.map(|(name, values)| field(name, values)).collect::<Result<_, _>>()?;
-    Type::group_type_builder(table).with_fields(fields).build().map(Arc::new)
 }
 
 fn field(name: &str, values: &Values) -> Result<Arc<Type>, ParquetError> {
