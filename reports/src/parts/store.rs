@@ -1,6 +1,5 @@
 //! Store of the snapshots of a run. The latest snapshots are in memory, and all others are in parts on disk.
 
-use std::borrow::Cow;
 use std::collections::BTreeSet;
 use std::ffi::OsString;
 use std::fs;
@@ -63,33 +62,30 @@ enum Place {
 /// Store of the snapshots of a run, in order of time.
 pub struct SnapshotStore {
     place: Place,
-    waiting: Vec<Snapshot>,
+    kept: CheckpointSnapshots,
+    /// Size of the snapshots in memory (bytes).
     waiting_bytes: usize,
     open: Option<OpenPart>,
-    closed: Vec<Seal>,
-    /// Number of all snapshots of the run.
-    snapshots: u64,
-    /// Number of rows of grains, contacts and points of all snapshots.
-    rows: u64,
-    /// Summary and number of rows of the last snapshot.
-    end: Option<(Brief, u64)>,
     /// True if no snapshot format is requested. If the run then exceeds [`READABLE`] rows, only its last snapshot is
     /// stored, and only if it has at most [`READABLE`] rows.
     in_short: bool,
-    /// True if snapshots were omitted because of `in_short`.
-    left_out: bool,
     /// Columns of the grains table that are not written.
     without: Vec<&'static str>,
 }
 
 /// Snapshots in a checkpoint: those in memory, and the list of closed parts.
-#[derive(Serialize, Deserialize)]
-struct CheckpointSnapshots<'s> {
-    waiting: Cow<'s, [Snapshot]>,
-    closed: Cow<'s, [Seal]>,
+#[derive(Default, Serialize, Deserialize)]
+struct CheckpointSnapshots {
+    /// Snapshots in memory.
+    waiting: Vec<Snapshot>,
+    closed: Vec<Seal>,
+    /// Number of all snapshots of the run.
     snapshots: u64,
-    end: Cow<'s, Option<(Brief, u64)>>,
+    /// Summary and number of rows of the last snapshot.
+    end: Option<(Brief, u64)>,
+    /// Number of rows of grains, contacts and points of all snapshots.
     rows: u64,
+    /// True if snapshots were omitted because no snapshot format is requested.
     left_out: bool,
 }
 
@@ -110,19 +106,8 @@ impl SnapshotStore {
     }
 
     fn at(place: Place) -> Self {
-        Self {
-            place,
-            waiting: Vec::new(),
-            waiting_bytes: 0,
-            open: None,
-            closed: Vec::new(),
-            snapshots: 0,
-            rows: 0,
-            end: None,
-            in_short: false,
-            left_out: false,
-            without: Vec::new(),
-        }
+        let kept = CheckpointSnapshots::default();
+        Self { place, kept, waiting_bytes: 0, open: None, in_short: false, without: Vec::new() }
     }
 
     /// Sets the grain columns of the run. Columns that its snapshots do not contain are not written.
@@ -144,14 +129,13 @@ impl SnapshotStore {
     /// # Errors
     /// When a part is missing, has changed or cannot be copied, or when needed snapshots are not in the checkpoint.
     pub fn resume(mut self, checkpoint: &Path, kept: &[u8]) -> Result<Self, StoreError> {
-        let kept: CheckpointSnapshots<'_> =
+        let kept: CheckpointSnapshots =
             postcard::from_bytes(kept).map_err(|error| StoreError::Damaged(error.to_string()))?;
         if kept.left_out && !self.in_short {
             return Err(StoreError::LeftOut);
         }
-        self.left_out = kept.left_out;
         let source = parts_of(checkpoint);
-        for seal in kept.closed.iter() {
+        for seal in &kept.closed {
             let from = source.join(&seal.name);
             let lost = |found| StoreError::Lost { path: from.clone(), found };
             if !from.is_dir() {
@@ -170,9 +154,7 @@ impl SnapshotStore {
             }
         }
         self.waiting_bytes = kept.waiting.iter().map(bytes).sum();
-        self.rows = kept.rows;
-        (self.waiting, self.closed) = (kept.waiting.into_owned(), kept.closed.into_owned());
-        (self.snapshots, self.end) = (kept.snapshots, kept.end.into_owned());
+        self.kept = kept;
         Ok(self)
     }
 
@@ -182,17 +164,17 @@ impl SnapshotStore {
     /// When a file cannot be written.
     pub fn add(&mut self, snapshot: Snapshot) -> Result<(), WriteError> {
         let rows = rows_of(&snapshot);
-        self.rows += rows;
-        self.snapshots += 1;
-        self.end = Some((Brief::from_snapshot(&snapshot), rows));
-        if self.in_short && self.rows > READABLE {
+        self.kept.rows += rows;
+        self.kept.snapshots += 1;
+        self.kept.end = Some((Brief::from_snapshot(&snapshot), rows));
+        if self.in_short && self.kept.rows > READABLE {
             self.leave_out();
             if rows > READABLE {
                 return Ok(());
             }
         }
         self.waiting_bytes += bytes(&snapshot);
-        self.waiting.push(snapshot);
+        self.kept.waiting.push(snapshot);
         if self.waiting_bytes < WAITING || self.in_short {
             return Ok(());
         }
@@ -212,7 +194,7 @@ impl SnapshotStore {
     /// Returns true if snapshots were omitted because no snapshot format is requested.
     #[must_use]
     pub const fn has_left_out(&self) -> bool {
-        self.in_short && self.left_out
+        self.in_short && self.kept.left_out
     }
 
     /// Returns the largest number of rows of a snapshot that the run must deliver in full. A larger snapshot may be
@@ -224,16 +206,16 @@ impl SnapshotStore {
 
     /// Counts a snapshot of which only a summary exists. `rows` is the number of its rows.
     pub fn pass(&mut self, brief: Brief, rows: u64) {
-        self.rows += rows;
-        self.snapshots += 1;
-        self.end = Some((brief, rows));
+        self.kept.rows += rows;
+        self.kept.snapshots += 1;
+        self.kept.end = Some((brief, rows));
         self.leave_out();
     }
 
     /// Discards the snapshots in memory, and notes that snapshots were omitted.
     fn leave_out(&mut self) {
-        self.waiting.clear();
-        (self.waiting_bytes, self.left_out) = (0, true);
+        self.kept.waiting.clear();
+        (self.waiting_bytes, self.kept.left_out) = (0, true);
     }
 
     /// Closes the open part and returns the snapshots for a checkpoint: those in memory, and the names of the closed
@@ -243,10 +225,7 @@ impl SnapshotStore {
     /// When a file cannot be written.
     pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
         self.settle()?;
-        let (waiting, closed, end) = (Cow::from(&self.waiting), Cow::from(&self.closed), Cow::Borrowed(&self.end));
-        let &mut Self { snapshots, rows, left_out, .. } = self;
-        let kept = CheckpointSnapshots { waiting, closed, snapshots, end, rows, left_out };
-        postcard::to_allocvec(&kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
+        postcard::to_allocvec(&self.kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
     }
 
     /// Deletes all parts that the store does not list. Call it only after a checkpoint that lists all parts was
@@ -254,7 +233,7 @@ impl SnapshotStore {
     pub fn forget_others(&self) {
         let Place::Folder(folder) = &self.place else { return };
         let _ = remove_leftovers(folder);
-        let known: BTreeSet<OsString> = self.closed.iter().map(|seal| OsString::from(&seal.name)).collect();
+        let known: BTreeSet<OsString> = self.kept.closed.iter().map(|seal| OsString::from(&seal.name)).collect();
         let Ok(entries) = fs::read_dir(folder) else { return };
         for entry in entries.flatten().filter(|entry| !known.contains(&entry.file_name())) {
             remove_part(&entry.path());
@@ -271,31 +250,31 @@ impl SnapshotStore {
     /// # Errors
     /// When a file cannot be written.
     pub fn settle(&mut self) -> Result<(), WriteError> {
-        let settle = |store: &mut Self| -> io::Result<()> {
-            if store.open.is_some() {
-                store.spill()?;
-            }
-            store.close()
-        };
-        settle(self).map_err(|source| WriteError::new(self.shown(), source))
+        self.write_out(self.open.is_some())
+    }
+
+    /// Closes the open part. If `spills`, the snapshots in memory are written to it first.
+    fn write_out(&mut self, spills: bool) -> Result<(), WriteError> {
+        let spilled = if spills { self.spill() } else { Ok(()) };
+        spilled.and_then(|()| self.close()).map_err(|source| WriteError::new(self.shown(), source))
     }
 
     /// Returns the number of all snapshots of the run.
     #[must_use]
     pub fn len(&self) -> u64 {
-        self.snapshots
+        self.kept.snapshots
     }
 
     /// Returns true if the run has no snapshots yet.
     #[must_use]
     pub fn is_empty(&self) -> bool {
-        self.snapshots == 0
+        self.kept.snapshots == 0
     }
 
     /// Returns the number of rows of grains, contacts and points of all snapshots.
     #[must_use]
     pub fn rows(&self) -> u64 {
-        self.rows
+        self.kept.rows
     }
 
     /// Passes every snapshot, in closed parts and in memory, to `look`, one after another from the first.
@@ -307,19 +286,19 @@ impl SnapshotStore {
         unreadable: impl Fn(io::Error) -> E,
         mut look: impl FnMut(&Snapshot) -> Result<(), E>,
     ) -> Result<(), E> {
-        for seal in &self.closed {
+        for seal in &self.kept.closed {
             let mut reader = PartReader::open(&self.place_of(seal)).map_err(&unreadable)?;
             while let Some(snapshot) = reader.next().map_err(&unreadable)? {
                 look(&snapshot)?;
             }
         }
-        self.waiting.iter().try_for_each(look)
+        self.kept.waiting.iter().try_for_each(look)
     }
 
     /// Returns the summary of the last snapshot.
     #[must_use]
     pub fn end(&self) -> Option<&Brief> {
-        self.end.as_ref().map(|(end, _)| end)
+        self.kept.end.as_ref().map(|(end, _)| end)
     }
 
     /// Returns the last snapshot if it is stored and has at most [`READABLE`] rows; none otherwise.
@@ -327,11 +306,11 @@ impl SnapshotStore {
     /// # Errors
     /// When the part of the snapshot cannot be read.
     pub fn readable_end(&self) -> io::Result<Option<Snapshot>> {
-        if self.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
+        if self.kept.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
             return Ok(None);
         }
-        let mut last = self.waiting.last().cloned();
-        if let (None, Some(seal)) = (&last, self.closed.last()) {
+        let mut last = self.kept.waiting.last().cloned();
+        if let (None, Some(seal)) = (&last, self.kept.closed.last()) {
             let mut reader = PartReader::open(&self.place_of(seal))?;
             while let Some(snapshot) = reader.next()? {
                 last = Some(snapshot);
@@ -346,37 +325,31 @@ impl SnapshotStore {
     /// # Errors
     /// When a file cannot be written.
     pub fn files(&mut self) -> Result<Vec<(PathBuf, PathBuf)>, WriteError> {
-        let spill = |store: &mut Self| -> io::Result<()> {
-            if !store.waiting.is_empty() {
-                store.spill()?;
-            }
-            store.close()
-        };
-        spill(self).map_err(|source| WriteError::new(self.shown(), source))?;
+        self.write_out(!self.kept.waiting.is_empty())?;
         let of_part = |seal: &Seal| {
             let name = PathBuf::from(&seal.name);
             files(&self.place_of(seal)).into_iter().map(move |(file, path)| (path, name.join(file)))
         };
-        Ok(self.closed.iter().flat_map(of_part).collect())
+        Ok(self.kept.closed.iter().flat_map(of_part).collect())
     }
 
     /// Writes the snapshots in memory to the open part.
     fn spill(&mut self) -> io::Result<()> {
         let folder = self.folder()?;
-        let waiting = std::mem::take(&mut self.waiting);
+        let waiting = std::mem::take(&mut self.kept.waiting);
         self.waiting_bytes = 0;
         let open = match &mut self.open {
             Some(open) => open,
             none => none.insert(OpenPart::begin(&folder, &self.without)?),
         };
-        open.add(self.snapshots - waiting.len() as u64, &waiting)?;
+        open.add(self.kept.snapshots - waiting.len() as u64, &waiting)?;
         if open.bytes() >= PART { self.close() } else { Ok(()) }
     }
 
     fn close(&mut self) -> io::Result<()> {
         if let Some(open) = self.open.take() {
             let folder = self.folder()?;
-            self.closed.push(open.close(&folder, self.closed.len())?);
+            self.kept.closed.push(open.close(&folder, self.kept.closed.len())?);
         }
         Ok(())
     }
@@ -502,7 +475,7 @@ mod tests {
             }
         }
         store.settle().unwrap();
-        assert!(store.closed.len() > 2 && store.len() == 40, "{:?}", store.closed);
+        assert!(store.kept.closed.len() > 2 && store.len() == 40, "{:?}", store.kept.closed);
         assert_eq!(format!("{:?}", all(&store)), format!("{snapshots:?}"));
         assert_eq!(store.readable_end().unwrap().as_ref(), snapshots.last());
         drop(store);
@@ -583,6 +556,6 @@ mod tests {
             assert!(store.waiting_bytes < WAITING);
         }
         store.settle().unwrap();
-        assert!(store.waiting.is_empty() && all(&store).len() == 20);
+        assert!(store.kept.waiting.is_empty() && all(&store).len() == 20);
     }
 }
