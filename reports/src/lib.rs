@@ -18,7 +18,7 @@ mod provenance;
 pub mod record_figures;
 pub mod report;
 pub mod results;
-pub mod rows;
+mod rows;
 mod section;
 mod series_figures;
 mod solid_figures;
@@ -37,7 +37,7 @@ pub use headline::Headline;
 pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
-pub use store::{SaveError, write_report, write_report_and_parquet};
+pub use store::{SaveError, write_report};
 pub use terminal::{summary_table, summary_table_within};
 
 /// Returns the CSS class of a colour.

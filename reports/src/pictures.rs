@@ -19,8 +19,7 @@ pub fn write_pictures(dir: &Path, records: &[&Record], figures: &[Figure]) -> Re
     let title = records.first().map_or("pictures", |record| record.provenance.scene.as_str());
     let leads: Vec<String> = records.iter().map(|record| words(&record.provenance)).collect();
     write_page(&mut out, title, &leads, figures)?;
-    out.commit_beside()?;
-    Ok(())
+    Ok(out.commit_beside()?)
 }
 
 /// Adds `index.html` with a title, paragraphs and figures, and the files of the figures.

@@ -2,7 +2,6 @@
 
 use grainbench_harness::verdict::{ControlResult, Verdict};
 use serde::Serialize;
-use std::io;
 
 use crate::report::{Provenance, Report};
 use crate::row;
@@ -69,11 +68,8 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Returns `points.csv` with a header and one line per run.
-///
-/// # Errors
-/// When a line cannot be encoded. This does not occur in reports of this project.
-pub fn points_csv(report: &Report) -> io::Result<Vec<u8>> {
+/// Returns the table of all runs.
+pub(crate) fn points_table(report: &Report) -> Table<'_> {
     let columns = ["case", "variant", "solver", "resolution"].map(Column::text).into_iter();
     let columns = columns.chain(["time_step", "fraction"].map(Column::number));
     let counts = ["steps", "particle_steps", "contact_evaluations"].map(|name| Column::new(name, Format::Count));
@@ -83,7 +79,7 @@ pub fn points_csv(report: &Report) -> io::Result<Vec<u8>> {
         let (contacts, wall) = (point.contact_evaluations, point.wall_seconds);
         row![case, variant, solver, resolution, time_step, fraction, steps, particle_steps, contacts, wall]
     };
-    Table::new("points", columns, points(report).map(row)).csv_bytes()
+    Table::new("points", columns, points(report).map(row))
 }
 
 #[cfg(test)]
@@ -111,12 +107,16 @@ mod tests {
 
     #[test]
     fn points_have_a_header_even_without_runs() {
+        let text = |report: &Report| {
+            let mut text = Vec::new();
+            points_table(report).csv(&mut text).unwrap();
+            String::from_utf8(text).unwrap()
+        };
         let mut report = sample::report();
-        let text = String::from_utf8(points_csv(&report).unwrap()).unwrap();
-        assert_eq!(text.lines().nth(1).unwrap(), "backspin,,dem,dt=.1,2e-5,0.1,25000,25000,25000,0.001");
+        assert_eq!(text(&report).lines().nth(1).unwrap(), "backspin,,dem,dt=.1,2e-5,0.1,25000,25000,25000,0.001");
         report.sections.clear();
         assert_eq!(
-            String::from_utf8(points_csv(&report).unwrap()).unwrap(),
+            text(&report),
             "case,variant,solver,resolution,time_step,fraction,steps,particle_steps,contact_evaluations,wall_seconds\n"
         );
     }

@@ -1,15 +1,10 @@
 //! Results of a report as a table: `rows.csv` and, if requested, Parquet.
 
-use std::io;
-
 use crate::report::Report;
 use crate::row;
 use crate::table::{Column, Table};
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::Verdict;
-
-/// File name of the table as Parquet.
-pub const ROWS_PARQUET: &str = "rows.parquet";
 
 /// Returns an expectation as number and as bound. For a bound, a band or an order, the number is absent, and the text
 /// contains the expectation in words.
@@ -19,7 +14,7 @@ pub(crate) fn expectation(expected: Option<ExpectedValue>) -> (Option<f64>, Stri
 }
 
 /// Returns the table of all results.
-fn table(report: &Report) -> Table<'_> {
+pub(crate) fn table(report: &Report) -> Table<'_> {
     let [text, number] = [Column::text, Column::number] as [fn(&'static str) -> Column; 2];
     let names = ["case", "variant", "solver", "resolution", "quantity", "unit"].map(text).into_iter();
     let columns = names.chain(["value", "expected"].map(number)).chain([text("bound")]);
@@ -38,43 +33,24 @@ fn table(report: &Report) -> Table<'_> {
     Table::new("rows", columns, report.verdicts().map(row))
 }
 
-/// Returns `rows.csv` with a header and one line per result. Each number is the shortest text that reads back to the
-/// same bits.
-///
-/// # Errors
-/// When a line cannot be encoded. This does not occur in reports of this project.
-pub fn rows_csv(report: &Report) -> io::Result<Vec<u8>> {
-    table(report).csv_bytes()
-}
-
-/// Returns the table as Parquet.
-///
-/// # Errors
-/// When the table cannot be encoded.
-pub fn rows_parquet(report: &Report) -> io::Result<Vec<u8>> {
-    let mut bytes = Vec::new();
-    table(report).parquet(&mut bytes)?;
-    Ok(bytes)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::sample;
     use parquet::file::reader::{FileReader, SerializedFileReader};
     use parquet::record::RowAccessor;
-    use std::io::Write;
 
     /// Both tables contain every result of the report, row by row.
     #[test]
     fn a_table_has_every_row() {
         let report = sample::report();
         let rows: Vec<&Verdict> = report.verdicts().collect();
-        let text = rows_csv(&report).unwrap();
+        let mut text = Vec::new();
+        super::table(&report).csv(&mut text).unwrap();
         let mut table = csv::Reader::from_reader(&*text);
         let lines: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
-        let mut file = tempfile::tempfile().unwrap();
-        file.write_all(&rows_parquet(&report).unwrap()).unwrap();
+        let file = tempfile::tempfile().unwrap();
+        super::table(&report).parquet(&file).unwrap();
         let file = SerializedFileReader::new(file).unwrap();
         let packed: Vec<_> = file.get_row_iter(None).unwrap().map(Result::unwrap).collect();
         assert!(!rows.is_empty() && lines.len() == rows.len() && packed.len() == rows.len());

@@ -1,6 +1,6 @@
 //! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
-use std::io;
+use std::fmt::Display;
 use std::path::{Path, PathBuf};
 
 use grainbench_harness::figure::{Drawing, Figure, Graph};
@@ -12,9 +12,9 @@ use crate::junit::junit_xml;
 use crate::page;
 use crate::plot;
 use crate::report::Report;
-use crate::results::{points_csv, results_json};
+use crate::results::{points_table, results_json};
 use crate::row;
-use crate::rows::{ROWS_PARQUET, rows_csv, rows_parquet};
+use crate::rows;
 use crate::table::{Cell, Column, Table};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir, WriteError};
@@ -55,60 +55,31 @@ pub enum SaveError {
     },
 }
 
+impl SaveError {
+    /// Returns a function that makes the error of an encoder from its message.
+    pub(crate) fn encode<E: Display>(file: &'static str) -> impl FnOnce(E) -> Self {
+        move |error| Self::Encode { file, reason: error.to_string() }
+    }
+}
+
 /// Writes the files of a report to `dir`. If an error occurs, no file is written.
 ///
 /// The files are `index.html`, `results.json`, `report.json`, `rows.csv`, `points.csv`, `junit.xml`, `badge.svg` and
-/// `figures/CASE-NAME.svg`. The data of graphs are added as `.csv` and films as `.png`. Parts that would make the page
-/// too large become separate pages.
+/// `figures/CASE-NAME.svg`. If `parquet` is true, the results are also written as `rows.parquet`. The data of graphs are
+/// added as `.csv` and films as `.png`. Parts that would make the page too large become separate pages.
 ///
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
-pub fn write_report(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
+pub fn write_report(dir: impl AsRef<Path>, report: &Report, parquet: bool) -> Result<(), SaveError> {
     let mut out = StagedDir::new(dir.as_ref())?;
-    add_report(&mut out, report)?;
-    out.commit()?;
-    Ok(())
-}
-
-/// Writes the files of a report to `dir`, and the results also as Parquet.
-///
-/// # Errors
-/// When a file cannot be written or a figure cannot be drawn.
-pub fn write_report_and_parquet(dir: impl AsRef<Path>, report: &Report) -> Result<(), SaveError> {
-    let mut out = StagedDir::new(dir.as_ref())?;
-    add_report(&mut out, report)?;
-    let rows =
-        rows_parquet(report).map_err(|error| SaveError::Encode { file: ROWS_PARQUET, reason: error.to_string() })?;
-    out.write(ROWS_PARQUET, rows)?;
-    out.commit()?;
-    Ok(())
-}
-
-/// Returns the figures of a report with the names of their files.
-#[must_use]
-pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
-    let figures = report.sections.iter().flat_map(|section| &section.figures);
-    page::figure_names(report).into_iter().flatten().zip(figures).collect()
-}
-
-/// Adds all files of a report to a staged directory.
-///
-/// # Errors
-/// When a file cannot be written or a figure cannot be drawn.
-fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
-    let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
-    let results = results_json(report).map_err(|error| encode("results.json")(error.to_string()))?;
-    out.write("results.json", results)?;
-    let points = points_csv(report).map_err(|error| encode("points.csv")(error.to_string()))?;
-    out.write("points.csv", points)?;
-    let rows = rows_csv(report).map_err(|error| encode("rows.csv")(error.to_string()))?;
-    out.write("rows.csv", rows)?;
-    let junit = junit_xml(report).map_err(|error| encode("junit.xml")(error.to_string()))?;
-    out.write("junit.xml", junit)?;
+    out.write("results.json", results_json(report).map_err(SaveError::encode("results.json"))?)?;
+    out.write_with("points.csv", |file| points_table(report).csv(file))?;
+    out.write_with("rows.csv", |file| rows::table(report).csv(file))?;
+    out.write("junit.xml", junit_xml(report).map_err(SaveError::encode("junit.xml"))?)?;
     out.write("badge.svg", badge(report))?;
     let figures = named_figures(report);
     let drawn = || figures.par_iter().map(|(name, figure)| figure_files(figure, name)).collect::<Result<Vec<_>, _>>();
-    let stored = || serde_json::to_string(report).map_err(|error| encode(REPORT_FILE)(error.to_string()));
+    let stored = || serde_json::to_string(report).map_err(SaveError::encode(REPORT_FILE));
     let (stored, (page, drawn)) = rayon::join(stored, || rayon::join(|| page::render(report), drawn));
     out.write(REPORT_FILE, stored? + "\n")?;
     let page = page?;
@@ -119,7 +90,17 @@ fn add_report(out: &mut StagedDir, report: &Report) -> Result<(), SaveError> {
     for (path, bytes) in drawn?.into_iter().flatten() {
         out.write(path, bytes)?;
     }
-    Ok(())
+    if parquet {
+        out.write_with("rows.parquet", |file| rows::table(report).parquet(file))?;
+    }
+    Ok(out.commit()?)
+}
+
+/// Returns the figures of a report with the names of their files.
+#[must_use]
+pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
+    let figures = report.sections.iter().flat_map(|section| &section.figures);
+    page::figure_names(report).into_iter().flatten().zip(figures).collect()
 }
 
 /// Adds the files of a figure: the picture as SVG, the data of a graph as CSV, and a film as an animated PNG.
@@ -137,8 +118,8 @@ pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Re
 fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
     let mut files = vec![(format!("figures/{name}.svg"), plot::draw(figure)?.into_bytes())];
     if let Drawing::Graph(graph) = &figure.drawing {
-        let data = graph_csv(graph)
-            .map_err(|error| SaveError::Encode { file: "the data of a figure", reason: error.to_string() })?;
+        let mut data = Vec::new();
+        graph_table(graph).csv(&mut data).map_err(SaveError::encode("the data of a figure"))?;
         files.push((format!("figures/{name}.csv"), data));
     }
     if let Some(film) = plot::film(figure)? {
@@ -147,18 +128,18 @@ fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, S
     Ok(files)
 }
 
-/// Returns the data of a graph as CSV, one line per point. Values that are not finite are empty cells.
-fn graph_csv(graph: &Graph) -> io::Result<Vec<u8>> {
+/// Returns the data of a graph with one row per point. Values that are not finite are empty cells.
+fn graph_table(graph: &Graph) -> Table<'_> {
     let columns = [Column::text("curve"), Column::number(&graph.x.label), Column::number(&graph.y.label)];
     let mut name = "";
-    let rows = graph.curves.iter().flat_map(|curve| {
+    let rows = graph.curves.iter().flat_map(move |curve| {
         // Points without a label belong to the previous labelled curve.
         if !curve.label.is_empty() {
             name = &curve.label;
         }
         curve.points.iter().map(move |(x, y)| row![name, Cell::finite(Some(*x)), Cell::finite(Some(*y))])
     });
-    Table::new("points", columns, rows).csv_bytes()
+    Table::new("points", columns, rows)
 }
 
 impl Report {
@@ -182,10 +163,10 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         let out = dir.path().join("out");
         let report = sample::report();
-        write_report(&out, &report).unwrap();
+        write_report(&out, &report, false).unwrap();
         let first = fs::read_to_string(out.join("index.html")).unwrap();
         let loaded = Report::load(&out).unwrap();
-        write_report(&out, &loaded).unwrap();
+        write_report(&out, &loaded, false).unwrap();
         assert_eq!(fs::read_to_string(out.join("index.html")).unwrap(), first);
         for name in [
             "results.json",
@@ -199,7 +180,7 @@ mod tests {
         }
         // With this variable, a copy of the report is written, so that it can be opened in a browser.
         if let Ok(copy) = std::env::var("GRAINBENCH_REPORT_DIR") {
-            write_report(copy, &report).unwrap();
+            write_report(copy, &report, false).unwrap();
         }
     }
 
@@ -209,7 +190,7 @@ mod tests {
         let message = Report::load(dir.path()).unwrap_err().to_string();
         assert!(message.contains("report.json: expected a readable file, found "), "{message}");
 
-        write_report(dir.path(), &sample::report()).unwrap();
+        write_report(dir.path(), &sample::report(), false).unwrap();
         let path = dir.path().join(REPORT_FILE);
         let text = fs::read_to_string(&path).unwrap();
         fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"many\"", 1)).unwrap();

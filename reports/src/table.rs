@@ -276,16 +276,6 @@ impl<'a> Table<'a> {
         table.flush()
     }
 
-    /// Returns the table as CSV.
-    ///
-    /// # Errors
-    /// When a line cannot be encoded.
-    pub fn csv_bytes(self) -> io::Result<Vec<u8>> {
-        let mut bytes = Vec::new();
-        self.csv(&mut bytes)?;
-        Ok(bytes)
-    }
-
     /// Writes the table as Parquet. Empty cells of numbers are null.
     ///
     /// # Errors

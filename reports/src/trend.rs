@@ -112,8 +112,7 @@ pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), Save
     let mut out = StagedDir::new(dir.as_ref())?;
     keep(&mut out, dir.as_ref(), dir.as_ref())?;
     out.write("trend.html", page)?;
-    out.commit()?;
-    Ok(())
+    Ok(out.commit()?)
 }
 
 /// Adds the existing files of a directory to the staged directory, except hidden files and `manifest.json`.

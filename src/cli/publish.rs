@@ -6,7 +6,7 @@ use super::terminal::width;
 use grainbench::reports::results::results_json;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
-use grainbench::reports::{Headline, Report, summary_table_within, write_report, write_report_and_parquet};
+use grainbench::reports::{Headline, Report, summary_table_within, write_report};
 use grainbench::store::StagedDir;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
@@ -63,8 +63,7 @@ pub(crate) fn write_files<N: AsRef<Path>, B: AsRef<[u8]>>(mut out: StagedDir, fi
 
 /// Writes and prints a report, and returns the exit code.
 pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
-    let write = if output.parquet { write_report_and_parquet } else { write_report };
-    write(output.out, report)?;
+    write_report(output.out, report, output.parquet)?;
     if output.json {
         print(&results_json(report)?)?;
     } else if output.quiet {

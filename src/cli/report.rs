@@ -105,7 +105,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         return Ok(study_code(&study));
     }
     let report = Report::load(&arguments.dir)?;
-    write_report(&arguments.dir, &report)?;
+    write_report(&arguments.dir, &report, false)?;
     print_text(&format!("{}\n", summary_table_within(&report, width())))?;
     publish(arguments, &style, &named_figures(&report))?;
     Ok(exit_code(&report, false))

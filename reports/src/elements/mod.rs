@@ -42,8 +42,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
     for table in tables().filter(|_| parquet) {
         out.write_with(format!("{}.parquet", table.name), |file| table.parquet(file))?;
     }
-    let text = serde_json::to_string_pretty(summary)
-        .map_err(|error| SaveError::Encode { file: "summary.json", reason: error.to_string() })?;
+    let text = serde_json::to_string_pretty(summary).map_err(SaveError::encode("summary.json"))?;
     out.write("summary.json", text + "\n")?;
     let mut files = Vec::new();
     for (number, frame) in course.frames.iter().enumerate() {
@@ -66,8 +65,7 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
             &[Figure::field("elements", &title, &caption, field)],
         )?;
     }
-    out.commit()?;
-    Ok(())
+    Ok(out.commit()?)
 }
 
 /// Returns the size of the cells in words.

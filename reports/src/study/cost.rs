@@ -6,7 +6,6 @@ use crate::number;
 use crate::plot::palette::SOLVERS;
 use crate::table::{Cell, Column, Format, Row, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
-use std::io;
 
 /// Errors for which the cost is stated, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -258,11 +257,8 @@ fn scatter(diagrams: &[Diagram], unit: &str) -> Option<Figure> {
     ))
 }
 
-/// Returns `points.csv` of a study.
-///
-/// # Errors
-/// When a line cannot be encoded. This does not occur in studies of this project.
-pub fn points_csv(diagrams: &[Diagram]) -> io::Result<Vec<u8>> {
+/// Returns the table of all points of a study.
+pub(super) fn points_table(diagrams: &[Diagram]) -> Table<'_> {
     let columns = ["case", "variant", "quantity", "solver", "resolution", "knobs", "standing"].map(Column::text);
     let times = ["error", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"].map(Column::number);
     let counts = Counts::default().named().map(|(name, _)| Column::new(name, Format::Count));
@@ -275,5 +271,5 @@ pub fn points_csv(diagrams: &[Diagram]) -> io::Result<Vec<u8>> {
         row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
         Row::from(row)
     });
-    Table::new("points", columns.into_iter().chain(times).chain(counts), rows).csv_bytes()
+    Table::new("points", columns.into_iter().chain(times).chain(counts), rows)
 }

@@ -72,20 +72,16 @@ pub fn study_json(study: &Study) -> Result<String, serde_json::Error> {
 /// # Errors
 /// When a file cannot be written or a figure cannot be drawn.
 pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError> {
-    let encode = |file: &'static str| move |reason: String| SaveError::Encode { file, reason };
     let mut out = StagedDir::new(dir.as_ref())?;
-    let stored = serde_json::to_string_pretty(study).map_err(|error| encode(STUDY_FILE)(error.to_string()))?;
+    let stored = serde_json::to_string_pretty(study).map_err(SaveError::encode(STUDY_FILE))?;
     out.write(STUDY_FILE, stored + "\n")?;
-    let results = study_json(study).map_err(|error| encode("results.json")(error.to_string()))?;
-    out.write("results.json", results)?;
-    let points = cost::points_csv(&study.diagrams).map_err(|error| encode("points.csv")(error.to_string()))?;
-    out.write("points.csv", points)?;
+    out.write("results.json", study_json(study).map_err(SaveError::encode("results.json"))?)?;
+    out.write_with("points.csv", |file| cost::points_table(&study.diagrams).csv(file))?;
     out.write("index.html", page::render(study)?)?;
     for (name, figure) in named_figures(study) {
         out.write(format!("figures/{name}.svg"), plot::draw(&figure)?)?;
     }
-    out.commit()?;
-    Ok(())
+    Ok(out.commit()?)
 }
 
 /// Returns the figures of a study with the names of their files.

@@ -207,8 +207,7 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
         out.write(format!("figures/{name}.svg"), svg)?;
     }
     out.write("index.html", page::render(sweep, &drawings))?;
-    out.commit()?;
-    Ok(())
+    Ok(out.commit()?)
 }
 
 /// Returns `results.json` of a sweep.
