@@ -2,8 +2,6 @@
 
 use std::fmt::Write;
 
-use grainbench_harness::verdict::Verdict;
-
 use crate::headline::Headline;
 use crate::line;
 use crate::report::{Report, Section};
@@ -43,14 +41,9 @@ pub fn summary(report: &Report) -> String {
 #[must_use]
 pub fn annotations(report: &Report) -> Vec<String> {
     let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));
-    let mut lines: Vec<String> = report.red_because.iter().map(|reason| error("grainbench", reason)).collect();
-    for section in &report.sections {
-        let red = |row: &&Verdict| row.outcome.is_red();
-        lines.extend(section.verdicts.iter().filter(red).map(|row| error(&row.quantity, &line::verdict(row))));
-        let green = section.controls.iter().filter(|control| !control.turned_red);
-        lines.extend(green.map(|control| error(&control.quantity, &line::control(control))));
-    }
-    lines
+    let reasons = report.red_because.iter().map(|reason| error("grainbench", reason));
+    let failures = report.sections.iter().flat_map(|section| section.failures(line::verdict, line::control));
+    reasons.chain(failures.map(|(quantity, line)| error(quantity, &line))).collect()
 }
 
 /// Returns the message of a workflow command with its line breaks escaped.

@@ -42,30 +42,26 @@ pub fn with_reasons(rows: &[&Verdict], line: fn(&Verdict) -> String) -> String {
 /// Returns the line `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
 #[must_use]
 pub fn verdict(verdict: &Verdict) -> String {
-    format!("{} · {}", place(&verdict.case, &verdict.variant), within_case(verdict))
+    format!("{} · {}", scene_name(&verdict.case, &verdict.variant), within_case(verdict))
 }
 
 /// Returns the line of a result without the case: `variant · solver …`.
 #[must_use]
 pub fn verdict_in_section(verdict: &Verdict) -> String {
-    if verdict.variant.is_empty() {
-        within_case(verdict)
-    } else {
-        format!("{} · {}", verdict.variant, within_case(verdict))
-    }
+    in_section(&verdict.variant, within_case(verdict))
 }
 
 /// Returns the line of a negative control: `case · solver · quantity: …`, with wrong physics, error, tolerance, required way
 /// of failing and outcome.
 #[must_use]
 pub fn control(control: &ControlResult) -> String {
-    format!("{} · {}", place(&control.case, &control.variant), tried(control))
+    format!("{} · {}", scene_name(&control.case, &control.variant), tried(control))
 }
 
 /// Returns the line of a negative control without the case.
 #[must_use]
 pub fn control_in_section(control: &ControlResult) -> String {
-    if control.variant.is_empty() { tried(control) } else { format!("{} · {}", control.variant, tried(control)) }
+    in_section(&control.variant, tried(control))
 }
 
 fn tried(control: &ControlResult) -> String {
@@ -118,7 +114,12 @@ pub fn scale_note(verdict: &Verdict) -> Option<String> {
     ((scale - own).abs() > 1e-6 * own).then(|| format!("of {}", number::with_unit(scale, &verdict.unit)))
 }
 
-fn place(case: &str, variant: &str) -> String {
+fn in_section(variant: &str, line: String) -> String {
+    if variant.is_empty() { line } else { format!("{variant} · {line}") }
+}
+
+/// Returns the name of a scene: case and variant.
+pub(crate) fn scene_name(case: &str, variant: &str) -> String {
     if variant.is_empty() { case.to_owned() } else { format!("{case}/{variant}") }
 }
 

@@ -44,6 +44,18 @@ impl Section {
         self.runs.extend(task.runs);
     }
 
+    /// Returns the quantity and the line of each red result, and of each negative control that did not fail as required.
+    pub(crate) fn failures(
+        &self,
+        verdict: fn(&Verdict) -> String,
+        control: fn(&ControlResult) -> String,
+    ) -> impl Iterator<Item = (&str, String)> {
+        let red = self.verdicts.iter().filter(|row| row.outcome.is_red());
+        let green = self.controls.iter().filter(|control| !control.turned_red);
+        let red = red.map(move |row| (row.quantity.as_str(), verdict(row)));
+        red.chain(green.map(move |row| (row.quantity.as_str(), control(row))))
+    }
+
     /// Sorts the runs by their keys, keeps each run once and removes the keys.
     pub fn finish_runs(&mut self) {
         self.runs.sort_by(|a, b| a.key.cmp(&b.key));

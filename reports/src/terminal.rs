@@ -105,20 +105,9 @@ const fn verb(count: usize, singular: &'static str, plural: &'static str) -> &'s
 /// reason why the run is red.
 #[must_use]
 pub fn failing_lines(report: &Report) -> Vec<String> {
-    let mut lines: Vec<String> = report.red_because.iter().map(|reason| format!("✗ {reason}")).collect();
-    for section in &report.sections {
-        for verdict in &section.verdicts {
-            if verdict.outcome.is_red() {
-                lines.push(format!("✗ {}", line::verdict(verdict)));
-            }
-        }
-        for control in &section.controls {
-            if !control.turned_red {
-                lines.push(format!("✗ {}", line::control(control)));
-            }
-        }
-    }
-    lines
+    let failures = report.sections.iter().flat_map(|section| section.failures(line::verdict, line::control));
+    let lines = report.red_because.iter().cloned().chain(failures.map(|(_, line)| line));
+    lines.map(|line| format!("✗ {line}")).collect()
 }
 
 fn row(section: &Section) -> Row {

@@ -3,7 +3,6 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{ControlResult, Verdict};
 use maud::{Markup, Render, html};
 
 use super::budget::{Part, Rank};
@@ -85,9 +84,7 @@ impl<'a> CaseSection<'a> {
 impl Render for CaseSection<'_> {
     fn render(&self) -> Markup {
         let Self { section, anchor, figures, details } = self;
-        let failing: Vec<&Verdict> = section.verdicts.iter().filter(|row| row.outcome.is_red()).collect();
-        let green_controls: Vec<&ControlResult> =
-            section.controls.iter().filter(|control| !control.turned_red).collect();
+        let failures: Vec<_> = section.failures(line::verdict_in_section, line::control_in_section).collect();
         // The search also looks through this text.
         let words = format!("{} {} {}", section.name, section.title, section.claim);
         html! {
@@ -95,11 +92,8 @@ impl Render for CaseSection<'_> {
                 p.kicker { (section.name) }
                 h2 { (section.title) }
                 p.claim { (section.claim) }
-                @if failing.len() + green_controls.len() > 0 {
-                    ul.failing aria-label="What fails in this case" {
-                        @for verdict in failing { li { (line::verdict_in_section(verdict)) } }
-                        @for control in green_controls { li { (line::control_in_section(control)) } }
-                    }
+                @if !failures.is_empty() {
+                    ul.failing aria-label="What fails in this case" { @for (_, line) in failures { li { (line) } } }
                 }
                 @if let Some(error) = &section.omitted { p.note { "The figures are omitted: " (error) } }
                 (figures::render(figures))

@@ -19,19 +19,10 @@ const LEAST: f64 = 1e-10;
 
 /// Renders the failures, one line each.
 pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
-    let mut lines = Vec::new();
-    for (section, anchor) in report.sections.iter().zip(anchors) {
-        for verdict in &section.verdicts {
-            if verdict.outcome.is_red() {
-                lines.push((anchor, line::verdict(verdict)));
-            }
-        }
-        for control in &section.controls {
-            if !control.turned_red {
-                lines.push((anchor, line::control(control)));
-            }
-        }
-    }
+    let failures = report.sections.iter().zip(anchors).flat_map(|(section, anchor)| {
+        section.failures(line::verdict, line::control).map(move |(_, line)| (anchor, line))
+    });
+    let lines: Vec<_> = failures.collect();
     let more = lines.len().saturating_sub(LINES);
     html! {
         @if !lines.is_empty() || !report.red_because.is_empty() {

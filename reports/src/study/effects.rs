@@ -1,5 +1,6 @@
 //! Study of effects: the effects that each scene contains, and the error and cost if an effect is left out.
 
+use crate::line::scene_name;
 use crate::number;
 use crate::row;
 use crate::table::{Cell, Column, Row, Table};
@@ -235,9 +236,4 @@ fn table(ledger: &[Entry]) -> Markup {
         row![scene, &entry.effect, key, result, change, red, entry.counts, entry.time].class(class)
     };
     Table::new("All effects", columns, ledger.iter().map(row)).page("rows")
-}
-
-/// Returns the name of a scene: case and variant.
-fn scene_name(case: &str, variant: &str) -> String {
-    if variant.is_empty() { case.to_owned() } else { format!("{case}/{variant}") }
 }
