@@ -9,9 +9,11 @@ pub mod vtk;
 pub(crate) mod sample;
 
 use std::collections::BTreeSet;
+use std::fs::File;
+use std::io::{self, BufWriter};
 use std::path::PathBuf;
 
-use grainbench_solver::record::{Record, Series};
+use grainbench_solver::record::{Record, Series, Snapshot};
 use serde::Serialize;
 
 use crate::parts::{READABLE, SnapshotStore};
@@ -139,31 +141,30 @@ fn write_snapshots(
 }
 
 fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), WriteError> {
-    let (mut grains, mut contacts, mut points) = (Vec::new(), Vec::new(), Vec::new());
+    /// Name, writer and condition of a kind of files.
+    type Kind = (&'static str, fn(&Snapshot, &mut BufWriter<File>) -> io::Result<()>, fn(&Snapshot) -> bool);
+    const KINDS: [Kind; 3] = [
+        ("grains", vtk::write_grains, |_| true),
+        ("contacts", vtk::write_contacts, |snapshot| snapshot.contacts.is_some()),
+        ("points", vtk::write_points, |snapshot| !snapshot.points.is_empty()),
+    ];
+    let mut files = [const { Vec::new() }; KINDS.len()];
     let target = out.target().to_path_buf();
     let mut number = 0;
     let unreadable = |source| WriteError::new(&target, source);
     snapshots.each(unreadable, |snapshot| {
-        let name = |kind: &str| format!("{kind}-{number:06}.vtp");
-        let names = [name("grains"), name("contacts"), name("points")];
+        for ((kind, write, is_there), files) in KINDS.iter().zip(&mut files) {
+            if is_there(snapshot) {
+                let name = format!("{kind}-{number:06}.vtp");
+                out.write_with(format!("vtk/{name}"), |file| write(snapshot, file))?;
+                files.push((snapshot.time, name));
+            }
+        }
         number += 1;
-        let [of_grains, of_contacts, of_points] = names;
-        out.write_with(format!("vtk/{of_grains}"), |file| vtk::write_grains(snapshot, file))?;
-        grains.push((snapshot.time, of_grains));
-        if snapshot.contacts.is_some() {
-            out.write_with(format!("vtk/{of_contacts}"), |file| vtk::write_contacts(snapshot, file))?;
-            contacts.push((snapshot.time, of_contacts));
-        }
-        if !snapshot.points.is_empty() {
-            out.write_with(format!("vtk/{of_points}"), |file| vtk::write_points(snapshot, file))?;
-            points.push((snapshot.time, of_points));
-        }
         Ok(())
     })?;
-    for (name, files) in [("grains", grains), ("contacts", contacts), ("points", points)] {
-        if !files.is_empty() {
-            out.write(format!("vtk/{name}.pvd"), vtk::collection(&files))?;
-        }
+    for ((kind, ..), files) in KINDS.iter().zip(&files).filter(|(_, files)| !files.is_empty()) {
+        out.write(format!("vtk/{kind}.pvd"), vtk::collection(files))?;
     }
     Ok(())
 }
@@ -171,7 +172,6 @@ fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), Write
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_solver::record::Snapshot;
     use std::path::Path;
 
     fn written(snapshots: &[Snapshot], formats: &[SnapshotFormat], target: &Path) {

@@ -1,7 +1,7 @@
 //! Snapshots as VTK PolyData (XML, ASCII) for ParaView and VisIt.
 
 use std::collections::HashMap;
-use std::fmt::Write as _;
+use std::fmt::{Debug, Write as _};
 use std::io::{self, Write};
 
 use grainbench_solver::record::{ContactState, GrainState, Owner, Partner, Snapshot};
@@ -12,24 +12,20 @@ use nalgebra::Vector3;
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_grains(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+pub fn write_grains(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let grains = &snapshot.grains;
-    open(&mut out, snapshot.time, grains.len(), grains.len(), 0)?;
+    open(out, snapshot.time, grains.len(), grains.len(), 0)?;
     writeln!(out, "<PointData Scalars=\"radius\" Vectors=\"velocity\">")?;
-    whole(&mut out, "Int64", "id", grains.iter().map(|grain| i64::from(grain.id)))?;
-    whole(&mut out, "Int32", "material", grains.iter().map(|grain| i64::from(grain.material)))?;
-    scalars(&mut out, "radius", grains.iter().map(|grain| grain.radius))?;
-    scalars(&mut out, "mass", grains.iter().map(|grain| grain.mass))?;
-    write_if_complete(grains, |grain| grain.angle, |angles| scalars(&mut out, "angle", angles.into_iter()))?;
-    vectors(&mut out, "velocity", grains.iter().map(|grain| grain.velocity))?;
-    vectors(&mut out, "spin", grains.iter().map(|grain| grain.spin))?;
-    write_if_complete(grains, |grain| grain.force, |forces| vectors(&mut out, "force", forces.into_iter()))?;
-    write_if_complete(grains, |grain| grain.torque, |torques| vectors(&mut out, "torque", torques.into_iter()))?;
-    writeln!(out, "</PointData>\n<Points>")?;
-    vectors(&mut out, "points", grains.iter().map(|grain| grain.position))?;
-    writeln!(out, "</Points>")?;
-    cells(&mut out, "Verts", 1, grains.len())?;
-    close(&mut out)
+    whole(out, "Int64", "id", grains.iter().map(|grain| i64::from(grain.id)))?;
+    whole(out, "Int32", "material", grains.iter().map(|grain| i64::from(grain.material)))?;
+    scalars(out, "radius", grains.iter().map(|grain| grain.radius))?;
+    scalars(out, "mass", grains.iter().map(|grain| grain.mass))?;
+    write_if_complete(grains, |grain| grain.angle, |angles| scalars(out, "angle", angles.into_iter()))?;
+    vectors(out, "velocity", grains.iter().map(|grain| grain.velocity))?;
+    vectors(out, "spin", grains.iter().map(|grain| grain.spin))?;
+    write_if_complete(grains, |grain| grain.force, |forces| vectors(out, "force", forces.into_iter()))?;
+    write_if_complete(grains, |grain| grain.torque, |torques| vectors(out, "torque", torques.into_iter()))?;
+    close(out, "PointData", grains.iter().map(|grain| grain.position), ("Verts", 1, grains.len()))
 }
 
 /// Writes a quantity as an array if all grains report it. If a grain lacks it, no array is written.
@@ -48,31 +44,22 @@ fn write_if_complete<T>(
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+pub fn write_points(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let points = &snapshot.points;
-    open(&mut out, snapshot.time, points.len(), points.len(), 0)?;
+    open(out, snapshot.time, points.len(), points.len(), 0)?;
     writeln!(out, "<PointData Scalars=\"body\" Vectors=\"velocity\" Tensors=\"stress\">")?;
     let body = |owner| match owner {
         Owner::Grain(id) => i64::from(id),
         Owner::Body(place) => -1 - i64::from(place),
     };
-    whole(&mut out, "Int64", "body", points.iter().map(|point| body(point.owner)))?;
-    vectors(&mut out, "velocity", points.iter().map(|point| point.velocity))?;
-    vectors(&mut out, "displacement", points.iter().map(|point| point.displacement))?;
-    array(&mut out, "Float64", "stress", 6, points.iter().map(|point| point.stress), |line, stress| {
-        for (at, value) in stress.iter().enumerate() {
-            let gap = if at == 0 { "" } else { " " };
-            let _ = write!(line, "{gap}{value:?}");
-        }
-    })?;
-    scalars(&mut out, "plastic_strain", points.iter().map(|point| point.plastic_strain))?;
-    scalars(&mut out, "rotation", points.iter().map(|point| point.rotation))?;
-    scalars(&mut out, "volume", points.iter().map(|point| point.volume))?;
-    writeln!(out, "</PointData>\n<Points>")?;
-    vectors(&mut out, "points", points.iter().map(|point| point.position))?;
-    writeln!(out, "</Points>")?;
-    cells(&mut out, "Verts", 1, points.len())?;
-    close(&mut out)
+    whole(out, "Int64", "body", points.iter().map(|point| body(point.owner)))?;
+    vectors(out, "velocity", points.iter().map(|point| point.velocity))?;
+    vectors(out, "displacement", points.iter().map(|point| point.displacement))?;
+    array(out, "Float64", "stress", points.iter().map(|point| point.stress))?;
+    scalars(out, "plastic_strain", points.iter().map(|point| point.plastic_strain))?;
+    scalars(out, "rotation", points.iter().map(|point| point.rotation))?;
+    scalars(out, "volume", points.iter().map(|point| point.volume))?;
+    close(out, "PointData", points.iter().map(|point| point.position), ("Verts", 1, points.len()))
 }
 
 /// Writes the contacts as lines. A line begins at the centre of the grain. It ends at the centre of the other grain, or
@@ -83,34 +70,26 @@ pub fn write_points(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> 
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_contacts(snapshot: &Snapshot, mut out: impl Write) -> io::Result<()> {
+pub fn write_contacts(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
     // Contacts with grains that are not in the snapshot are left out.
     let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
         snapshot.told_contacts().iter().filter_map(|contact| Some((contact, ends(contact, &by_id)?))).collect();
     let all = || contacts.iter().map(|(contact, _)| *contact);
-    open(&mut out, snapshot.time, 2 * contacts.len(), 0, contacts.len())?;
+    open(out, snapshot.time, 2 * contacts.len(), 0, contacts.len())?;
     writeln!(out, "<CellData Scalars=\"normal_force\" Vectors=\"shear_force\">")?;
-    whole(&mut out, "Int64", "grain", all().map(|contact| i64::from(contact.grain)))?;
-    whole(
-        &mut out,
-        "Int64",
-        "partner",
-        all().map(|contact| match contact.partner {
-            Partner::Grain(id) => i64::from(id),
-            Partner::Wall(place) => -1 - i64::from(place),
-            Partner::Body(place) => i64::from(i32::MIN) - i64::from(place),
-        }),
-    )?;
-    scalars(&mut out, "normal_force", all().map(|contact| contact.normal_force))?;
-    vectors(&mut out, "shear_force", all().map(|contact| contact.shear_force))?;
-    scalars(&mut out, "overlap", all().map(|contact| contact.overlap))?;
-    whole(&mut out, "UInt8", "slipping", all().map(|contact| i64::from(contact.slipping)))?;
-    writeln!(out, "</CellData>\n<Points>")?;
-    vectors(&mut out, "points", contacts.iter().flat_map(|(_, ends)| *ends))?;
-    writeln!(out, "</Points>")?;
-    cells(&mut out, "Lines", 2, contacts.len())?;
-    close(&mut out)
+    whole(out, "Int64", "grain", all().map(|contact| i64::from(contact.grain)))?;
+    let partner = |contact: &ContactState| match contact.partner {
+        Partner::Grain(id) => i64::from(id),
+        Partner::Wall(place) => -1 - i64::from(place),
+        Partner::Body(place) => i64::from(i32::MIN) - i64::from(place),
+    };
+    whole(out, "Int64", "partner", all().map(partner))?;
+    scalars(out, "normal_force", all().map(|contact| contact.normal_force))?;
+    vectors(out, "shear_force", all().map(|contact| contact.shear_force))?;
+    scalars(out, "overlap", all().map(|contact| contact.overlap))?;
+    whole(out, "UInt8", "slipping", all().map(|contact| i64::from(contact.slipping)))?;
+    close(out, "CellData", contacts.iter().flat_map(|(_, ends)| *ends), ("Lines", 2, contacts.len()))
 }
 
 /// Returns a ParaView collection (`.pvd`) of files, with the time (s) of each file.
@@ -153,55 +132,52 @@ fn open(out: &mut impl Write, time: f64, points: usize, vertices: usize, lines: 
     )
 }
 
-fn close(out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "</Piece>\n</PolyData>\n</VTKFile>")?;
+/// Ends the element `data`, and writes the positions of the points and `count` cells of `size` points each. The cells use
+/// the points in order.
+fn close(
+    out: &mut impl Write,
+    data: &str,
+    points: impl Iterator<Item = Vector3<f64>>,
+    (cells, size, count): (&str, usize, usize),
+) -> io::Result<()> {
+    let number = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
+    writeln!(out, "</{data}>\n<Points>")?;
+    vectors(out, "points", points)?;
+    writeln!(out, "</Points>\n<{cells}>")?;
+    whole(out, "Int64", "connectivity", (0..size * count).map(number))?;
+    whole(out, "Int64", "offsets", (1..=count).map(|cell| number(cell * size)))?;
+    writeln!(out, "</{cells}>\n</Piece>\n</PolyData>\n</VTKFile>")?;
     out.flush()
 }
 
-fn array<T>(
+/// Writes an array with one line of `N` components for each value.
+fn array<const N: usize, T: Debug>(
     out: &mut impl Write,
     kind: &str,
     name: &str,
-    components: usize,
-    values: impl Iterator<Item = T>,
-    mut write: impl FnMut(&mut String, T),
+    values: impl Iterator<Item = [T; N]>,
 ) -> io::Result<()> {
-    let shape = if components == 1 { String::new() } else { format!(" NumberOfComponents=\"{components}\"") };
+    let shape = if N == 1 { String::new() } else { format!(" NumberOfComponents=\"{N}\"") };
     writeln!(out, "<DataArray type=\"{kind}\" Name=\"{name}\"{shape} format=\"ascii\">")?;
-    let mut line = String::new();
     for value in values {
-        line.clear();
-        write(&mut line, value);
-        writeln!(out, "{line}")?;
+        for (at, component) in value.iter().enumerate() {
+            write!(out, "{}{component:?}", if at == 0 { "" } else { " " })?;
+        }
+        writeln!(out)?;
     }
     writeln!(out, "</DataArray>")
 }
 
 fn whole(out: &mut impl Write, kind: &str, name: &str, values: impl Iterator<Item = i64>) -> io::Result<()> {
-    array(out, kind, name, 1, values, |line, value| {
-        let _ = write!(line, "{value}");
-    })
+    array(out, kind, name, values.map(|value| [value]))
 }
 
 fn scalars(out: &mut impl Write, name: &str, values: impl Iterator<Item = f64>) -> io::Result<()> {
-    array(out, "Float64", name, 1, values, |line, value| {
-        let _ = write!(line, "{value:?}");
-    })
+    array(out, "Float64", name, values.map(|value| [value]))
 }
 
 fn vectors(out: &mut impl Write, name: &str, values: impl Iterator<Item = Vector3<f64>>) -> io::Result<()> {
-    array(out, "Float64", name, 3, values, |line, value| {
-        let _ = write!(line, "{:?} {:?} {:?}", value.x, value.y, value.z);
-    })
-}
-
-/// Writes `count` cells of `size` points each. The cells use the points in order.
-fn cells(out: &mut impl Write, name: &str, size: usize, count: usize) -> io::Result<()> {
-    let number = |value: usize| i64::try_from(value).unwrap_or(i64::MAX);
-    writeln!(out, "<{name}>")?;
-    whole(out, "Int64", "connectivity", (0..size * count).map(number))?;
-    whole(out, "Int64", "offsets", (1..=count).map(|cell| number(cell * size)))?;
-    writeln!(out, "</{name}>")
+    array(out, "Float64", name, values.map(<[f64; 3]>::from))
 }
 
 #[cfg(test)]
