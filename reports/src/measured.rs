@@ -3,7 +3,7 @@
 use crate::distinct;
 use crate::provenance::Provenance;
 use crate::study::Study;
-use crate::study::cost::{self, TARGETS};
+use crate::study::cost::{self, TARGETS, time};
 use crate::study::effects::Entry;
 use crate::study::point::{Diagram, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
@@ -166,11 +166,6 @@ fn ends(values: &[f64]) -> [f64; 2] {
     values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [low.min(value), high.max(value)])
 }
 
-/// Returns the time (s) of the cheapest setting of a solver with at most the error `target`.
-fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
-    cost::cheapest(diagram, line, target)?.wall_seconds
-}
-
 fn cheapest(diagram: &Diagram, lines: &[&str], target: f64) -> Option<f64> {
     lines.iter().filter_map(|line| time(diagram, line, target)).reduce(f64::min)
 }
@@ -194,9 +189,7 @@ impl Costs {
         let stamp = Stamp::new(study, &names, today);
         Self { stamp, quantities: study.diagrams.len(), lines: lines.collect(), example }
     }
-}
 
-impl Costs {
     /// Adds the solvers of another study that are not yet included. Their costs are relative to the cheapest solver of
     /// their own study.
     pub fn add(&mut self, other: Self) {

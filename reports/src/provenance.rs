@@ -4,7 +4,7 @@ use grainbench_harness::figure::number;
 use serde::{Deserialize, Serialize};
 
 /// Provenance of a run: version, machine, date and options.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Provenance {
     /// Version of the harness.
     pub version: String,

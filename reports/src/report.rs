@@ -11,7 +11,7 @@ pub use crate::provenance::Provenance;
 pub use crate::section::{RunCost, Section};
 
 /// Report of one run.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Report {
     /// Version, date, machine and options of the run.
     pub provenance: Provenance,
@@ -43,8 +43,7 @@ impl Report {
     /// Returns a report with the given sections. It has no stored results of external solvers and no measurements.
     #[must_use]
     pub fn new(provenance: Provenance, sections: Vec<Section>) -> Self {
-        let measured = Measurements::default();
-        Self { provenance, sections, judged: Vec::new(), shown: Vec::new(), measured, red_because: Vec::new() }
+        Self { provenance, sections, ..Self::default() }
     }
 
     /// Returns true if the results and controls pass, and no other reason makes the report red.

@@ -265,17 +265,11 @@ fn report_provenance() -> Provenance {
 
 /// Returns a report on two cases with every kind of result.
 pub(crate) fn report() -> Report {
-    let mut report = Report {
-        provenance: report_provenance(),
-        sections: vec![backspin(), nine_discs()],
-        judged: Vec::new(),
-        shown: Vec::new(),
-        measured: Measurements {
-            cost: Some(Costs::from_study(&costs(), &|_| None)),
-            stability: Some(Stability::from_study(&stability(), &|_| None)),
-            effects: Some(Effects::from_study(&effects(), &|_| None)),
-        },
-        red_because: Vec::new(),
+    let mut report = Report::new(report_provenance(), vec![backspin(), nine_discs()]);
+    report.measured = Measurements {
+        cost: Some(Costs::from_study(&costs(), &|_| None)),
+        stability: Some(Stability::from_study(&stability(), &|_| None)),
+        effects: Some(Effects::from_study(&effects(), &|_| None)),
     };
     report.judged = vec![ExternalResults::new(
         ["other", "other 1.0", "0123"].map(str::to_owned),
@@ -334,12 +328,9 @@ pub(crate) fn stability() -> Study {
         solver: solver.into(),
         unit: unit.into(),
         found: Some(found),
-        unstable: None,
         exact,
-        error: None,
         default: Some(0.2),
-        margin: None,
-        detail: String::new(),
+        ..Limit::default()
     };
     let hard = |case: &str, solver: &str, standing: Hardness| HardCaseResult {
         case: case.into(),

@@ -46,12 +46,18 @@ pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<
     within.min_by(|a, b| a.wall_seconds.unwrap_or(f64::NAN).total_cmp(&b.wall_seconds.unwrap_or(f64::NAN)))
 }
 
+/// Returns the time (s) of the cheapest setting of a solver with at most the error `target`.
+#[must_use]
+pub fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
+    cheapest(diagram, line, target)?.wall_seconds
+}
+
 /// Returns true if no other solver reaches the error `target` in less time.
 #[must_use]
 pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
-    let time = |line: &str| cheapest(diagram, line, target).and_then(|point| point.wall_seconds);
-    let others = || lines([diagram]).into_iter().filter(|other| *other != line).filter_map(time);
-    time(line).is_some_and(|mine| others().all(|other| mine <= other))
+    let others = || lines([diagram]).into_iter().filter(|other| *other != line);
+    time(diagram, line, target)
+        .is_some_and(|mine| others().filter_map(|other| time(diagram, other, target)).all(|other| mine <= other))
 }
 
 /// Returns true if a solver reaches the error `target`, but in a time that is shorter than the variation of its

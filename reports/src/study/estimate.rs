@@ -4,7 +4,7 @@ use super::cost::TARGETS;
 use super::stability::Limit;
 use crate::distinct;
 use crate::number;
-use crate::page::{captioned as figure, slug};
+use crate::page::{captioned, slug};
 use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
@@ -304,10 +304,51 @@ impl SceneCost {
     /// steps, as far as they are known.
     #[must_use]
     pub fn sentence(&self, target: f64, limits: &[Limit]) -> String {
+        let quantities: Vec<&Quantity> = self.quantities.iter().collect();
+        self.words(&quantities, &|solver| self.cheapest_for_all(solver, target), target, limits)
+    }
+
+    /// Returns the sentence about the cost of an error of at most `target` in one quantity.
+    #[must_use]
+    pub fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
+        let cheapest = |solver: &str| {
+            let point = quantity.cheapest(solver, target)?;
+            Some((point.setting.as_str(), point.wall_seconds))
+        };
+        self.words(&[quantity], &cheapest, target, limits)
+    }
+
+    /// Returns a sentence of the settings and times (s) at which solvers reach an error in all of some quantities, and of the
+    /// errors of all other solvers. `cheapest` returns the setting and the time of a solver.
+    fn words<'q>(
+        &self,
+        quantities: &[&'q Quantity],
+        cheapest: &dyn Fn(&str) -> Option<(&'q str, f64)>,
+        target: f64,
+        limits: &[Limit],
+    ) -> String {
         let solvers = self.solvers();
-        let reached = solvers.iter().filter_map(|solver| Some((*solver, self.cheapest_for_all(solver, target)?)));
-        let unreached = |solver: &str| {
-            let own = || self.quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
+        let mut reached: Vec<_> = solvers
+            .iter()
+            .filter_map(|solver| cheapest(solver).map(|(setting, time)| (*solver, setting, time)))
+            .collect();
+        reached.sort_by(|a, b| a.2.total_cmp(&b.2));
+        let fastest = reached.first().map_or(f64::NAN, |first| first.2);
+        let mut parts: Vec<String> = reached
+            .iter()
+            .map(|(solver, setting, seconds)| {
+                let times = seconds / fastest;
+                let times =
+                    if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
+                let margin = margin_words(solver, setting, limits).unwrap_or_default();
+                format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
+            })
+            .collect();
+        if parts.is_empty() {
+            parts.push(format!("no solver reaches it within the budget of {}", number::seconds(self.budget)));
+        }
+        let unreached = |solver: &&str| {
+            let own = || quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
             let Some((quantity, error)) = own().max_by(|a, b| a.1.total_cmp(&b.1)) else {
                 return self.without_value(solver);
             };
@@ -318,25 +359,13 @@ impl SceneCost {
                 _ => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
             }
         };
-        let count = self.quantities.len();
-        let of_all = if count == 1 { String::new() } else { format!(" in each of {count} quantities") };
-        let target_words = format!("{}{of_all}", number::fraction(target));
-        words(&target_words, reached, &solvers, &unreached, (self.budget, limits))
-    }
-
-    /// Returns the sentence about the cost of an error of at most `target` in one quantity.
-    #[must_use]
-    pub fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
-        let solvers = self.solvers();
-        let reached = solvers.iter().filter_map(|solver| {
-            let point = quantity.cheapest(solver, target)?;
-            Some((*solver, (point.setting.as_str(), point.wall_seconds)))
-        });
-        let unreached = |solver: &str| match least(quantity, solver) {
-            Some(error) => format!("{solver} does not reach it (at best {})", number::fraction(error)),
-            None => self.without_value(solver),
+        let others = solvers.iter().filter(|solver| reached.iter().all(|(name, ..)| name != *solver));
+        parts.extend(others.map(unreached));
+        let of_all = match quantities.len() {
+            1 => String::new(),
+            count => format!(" in each of {count} quantities"),
         };
-        words(&number::fraction(target), reached, &solvers, &unreached, (self.budget, limits))
+        format!("{}{of_all}: {}.", number::fraction(target), parts.join("; "))
     }
 
     /// Returns the solvers with a reference value of at least one quantity.
@@ -349,35 +378,6 @@ impl SceneCost {
 /// Returns the smallest target that a solver reaches: the upper end of the error of its finest level.
 fn least(quantity: &Quantity, solver: &str) -> Option<f64> {
     quantity.of_solver(solver).last().map(EstimatedPoint::at_most)
-}
-
-/// Returns a sentence of the settings and times (s) at which solvers reach an error. `unreached` describes the errors of a
-/// solver that does not reach it.
-fn words<'a>(
-    target: &str,
-    reached: impl Iterator<Item = (&'a str, (&'a str, f64))>,
-    solvers: &[&str],
-    unreached: &dyn Fn(&str) -> String,
-    (budget, limits): (f64, &[Limit]),
-) -> String {
-    let mut reached: Vec<_> = reached.collect();
-    reached.sort_by(|a, b| a.1.1.total_cmp(&b.1.1));
-    let fastest = reached.first().map_or(f64::NAN, |first| first.1.1);
-    let mut parts: Vec<String> = reached
-        .iter()
-        .map(|(solver, (setting, seconds))| {
-            let times = seconds / fastest;
-            let times = if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
-            let margin = margin_words(solver, setting, limits).unwrap_or_default();
-            format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
-        })
-        .collect();
-    if parts.is_empty() {
-        parts.push(format!("no solver reaches it within the budget of {}", number::seconds(budget)));
-    }
-    let others = solvers.iter().filter(|solver| reached.iter().all(|(name, _)| name != *solver));
-    parts.extend(others.map(|solver| unreached(solver)));
-    format!("{target}: {}.", parts.join("; "))
 }
 
 /// Returns a remark about a time step near the largest stable step of the solver.
@@ -436,12 +436,7 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
 
 /// Renders the section of the page.
 pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawError> {
-    let pictures: Vec<(&Quantity, Markup)> = cost
-        .quantities
-        .iter()
-        .filter(|quantity| !quantity.points.is_empty())
-        .map(|quantity| Ok((quantity, figure(&error_figure(cost, quantity))?)))
-        .collect::<Result<_, DrawError>>()?;
+    let pictures: Vec<Markup> = figures(cost).iter().map(captioned).collect::<Result<_, _>>()?;
     let folded = pictures.len().saturating_sub(OPEN);
     Ok(html! {
         header id="summary" {
@@ -466,11 +461,11 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawE
             h3 { "Reference values" }
             (references(cost))
             (agreement(cost))
-            div.figures.two { @for (_, picture) in pictures.iter().take(OPEN) { (picture) } }
+            div.figures.two { @for picture in pictures.iter().take(OPEN) { (picture) } }
             @if folded > 0 {
                 details {
                     summary { "Figures of " (folded) " further quantities" }
-                    div.figures.two { @for (_, picture) in pictures.iter().skip(OPEN) { (picture) } }
+                    div.figures.two { @for picture in pictures.iter().skip(OPEN) { (picture) } }
                 }
             }
             (softer(cost))

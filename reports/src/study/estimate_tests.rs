@@ -114,17 +114,10 @@ fn a_step_near_the_stable_one_has_a_remark() {
     let cost = SceneCost { names: vec!["dem".to_owned()], ..cost(vec![quantity]) };
     let limit = |solver: &str, found| Limit {
         scene: cost.scene.clone(),
-        knob: String::new(),
-        at: None,
         solver: solver.to_owned(),
         unit: CRITICAL_STEP.to_owned(),
         found,
-        unstable: None,
-        exact: None,
-        error: None,
-        default: None,
-        margin: None,
-        detail: String::new(),
+        ..Limit::default()
     };
     let remark = "with dt=0.4, which is 0.87 of the largest stable step.";
     assert!(cost.sentence(0.01, &[limit("dem", Some(0.46))]).ends_with(remark));

@@ -1,5 +1,6 @@
 //! Cost of a step with 1, 100 and 10,000 grains, without start-up: data, table and figure.
 
+use crate::distinct;
 use crate::number;
 use crate::page::captioned;
 use crate::plot::DrawError;
@@ -44,16 +45,14 @@ fn middle(load: &Load, value: fn(&TimingDifference) -> f64) -> f64 {
 /// Returns the figure of processor time per second of simulated time against the number of grains; none without
 /// timings.
 pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
-    let mut curves: Vec<(&str, Vec<(f64, f64)>)> = Vec::new();
-    for load in loads.iter().filter(|load| !load.laps.is_empty()) {
-        let place = (load.grains as f64, middle(load, |lap| lap.second));
-        match curves.iter_mut().find(|(solver, _)| *solver == load.solver) {
-            Some((_, places)) => places.push(place),
-            None => curves.push((&load.solver, vec![place])),
-        }
-    }
-    let curves: Vec<Curve> =
-        curves.into_iter().map(|(solver, places)| Curve::new(solver, Stroke::MarkedLine, places)).collect();
+    let timed = || loads.iter().filter(|load| !load.laps.is_empty());
+    let curve = |solver: &str| {
+        let own = timed().filter(|load| load.solver == solver);
+        let places = own.map(|load| (load.grains as f64, middle(load, |lap| lap.second)));
+        Curve::new(solver, Stroke::MarkedLine, places.collect())
+    };
+    let solvers = distinct(timed().map(|load| load.solver.as_str()));
+    let curves: Vec<Curve> = solvers.into_iter().map(curve).collect();
     (!curves.is_empty()).then(|| {
         Figure::graph(
             "cost-against-grains",

@@ -26,7 +26,7 @@ use std::collections::BTreeMap;
 pub use store::{STUDY_FILE, kept_text, load_study, named_figures, points_of, study_json, write_study};
 
 /// Data of a study. With them, all output files can be written again without a solver.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Study {
     /// Version, date, machine and options of the measurement.
     pub provenance: Provenance,
@@ -65,20 +65,8 @@ pub struct Study {
 impl Study {
     /// Returns an empty study.
     #[must_use]
-    pub const fn new(provenance: Provenance) -> Self {
-        Self {
-            provenance,
-            diagrams: Vec::new(),
-            scenes: Vec::new(),
-            model: None,
-            loads: Vec::new(),
-            changes: Vec::new(),
-            against: None,
-            limits: Vec::new(),
-            hard: Vec::new(),
-            ledger: Vec::new(),
-            sources: BTreeMap::new(),
-        }
+    pub fn new(provenance: Provenance) -> Self {
+        Self { provenance, ..Self::default() }
     }
 
     /// Returns true if the study is unfinished or measured nothing, a value has become worse since an earlier study, or a result

@@ -130,7 +130,7 @@ fn which(study: &Study) -> Markup {
     let lines = cost::lines(&study.diagrams);
     let columns = [Column::heading("Scene and quantity")].into_iter().chain(lines.iter().copied().map(Column::text));
     let row = |diagram: &Diagram| {
-        let time = |line: &&str| cost::cheapest(diagram, line, 0.01)?.wall_seconds;
+        let time = |line: &&str| cost::time(diagram, line, 0.01);
         let best = lines.iter().filter_map(time).fold(f64::INFINITY, f64::min);
         let unit = TimeUnit::of(lines.iter().filter_map(time));
         let cell = |line: &&str| {

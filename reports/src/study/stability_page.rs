@@ -194,17 +194,12 @@ mod tests {
     fn exact_limits_have_columns_only_if_one_is_known() {
         let mut limit = Limit {
             scene: "heap.toml".to_owned(),
-            knob: String::new(),
-            at: None,
             solver: "dem".to_owned(),
             unit: "2√(m/k)".to_owned(),
             found: Some(0.5),
-            unstable: None,
-            exact: None,
-            error: None,
             default: Some(0.1),
             margin: Some(5.0),
-            detail: String::new(),
+            ..Limit::default()
         };
         let page = largest_steps(std::slice::from_ref(&limit)).into_string();
         assert!(page.contains("Scene") && !page.contains("Assembly") && !page.contains("Exact"), "{page}");

@@ -19,16 +19,12 @@ impl Study {
         }
         text.extend(self.changes.iter().map(|change| format!("  {}: {}\n", change.what, change.how)));
         text.extend(self.scenes.iter().map(|cost| self.estimates(cost)));
-        let mut tables = Vec::new();
-        if !self.limits.is_empty() {
-            tables.push(stability_page::limits_table(&self.limits).text());
-        }
-        if !self.hard.is_empty() {
-            tables.push(stability_page::hard_table(&self.hard).text());
-        }
-        if !self.ledger.is_empty() {
-            tables.push(effects::results_table(&self.ledger).text());
-        }
+        let tables = [
+            (!self.limits.is_empty()).then(|| stability_page::limits_table(&self.limits)),
+            (!self.hard.is_empty()).then(|| stability_page::hard_table(&self.hard)),
+            (!self.ledger.is_empty()).then(|| effects::results_table(&self.ledger)),
+        ];
+        let tables: Vec<String> = tables.into_iter().flatten().map(Table::text).collect();
         if !text.is_empty() && !tables.is_empty() {
             text.push('\n');
         }
