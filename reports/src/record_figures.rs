@@ -117,13 +117,13 @@ fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions
         records.iter().filter_map(|named| forces(named, records.len() > 1, all.last()?.time)).collect();
     let Some(end) = all.last().map(|snapshot| snapshot.time) else { return figures };
     for quantity in quantities(records, options.fringe, end) {
-        let (name, title) = words(quantity);
+        let (name, title, caption) = words(quantity);
         let (telling, mute): (Vec<&NamedRecord<'_>>, Vec<&NamedRecord<'_>>) =
             records.iter().partition(|named| named.at(end).is_some_and(|snapshot| tells(snapshot, quantity)));
         let shots: Vec<Shot<'_>> = shown.iter().flat_map(|&time| pictures_of(telling.iter().copied(), time)).collect();
         let picture = pictures(quantity, &shots, PIXELS, None);
         let range = picture.range;
-        let caption = caption(quantity) + &not_recorded(mute.iter().map(|named| named.name.as_str()));
+        let caption = caption + &not_recorded(mute.iter().map(|named| named.name.as_str()));
         figures.push(Figure::field(name, title, &caption, picture));
         if all.len() >= FEWEST && !matches!(quantity, Quantity::Speed) {
             let clock: Vec<f64> = spread(all, options.frames).map(|snapshot| snapshot.time).collect();
@@ -223,31 +223,27 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
         .collect()
 }
 
-/// Returns the file name and the title of a quantity's figure.
-const fn words(quantity: Quantity) -> (&'static str, &'static str) {
-    match quantity {
-        Quantity::StressDifference => ("stress", "Difference of principal stresses"),
-        Quantity::Fringes(_) => ("fringes", "Photoelastic fringes"),
-        Quantity::PlasticStrain => ("plastic-strain", "Plastic strain"),
-        Quantity::Rotation => ("rotation", "Rotation"),
-        Quantity::Speed => ("speed", "Speed"),
-    }
-}
-
-fn caption(quantity: Quantity) -> String {
-    match quantity {
-        Quantity::StressDifference => {
+/// Returns the file name, the title and the caption of a quantity's figure.
+fn words(quantity: Quantity) -> (&'static str, &'static str, String) {
+    let (name, title, caption) = match quantity {
+        Quantity::StressDifference => (
+            "stress",
+            "Difference of principal stresses",
             "Difference of the principal stresses. It is the stress of the material points if there are any, and \
-             otherwise the elastic solution for each disc under its contact forces."
-                .to_owned()
-        }
+             otherwise the elastic solution for each disc under its contact forces.",
+        ),
         Quantity::Fringes(constant) => {
-            format!("Photoelastic fringes, bright at zero stress; f = {}.", number::with_unit(constant, "Pa"))
+            let constant = number::with_unit(constant, "Pa");
+            let caption = format!("Photoelastic fringes, bright at zero stress; f = {constant}.");
+            return ("fringes", "Photoelastic fringes", caption);
         }
-        Quantity::PlasticStrain => "Equivalent plastic strain of the material points.".to_owned(),
-        Quantity::Rotation => "Rotation since the start, counter-clockwise positive.".to_owned(),
-        Quantity::Speed => "Speed of the material, including the spin of grains.".to_owned(),
-    }
+        Quantity::PlasticStrain => {
+            ("plastic-strain", "Plastic strain", "Equivalent plastic strain of the material points.")
+        }
+        Quantity::Rotation => ("rotation", "Rotation", "Rotation since the start, counter-clockwise positive."),
+        Quantity::Speed => ("speed", "Speed", "Speed of the material, including the spin of grains."),
+    };
+    (name, title, caption.to_owned())
 }
 
 #[cfg(test)]

@@ -14,7 +14,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                 summary { "Contents" }
                 ul {
                     li { a href="#summary" { "Summary" } }
-                    @for (id, heading) in questions::links(&report.measured) { li { a href={ "#" (id) } { (heading) } } }
+                    @for (id, heading, _) in questions::stored(&report.measured) { li { a href={ "#" (id) } { (heading) } } }
                     @for (section, anchor) in report.sections.iter().zip(anchors) {
                         @let counts = Headline::of_section(section);
                         @let wrong = counts.red();

@@ -28,10 +28,13 @@ const CHANGES: [f64; 2] = [1e-5, 10.0];
 const QUESTIONS: [(&str, &str); 3] =
     [("costs", "What accuracy costs"), ("stability", "What stays stable"), ("effects", "Which effects matter")];
 
-/// Returns the anchors and headings of the questions for which measurements are stored.
-pub(crate) fn links(measured: &Measurements) -> impl Iterator<Item = (&'static str, &'static str)> {
-    let is_there = [measured.cost.is_some(), measured.stability.is_some(), measured.effects.is_some()];
-    QUESTIONS.into_iter().zip(is_there).filter(|(_, is_there)| *is_there).map(|(question, _)| question)
+/// Returns the anchor and the heading of each question for which a measurement is stored, with the stamp of the measurement.
+pub(crate) fn stored(measured: &Measurements) -> impl Iterator<Item = (&'static str, &'static str, &Stamp)> {
+    let Measurements { cost, stability, effects } = measured;
+    let [cost, stability] =
+        [cost.as_ref().map(|cost| &cost.stamp), stability.as_ref().map(|stability| &stability.stamp)];
+    let stamps = [cost, stability, effects.as_ref().map(|effects| &effects.stamp)];
+    QUESTIONS.into_iter().zip(stamps).filter_map(|((id, heading), stamp)| Some((id, heading, stamp?)))
 }
 
 /// Renders the three questions of the first screen. `physics` is a table below the first question.
@@ -39,7 +42,7 @@ pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
     let measured = &report.measured;
     html! {
         div.questions {
-            @for (id, heading) in links(measured) {
+            @for (id, heading, stamp) in stored(measured) {
                 div.question {
                     h2 { a href={ "#" (id) } { (heading) } }
                     @match id {
@@ -47,7 +50,7 @@ pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
                         "stability" => { @if let Some(stability) = &measured.stability { (steps(stability)) } }
                         _ => { @if let Some(effects) = &measured.effects { (changes(effects)) } }
                     }
-                    p.note { a href={ "#" (id) } { "All numbers" } " · " (age(measured, id)) }
+                    p.note { a href={ "#" (id) } { "All numbers" } " · " (age(stamp)) }
                     @if id == "costs" { (physics) }
                 }
             }
@@ -75,13 +78,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
 }
 
 /// Renders the date of a measurement, and the solvers that have changed since.
-fn age(measured: &Measurements, id: &str) -> Markup {
-    let stamp: Option<&Stamp> = match id {
-        "costs" => measured.cost.as_ref().map(|part| &part.stamp),
-        "stability" => measured.stability.as_ref().map(|part| &part.stamp),
-        _ => measured.effects.as_ref().map(|part| &part.stamp),
-    };
-    let Some(stamp) = stamp else { return html! {} };
+fn age(stamp: &Stamp) -> Markup {
     let changed: Vec<&str> = palette::SOLVERS.into_iter().filter(|solver| stamp.is_old(solver)).collect();
     html! {
         "measured " (stamp.day())

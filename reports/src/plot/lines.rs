@@ -96,11 +96,6 @@ struct View {
 }
 
 impl View {
-    /// Returns the dashes of a group of lines.
-    fn dash(&self, place: usize) -> Option<&'static str> {
-        dash(self.to_scale, place)
-    }
-
     fn at(&self, point: [f64; 2]) -> [f64; 2] {
         let low = self.seen[0];
         [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
@@ -179,7 +174,7 @@ fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> M
     html! {
         @for (class, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
             path d=(path) stroke=(colour) stroke-width=(px(0.3 + WIDEST * class as f64 / WIDTHS as f64))
-                stroke-dasharray=[view.dash(place)] stroke-opacity=[(!view.to_scale && 2 * class < WIDTHS).then_some(THIN)] {}
+                stroke-dasharray=[dash(view.to_scale, place)] stroke-opacity=[(!view.to_scale && 2 * class < WIDTHS).then_some(THIN)] {}
         }
     }
 }

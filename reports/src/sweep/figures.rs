@@ -4,11 +4,6 @@ use super::Sweep;
 use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Returns all figures of a sweep.
-pub(super) fn all(sweep: &Sweep) -> Vec<Figure> {
-    work(sweep).into_iter().collect()
-}
-
 /// Returns the solvers with their resolution levels, in the order of the points.
 pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
     let levels = distinct(sweep.points.iter().map(|point| (&point.solver, &point.resolution)));
@@ -22,7 +17,7 @@ pub(super) fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
 }
 
 /// Returns the figure of error against particle-steps, with one point for each solver and level.
-fn work(sweep: &Sweep) -> Option<Figure> {
+pub(super) fn work(sweep: &Sweep) -> Option<Figure> {
     let mut curves: Vec<Curve> = Vec::new();
     for (solver, level) in levels(sweep) {
         let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
@@ -30,14 +25,12 @@ fn work(sweep: &Sweep) -> Option<Figure> {
             level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps as f64)).collect();
         let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
         let Some(middle) = quantile(&mut steps, 0.5) else { continue };
-        for (label, part, stroke) in
-            [("median", 0.5, Stroke::MarkedLine), ("90 % of the errors are below", 0.9, Stroke::MarkedLine)]
-        {
+        for (label, part) in [("median", 0.5), ("90 % of the errors are below", 0.9)] {
             let Some(error) = quantile(&mut errors, part) else { continue };
             let label = format!("{solver}, {label}");
             match curves.iter_mut().find(|curve| curve.label == label) {
                 Some(curve) => curve.points.push((middle, error)),
-                None => curves.push(Curve::new(label, stroke, vec![(middle, error)])),
+                None => curves.push(Curve::new(label, Stroke::MarkedLine, vec![(middle, error)])),
             }
         }
     }

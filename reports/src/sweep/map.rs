@@ -35,11 +35,11 @@ const SIGNS: [&str; 4] = ["", "·", "×", "–"];
 const WORDS: [&str; 4] =
     ["within the tolerance for all values of the other factors", "at some", "at none", "not supported"];
 
-/// Returns the file name, the caption and the SVG of each map.
-pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
-    let Some([x, y]) = sweep.map.or_else(|| usual(sweep)) else { return Vec::new() };
-    if sweep.points.is_empty() || !sweep.points.iter().any(|point| point.error().is_some()) {
-        return Vec::new();
+/// Returns the caption and the SVG of the map; none without two factors or without an error.
+pub(super) fn draw(sweep: &Sweep) -> Option<(String, String)> {
+    let [x, y] = sweep.map.or_else(|| usual(sweep))?;
+    if sweep.points.iter().all(|point| point.error().is_none()) {
+        return None;
     }
     let axes = [Marks::from_sweep(sweep, x), Marks::from_sweep(sweep, y)];
     let panels = levels(sweep);
@@ -65,7 +65,7 @@ pub(super) fn draw(sweep: &Sweep) -> Vec<(String, String, String)> {
          fraction of its conclusive points within the tolerance.",
         labels[0], labels[1]
     );
-    vec![("map".to_owned(), caption, document(&title, [WIDTH, height], &body))]
+    Some((caption, document(&title, [WIDTH, height], &body)))
 }
 
 /// Returns the first two factors that have several numeric values.

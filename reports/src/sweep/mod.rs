@@ -5,10 +5,10 @@ mod map;
 mod page;
 mod table;
 
+use crate::plot;
 use crate::report::Provenance;
 use crate::store::SaveError;
 use crate::study::point::Timing;
-use crate::{page as shared, plot};
 use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use grainbench_store::StagedDir;
@@ -196,12 +196,13 @@ pub fn write_sweep(dir: impl AsRef<Path>, sweep: &Sweep) -> Result<(), SaveError
     out.write_with("rows.csv", |file| table::table(sweep).csv(file))?;
     out.write_with("rows.parquet", |file| table::table(sweep).parquet(file))?;
     out.write_with("results.json", |file| table::write_results(sweep, file))?;
-    let mut drawings: Vec<(String, String, String)> = Vec::new();
-    for (name, caption, svg) in map::draw(sweep) {
-        drawings.push((name, caption, plot::markup(&svg)));
+    let mut drawings = Vec::new();
+    if let Some((caption, svg)) = map::draw(sweep) {
+        drawings.push(("map", caption, plot::markup(&svg)));
     }
-    for figure in figures::all(sweep) {
-        drawings.push((shared::slug(&figure.name), figure.caption.clone(), plot::draw(&figure)?));
+    if let Some(figure) = figures::work(sweep) {
+        let svg = plot::draw(&figure)?;
+        drawings.push(("work", figure.caption, svg));
     }
     for (name, _, svg) in &drawings {
         out.write(format!("figures/{name}.svg"), svg)?;

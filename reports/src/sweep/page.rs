@@ -14,7 +14,7 @@ use maud::{Markup, PreEscaped, html};
 const MOST: usize = 50;
 
 /// Renders the page. `drawings` contains name, caption and SVG of each drawing.
-pub(super) fn render(sweep: &Sweep, drawings: &[(String, String, String)]) -> String {
+pub(super) fn render(sweep: &Sweep, drawings: &[(&str, String, String)]) -> String {
     let counts = KINDS.into_iter().zip(counts(&sweep.points));
     let body = html! {
         main.alone {
