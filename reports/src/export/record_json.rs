@@ -24,7 +24,7 @@ pub const RECORD_FILE: &str = "record.json";
 /// When `out` cannot be written, or when a snapshot cannot be read.
 pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) -> io::Result<()> {
     let Record { provenance, series, cost, .. } = record;
-    serde_json::to_writer(&mut out, &StreamedRecord { provenance, series, snapshots: StoredRecord(snapshots), cost })?;
+    serde_json::to_writer(&mut out, &StreamedRecord { provenance, series, snapshots, cost })?;
     out.write_all(b"\n")
 }
 
@@ -33,22 +33,19 @@ pub fn write(record: &Record, snapshots: &SnapshotStore, mut out: impl Write) ->
 struct StreamedRecord<'r> {
     provenance: &'r Provenance,
     series: &'r Series,
-    snapshots: StoredRecord<'r>,
+    #[serde(serialize_with = "stored")]
+    snapshots: &'r SnapshotStore,
     cost: &'r Cost,
 }
 
-struct StoredRecord<'r>(&'r SnapshotStore);
-
-impl Serialize for StoredRecord<'_> {
-    fn serialize<S: Serializer>(&self, serializer: S) -> Result<S::Ok, S::Error> {
-        let mut all = serializer.serialize_seq(None)?;
-        if self.0.rows() <= READABLE {
-            self.0.each(S::Error::custom, |snapshot| all.serialize_element(snapshot))?;
-        } else if let Some(last) = self.0.readable_end().map_err(S::Error::custom)? {
-            all.serialize_element(&last)?;
-        }
-        all.end()
+fn stored<S: Serializer>(snapshots: &SnapshotStore, serializer: S) -> Result<S::Ok, S::Error> {
+    let mut all = serializer.serialize_seq(None)?;
+    if snapshots.rows() <= READABLE {
+        snapshots.each(S::Error::custom, |snapshot| all.serialize_element(snapshot))?;
+    } else if let Some(last) = snapshots.readable_end().map_err(S::Error::custom)? {
+        all.serialize_element(&last)?;
     }
+    all.end()
 }
 
 /// Reads the record of a simulation from `dir`.

@@ -32,7 +32,8 @@ pub(crate) struct Part {
     pub(crate) link: Markup,
     /// Path and text of the file; none if the file exists in any case.
     pub(crate) file: Option<(String, String)>,
-    is_moved: bool,
+    /// True if the part was moved out of the page.
+    pub(crate) is_moved: bool,
 }
 
 impl Part {
@@ -47,11 +48,6 @@ impl Part {
         let body = html! { main.alone { h1 { (title) } (whole) } };
         let file = Some((path, super::shell(title, &body)));
         Self { rank, whole, link, file, is_moved: false }
-    }
-
-    /// Returns true if the part was moved out of the page.
-    pub(crate) const fn is_moved(&self) -> bool {
-        self.is_moved
     }
 
     fn gain(&self) -> usize {

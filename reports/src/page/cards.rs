@@ -7,7 +7,7 @@ use maud::{Markup, html};
 use super::rows::address;
 use super::rows_of;
 use crate::distinct;
-use crate::measured::{AT, Costs, Hold, Line, Stability};
+use crate::measured::{AT, Costs, Hold, Line, Measurements, Stability};
 use crate::number;
 use crate::report::Report;
 
@@ -48,7 +48,6 @@ pub(crate) fn solvers(report: &Report) -> Vec<&str> {
 pub(crate) fn render(report: &Report, anchors: &[String], has_rows: &dyn Fn(&str) -> bool) -> Markup {
     // Solvers with settings for single cases have no card; the matrix shows them.
     let solvers: Vec<&str> = solvers(report).into_iter().filter(|name| !name.contains('+')).collect();
-    let (cost, stability) = (report.measured.cost.as_ref(), report.measured.stability.as_ref());
     let lead = |row: &Verdict| {
         let at = report.sections.iter().position(|section| section.name == row.case);
         let table = at.and_then(|at| anchors.get(at)).map_or_else(|| "matrix".to_owned(), |anchor| rows_of(anchor));
@@ -57,7 +56,7 @@ pub(crate) fn render(report: &Report, anchors: &[String], has_rows: &dyn Fn(&str
     html! {
         @if !solvers.is_empty() {
             div.cards id="solvers" aria-label="Solvers" role="group" {
-                @for solver in solvers { (card(report, &lead, solver, (cost, stability))) }
+                @for solver in solvers { (card(report, &lead, solver)) }
             }
         }
     }
@@ -86,12 +85,7 @@ fn size(row: &Verdict) -> f64 {
 }
 
 /// Renders the card of a solver. `lead` returns the anchor of a result.
-fn card(
-    report: &Report,
-    lead: &dyn Fn(&Verdict) -> String,
-    solver: &str,
-    (cost, stability): (Option<&Costs>, Option<&Stability>),
-) -> Markup {
+fn card(report: &Report, lead: &dyn Fn(&Verdict) -> String, solver: &str) -> Markup {
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
     let not_judged = rows(report, solver).filter(|row| !row.outcome.is_judged()).count();
@@ -104,10 +98,10 @@ fn card(
     let worst = rows(report, solver)
         .filter_map(|row| Some((wrongness(row)?, row)))
         .max_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-    let line = cost.and_then(|cost| Some((cost, cost.lines.iter().find(|line| line.solver == solver)?)));
-    let hold = stability.and_then(|stability_of_case| {
-        Some((stability_of_case, stability_of_case.lines.iter().find(|line| line.solver == solver)?))
-    });
+    let Measurements { cost, stability, .. } = &report.measured;
+    let line = cost.as_ref().and_then(|cost| Some((cost, cost.lines.iter().find(|line| line.solver == solver)?)));
+    let stability = stability.as_ref();
+    let hold = stability.and_then(|all| Some((all, all.lines.iter().find(|line| line.solver == solver)?)));
     let filter = |outcome: Option<&'static str>, text: Markup| {
         html! {
             a href="#matrix" title=[meaning(solver)] data-solver=(solver) data-outcome=[outcome] { (text) }
@@ -132,7 +126,7 @@ fn card(
                     }
                 }
                 @if (1..all).contains(&not_judged) { div { dt { "not judged" } dd { (not_judged) } } }
-                @if let Some((stability_of_case, hold)) = hold { (stable(stability_of_case, hold)) }
+                @if let Some((stability, hold)) = hold { (stable(stability, hold)) }
                 @if let Some((costs, line)) = line { (price(costs, line)) }
             }
         }

@@ -60,29 +60,22 @@ pub(crate) fn render(parts: &[Part]) -> Markup {
 /// Returns a figure as a part of the page, with the link that replaces it if the page becomes too large.
 pub(crate) fn part(figure: &Figure, name: &str, id: &str) -> Result<Part, DrawError> {
     let (still, reel) = plot::draw_small(figure)?;
-    let still = PreEscaped(still);
+    let still = html! { div class=(class(&figure.drawing)) { (PreEscaped(still)) } };
     let shown = html! {
         @if let Some(reel) = &reel {
-            div.film data-title=(figure.title) data-film=(reel) {
-                div class=(class(&figure.drawing)) { (still) }
-                button type="button" hidden { "Pause" }
-            }
-        } @else {
-            div class=(class(&figure.drawing)) { (still) }
-        }
+            div.film data-title=(figure.title) data-film=(reel) { (still) button type="button" hidden { "Pause" } }
+        } @else { (still) }
     };
     let whole = framed(figure, name, id, &shown);
     // A moved film is replaced by its last frame. Any other moved figure is replaced by an image loaded from its file.
-    let link = if reel.is_some() {
-        framed(figure, name, id, &html! { div class=(class(&figure.drawing)) { (still) } })
-    } else {
-        let image = html! {
+    let lighter = html! {
+        @if reel.is_some() { (still) } @else {
             div class=(class(&figure.drawing)) {
                 img loading="lazy" width="860" height="520" src={ "figures/" (name) ".svg" } alt=(figure.title);
             }
-        };
-        framed(figure, name, id, &image)
+        }
     };
+    let link = framed(figure, name, id, &lighter);
     let rank = match reel {
         Some(_) => Rank::Films,
         None if whole.0.len() > HEAVY => Rank::HeavyFigures,

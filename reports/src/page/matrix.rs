@@ -14,18 +14,6 @@ use crate::table::{self, scrolling};
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
 
-/// Content of a cell: the results of one case with one solver.
-struct Cell<'a> {
-    /// Largest |error|/allowed; none if no result has an error.
-    worst: Option<f64>,
-    /// Outcome of the worst result.
-    outcome: Outcome,
-    /// Number of results of each outcome, with the most important outcome first.
-    counts: Vec<(Outcome, usize)>,
-    /// Solver of the results.
-    solver: &'a str,
-}
-
 /// Returns the rank of an outcome. From high to low, the order is: red, known error, outdated, passed, and outcomes without
 /// a judged value.
 const fn order(outcome: Outcome) -> u8 {
@@ -38,17 +26,6 @@ const fn order(outcome: Outcome) -> u8 {
         Outcome::Pass => 1,
         Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
     }
-}
-
-fn cell<'a>(rows: &[&'a Verdict]) -> Option<Cell<'a>> {
-    let worst = rows.iter().max_by_key(|row| order(row.outcome))?;
-    let has_error = rows.iter().filter(|row| row.error.is_some());
-    Some(Cell {
-        worst: has_error.map(|row| used_tolerance(row)).reduce(f64::max),
-        outcome: worst.outcome,
-        counts: counts(rows.iter().map(|row| row.outcome)),
-        solver: &rows.first()?.solver,
-    })
 }
 
 /// Counts results by outcome, with the most important outcome first.
@@ -257,12 +234,14 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
 fn ours(section: &Section, column: &str, anchor: &str) -> Markup {
     let is_mine = |row: &&Verdict| if column == OTHERS { row.solver.contains('+') } else { row.solver == column };
     let rows: Vec<&Verdict> = section.verdicts.iter().filter(is_mine).collect();
-    let Some(cell) = cell(&rows) else { return html! {} };
-    let words = description(&section.name, column, &cell.counts);
+    let counts = counts(rows.iter().map(|row| row.outcome));
+    let (Some((outcome, _)), Some(first)) = (counts.first(), rows.first()) else { return html! {} };
+    let has_error = rows.iter().filter(|row| row.error.is_some());
+    let worst = has_error.map(|row| used_tolerance(row)).reduce(f64::max);
+    let words = description(&section.name, column, &counts);
     html! {
-        a class={ (class(cell.outcome, cell.worst)) (stripe(&cell.counts)) } href={ "#" (super::rows_of(anchor)) }
-            title=(words) data-solver=(cell.solver)
-            data-case=(section.name) { (text(cell.outcome, cell.worst)) }
+        a class={ (class(*outcome, worst)) (stripe(&counts)) } href={ "#" (super::rows_of(anchor)) } title=(words)
+            data-solver=(first.solver) data-case=(section.name) { (text(*outcome, worst)) }
     }
 }
 
@@ -276,12 +255,12 @@ fn text(outcome: Outcome, worst: Option<f64>) -> String {
 }
 
 fn theirs(results: &ExternalResults, case: &str) -> Markup {
-    let outcomes = results.rows.iter().filter(|row| row.result.case == case).map(|row| row.result.outcome);
-    let Some(worst) = outcomes.clone().max_by_key(|outcome| order(*outcome)) else { return html! {} };
-    let used = results.worst(case);
-    let counts = counts(outcomes);
+    let rows = results.rows.iter().filter(|row| row.result.case == case);
+    let counts = counts(rows.map(|row| row.result.outcome));
+    let Some((outcome, _)) = counts.first() else { return html! {} };
+    let worst = results.worst(case);
     let words = description(case, &results.program, &counts);
-    html! { span class={ (class(worst, used)) (stripe(&counts)) } title=(words) { (text(worst, used)) } }
+    html! { span class={ (class(*outcome, worst)) (stripe(&counts)) } title=(words) { (text(*outcome, worst)) } }
 }
 
 #[cfg(test)]

@@ -77,7 +77,7 @@ impl<'a> CaseSection<'a> {
 
     /// Returns true if the table of all results is in the page.
     pub(crate) fn has_rows(&self) -> bool {
-        self.details.iter().any(|details| details.part.rank == Rank::Rows && !details.part.is_moved())
+        self.details.iter().any(|details| details.part.rank == Rank::Rows && !details.part.is_moved)
     }
 }
 

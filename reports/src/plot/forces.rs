@@ -50,17 +50,9 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
             high[axis] = high[axis].max(point[axis] + reach);
         }
     };
-    for (centre, radius, _) in &discs {
-        include(*centre, *radius);
-    }
-    for (a, b) in &walls {
-        include(*a, 0.0);
-        include(*b, 0.0);
-    }
-    for bar in &bars {
-        include(bar.from, 0.0);
-        include(bar.to, 0.0);
-    }
+    discs.iter().for_each(|(centre, radius, _)| include(*centre, *radius));
+    let ends = walls.iter().flat_map(|(a, b)| [*a, *b]).chain(bars.iter().flat_map(|bar| [bar.from, bar.to]));
+    ends.for_each(|point| include(point, 0.0));
     if low[0] > high[0] {
         (low, high) = ([0.0; 2], [1.0; 2]);
     }

@@ -37,38 +37,28 @@ impl FigureStyle {
         let is_color = |color: &String| {
             color.len() == 7 && color.starts_with('#') && color[1..].chars().all(|digit| digit.is_ascii_hexdigit())
         };
-        let width = self
-            .width
-            .filter(|width| !is_size(*width, 2000.0))
-            .map(|width| ("width", "a width in mm, at most 2000", width.to_string()));
-        let size = self.font_size.filter(|size| !is_size(*size, 100.0) || self.width.is_none());
-        let size = size.map(|size| {
-            let found = if self.width.is_none() { format!("{size} without `width`") } else { size.to_string() };
-            ("font_size", "a size in pt, at most 100, and a width", found)
-        });
-        let form = self.form().filter(|form| form.width < NARROWEST).map(|form| {
-            (
-                "font_size",
-                "letters of at most a twentieth of the width",
-                format!("{:.2} of the width", LETTERS / form.width),
-            )
-        });
         let is_font = |font: &String| {
             !font.is_empty() && font.chars().all(|letter| letter.is_alphanumeric() || " ,'-".contains(letter))
         };
-        let font = self
-            .font
-            .as_ref()
-            .filter(|font| !is_font(font))
-            .map(|font| ("font", "names of font families", format!("`{font}`")));
-        let color = self
-            .colors
-            .iter()
-            .find(|color| !is_color(color))
-            .map(|color| ("colors", "colours as `#rrggbb`", format!("`{color}`")));
-        let colors = (self.colors.len() > COLOURS.len())
-            .then(|| ("colors", "at most six colours", self.colors.len().to_string()));
-        width.or(size).or(form).or(font).or(color).or(colors)
+        if let Some(width) = self.width.filter(|width| !is_size(*width, 2000.0)) {
+            return Some(("width", "a width in mm, at most 2000", width.to_string()));
+        }
+        if let Some(size) = self.font_size.filter(|size| !is_size(*size, 100.0) || self.width.is_none()) {
+            let found = if self.width.is_none() { format!("{size} without `width`") } else { size.to_string() };
+            return Some(("font_size", "a size in pt, at most 100, and a width", found));
+        }
+        if let Some(form) = self.form().filter(|form| form.width < NARROWEST) {
+            let found = format!("{:.2} of the width", LETTERS / form.width);
+            return Some(("font_size", "letters of at most a twentieth of the width", found));
+        }
+        if let Some(font) = self.font.as_ref().filter(|font| !is_font(font)) {
+            return Some(("font", "names of font families", format!("`{font}`")));
+        }
+        if let Some(color) = self.colors.iter().find(|color| !is_color(color)) {
+            return Some(("colors", "colours as `#rrggbb`", format!("`{color}`")));
+        }
+        let is_too_many = self.colors.len() > COLOURS.len();
+        is_too_many.then(|| ("colors", "at most six colours", self.colors.len().to_string()))
     }
 
     /// Returns the form of a graph whose letters have the requested size when the graph has the requested width.

@@ -6,7 +6,6 @@ use grainbench_harness::figure::Stroke;
 use maud::{Markup, html};
 
 use super::{CurveStyle, Place, px};
-use crate::plot::palette::{self, Marker};
 
 /// Number of points above which a curve is reduced to the resolution of the drawing.
 const DENSE: usize = 400;
@@ -54,7 +53,7 @@ pub(super) fn draw(stroke: Stroke, look: &CurveStyle, pieces: &[Vec<Place>]) -> 
                 (marks(pieces.iter().filter(|piece| piece.len() == 1).flatten().copied(), look, true, 4.2))
                 // Markers are evenly spaced along x. Each shape of marker has its own offset, so that markers of
                 // coinciding curves do not overlap.
-                @let shift = 0.15 + 0.7 * fraction_of(look.marker);
+                @let shift = 0.15 + 0.7 * (f64::from(look.marker as u8) * 0.38).fract();
                 (marks(pieces.iter().flat_map(|piece| along(piece, MARKS_ON_A_LINE, shift)), look, false, 4.2))
             }
             Stroke::Dashed => {}
@@ -140,12 +139,6 @@ pub(super) fn sample(stroke: Stroke, look: &CurveStyle, from: Place, to: Place) 
             }
         }
     }
-}
-
-/// Returns a number between 0 and 1 that differs for each shape of marker.
-fn fraction_of(marker: Marker) -> f64 {
-    let place = (0..7).find(|place| palette::marker(*place) == marker).unwrap_or(0);
-    (place as f64 * 0.38).fract()
 }
 
 /// Returns points on a polyline at equal distances along x.
