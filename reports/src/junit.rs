@@ -1,6 +1,6 @@
 //! Report as `junit.xml`, a format that continuous-integration services display.
 
-use grainbench_harness::verdict::{Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 use quick_junit::{NonSuccessKind, SerializeError, TestCase, TestCaseStatus, TestSuite};
 
 use crate::line;
@@ -14,48 +14,41 @@ use crate::report::Report;
 pub fn junit_xml(report: &Report) -> Result<String, SerializeError> {
     let mut document = quick_junit::Report::new("grainbench");
     for section in &report.sections {
-        let mut suite = TestSuite::new(section.name.as_str());
-        for verdict in &section.verdicts {
-            let mut test = TestCase::new(
-                name(&verdict.variant, &verdict.solver, &verdict.resolution, &verdict.quantity),
-                status(verdict),
-            );
-            test.set_classname(section.name.as_str());
-            suite.add_test_case(test);
-        }
-        for control in &section.controls {
+        let verdict = |row: &Verdict| (name(&row.variant, &row.solver, &row.resolution, &row.quantity), status(row));
+        let control = |control: &ControlResult| {
+            let claim = name(&control.variant, &control.solver, "", &control.quantity);
             let status = if control.turned_red {
                 TestCaseStatus::success()
             } else {
-                let mut status = TestCaseStatus::non_success(NonSuccessKind::Failure);
-                status.set_message(line::control(control));
-                status
+                non_success(NonSuccessKind::Failure, line::control(control))
             };
-            let mut test = TestCase::new(
-                format!(
-                    "negative control · {} · {}",
-                    name(&control.variant, &control.solver, "", &control.quantity),
-                    control.wrong_physics
-                ),
-                status,
-            );
-            test.set_classname(section.name.as_str());
-            suite.add_test_case(test);
-        }
-        document.add_test_suite(suite);
+            (format!("negative control · {claim} · {}", control.wrong_physics), status)
+        };
+        let tests = section.verdicts.iter().map(verdict).chain(section.controls.iter().map(control));
+        document.add_test_suite(suite(&section.name, tests));
     }
     if !report.red_because.is_empty() {
-        let mut suite = TestSuite::new("grainbench");
-        for reason in &report.red_because {
-            let mut status = TestCaseStatus::non_success(NonSuccessKind::Error);
-            status.set_message(reason);
-            let mut test = TestCase::new(reason.as_str(), status);
-            test.set_classname("grainbench");
-            suite.add_test_case(test);
-        }
-        document.add_test_suite(suite);
+        let reason = |reason: &String| (reason.clone(), non_success(NonSuccessKind::Error, reason.as_str()));
+        document.add_test_suite(suite("grainbench", report.red_because.iter().map(reason)));
     }
     document.to_string()
+}
+
+/// Returns a suite of tests, each with its name and status.
+fn suite(name: &str, tests: impl Iterator<Item = (String, TestCaseStatus)>) -> TestSuite {
+    let mut suite = TestSuite::new(name);
+    suite.add_test_cases(tests.map(|(test, status)| {
+        let mut test = TestCase::new(test, status);
+        test.set_classname(name);
+        test
+    }));
+    suite
+}
+
+fn non_success(kind: NonSuccessKind, message: impl AsRef<str>) -> TestCaseStatus {
+    let mut status = TestCaseStatus::non_success(kind);
+    status.set_message(message);
+    status
 }
 
 fn name(variant: &str, solver: &str, resolution: &str, quantity: &str) -> String {
