@@ -106,12 +106,6 @@ impl ExternalResults {
     pub fn worst(&self, case: &str) -> Option<f64> {
         headline::worst(self.of_case(Some(case)).map(|row| &row.result)).map(headline::used_tolerance)
     }
-
-    /// Returns the date of the run, without the time.
-    #[must_use]
-    pub fn day(&self) -> &str {
-        self.provenance.date.split(' ').next().unwrap_or_default()
-    }
 }
 
 /// Returns the cases with results of any external solver, in order of appearance.

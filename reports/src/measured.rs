@@ -149,12 +149,6 @@ impl Stamp {
     pub fn is_old(&self, solver: &str) -> bool {
         self.changed.iter().any(|changed| changed == solver)
     }
-
-    /// Returns the date of the measurement, without the time.
-    #[must_use]
-    pub fn day(&self) -> &str {
-        self.provenance.date.split(' ').next().unwrap_or_default()
-    }
 }
 
 fn geometric_mean(values: &[f64]) -> Option<f64> {

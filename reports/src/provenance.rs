@@ -22,3 +22,11 @@ pub struct Provenance {
     #[serde(deserialize_with = "number")]
     pub wall_seconds: f64,
 }
+
+impl Provenance {
+    /// Returns the date of the run, without the time.
+    #[must_use]
+    pub fn day(&self) -> &str {
+        self.date.split(' ').next().unwrap_or_default()
+    }
+}

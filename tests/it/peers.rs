@@ -69,7 +69,7 @@ fn programs_table(judged: &[ExternalResults]) -> String {
         let (pass, red, amber) = (count.pass(), count.red(), count.amber());
         let Headline { controls, controls_red, .. } = count;
         let rows = results.rows.len();
-        let (version, day, commit) = (&results.version, results.day(), &results.provenance.commit);
+        let (version, day, commit) = (&results.version, results.provenance.day(), &results.provenance.commit);
         writeln!(
             table,
             "| {version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit} |"

@@ -44,7 +44,7 @@ fn programs(judged: &[ExternalResults]) -> Table<'_> {
             html! { (results.program) span.title { (results.version) } },
             tally(count),
             format!("{} of {}", count.controls_red, count.controls),
-            format!("{}, commit {}", results.day(), results.provenance.commit),
+            format!("{}, commit {}", results.provenance.day(), results.provenance.commit),
             &results.provenance.machine
         ]
     };

@@ -38,8 +38,8 @@ pub const AUTHOR: &str = "The authors of grainbench";
 
 /// Returns the citation of a result as text and as BibTeX, with the version and the commit that made it.
 fn citation(provenance: &Provenance) -> [String; 2] {
-    let Provenance { version, commit, date, machine, .. } = provenance;
-    let day = date.split(' ').next().unwrap_or_default();
+    let Provenance { version, commit, machine, .. } = provenance;
+    let day = provenance.day();
     let year = day.split('-').next().unwrap_or_default();
     let text = format!("{AUTHOR}: {TITLE}, version {version}, commit {commit}. Results of {day} on {machine}.");
     let bibtex = format!(

@@ -81,7 +81,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
 fn age(stamp: &Stamp) -> Markup {
     let changed: Vec<&str> = palette::SOLVERS.into_iter().filter(|solver| stamp.is_old(solver)).collect();
     html! {
-        "measured " (stamp.day())
+        "measured " (stamp.provenance.day())
         @if !changed.is_empty() { "; " span.old { "outdated" } ": " (changed.join(", ")) " changed since" }
     }
 }

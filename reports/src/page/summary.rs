@@ -83,7 +83,7 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
             "1 %. Joined markers are errors of 10, 1 and 0.1 %. Small markers are settings for which no other setting \
              of this solver is both "
             "faster and more accurate. Errors below 10⁻¹⁰ are omitted. Times are those of the stepping loop. Measured " "
-            "(stamp.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
+            "(stamp.provenance.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
                  cases."
             @if !stamp.changed.is_empty() {
