@@ -82,7 +82,6 @@ impl Headline {
     }
 
     /// Returns the number of results with this colour.
-    #[must_use]
     fn of_severity(self, severity: Severity) -> usize {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }

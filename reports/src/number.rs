@@ -76,8 +76,7 @@ pub fn seconds(seconds: f64) -> String {
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct TimeUnit {
     scale: f64,
-    /// Symbol of the unit.
-    pub symbol: &'static str,
+    symbol: &'static str,
 }
 
 impl TimeUnit {
@@ -89,16 +88,10 @@ impl TimeUnit {
         Self { scale, symbol }
     }
 
-    /// Returns a duration (s) in this unit, without its symbol, with at most three significant digits.
-    #[must_use]
-    fn number(self, seconds: f64) -> String {
-        significant(seconds * self.scale, 3)
-    }
-
-    /// Returns a duration (s) in this unit, with its symbol.
+    /// Returns a duration (s) in this unit, with its symbol and at most three significant digits.
     #[must_use]
     pub fn with_symbol(self, seconds: f64) -> String {
-        append_unit(self.number(seconds), self.symbol)
+        append_unit(significant(seconds * self.scale, 3), self.symbol)
     }
 }
 
@@ -180,7 +173,6 @@ mod tests {
     fn durations_of_a_group_have_one_unit() {
         let unit = TimeUnit::of([174e-6, 0.166, f64::NAN]);
         assert_eq!([174e-6, 0.166].map(|seconds| unit.with_symbol(seconds)), ["0.174\u{202f}ms", "166\u{202f}ms"]);
-        assert_eq!((unit.number(0.166), unit.symbol), ("166".to_owned(), "ms"));
         assert_eq!(TimeUnit::of([]).with_symbol(2.0), "2\u{202f}s");
     }
 

@@ -28,7 +28,6 @@ const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
 
 /// Returns true if a record has grains or points and all of them lie in the plane z = 0.
-#[must_use]
 fn is_plane(record: &Record) -> bool {
     let heights = |snapshot: &Snapshot| {
         let grains = snapshot.grains.iter().map(|grain| grain.position.z);

@@ -231,9 +231,9 @@ impl Row {
     }
 }
 
-impl From<Vec<Cell>> for Row {
-    fn from(cells: Vec<Cell>) -> Self {
-        Self { class: "", cells }
+impl FromIterator<Cell> for Row {
+    fn from_iter<T: IntoIterator<Item = Cell>>(cells: T) -> Self {
+        Self { class: "", cells: cells.into_iter().collect() }
     }
 }
 
@@ -241,7 +241,7 @@ impl From<Vec<Cell>> for Row {
 #[macro_export]
 macro_rules! row {
     ($($cell:expr),+ $(,)?) => {
-        $crate::table::Row::from(vec![$($crate::table::Cell::from($cell)),+])
+        [$($crate::table::Cell::from($cell)),+].into_iter().collect::<$crate::table::Row>()
     };
 }
 

@@ -46,7 +46,6 @@ pub fn summary_table_within(report: &Report, width: usize) -> String {
 
 /// Returns one line for each reason of amber results, with the number of results and their solvers. The most frequent
 /// reasons come first, and a last line counts the others.
-#[must_use]
 fn amber_lines(report: &Report) -> Vec<String> {
     let mut groups: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
     let rows = report.verdicts();
@@ -72,7 +71,6 @@ fn amber_lines(report: &Report) -> Vec<String> {
 }
 
 /// Returns the outcome of a report in words, with the mark of its colour; none if there is no result.
-#[must_use]
 fn conclusion(report: &Report) -> Option<String> {
     let counts = Headline::of_report(report);
     let (red, amber, judged) = (counts.red(), counts.amber(), counts.conclusive());

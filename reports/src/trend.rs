@@ -206,7 +206,7 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
         row.extend([&column.name, &column.commit, &column.date].map(Cell::from));
         row.extend(KINDS.map(|(_, severity)| Cell::from(column.count(severity))));
         row.extend(COUNTED.map(|name| Cell::from(column.sum(name, shared))));
-        Row::from(row)
+        row.into_iter().collect()
     };
     let table = Table::new("Reports", heads, columns.iter().enumerate().map(row));
     html! { section id="reports" { h2 { "Reports" } (table.page("")) } }
@@ -241,10 +241,7 @@ fn changed_rows(columns: &[Column]) -> Markup {
         let word = outcome.map_or("—", Outcome::word);
         Cell::from(html! { span class={ "mark " (class) } { (symbol) " " (word) } })
     };
-    let row = |name: &&String| {
-        let cells = outcomes(name).into_iter().map(cell);
-        Row::from([Cell::from(*name)].into_iter().chain(cells).collect::<Vec<_>>())
-    };
+    let row = |name: &&String| [Cell::from(*name)].into_iter().chain(outcomes(name).into_iter().map(cell)).collect();
     let heads = [Head::heading("Row")].into_iter().chain((1..=columns.len()).map(|at| Head::text(at.to_string())));
     let table = Table::new("Rows that changed", heads, names.iter().take(MOST).map(row));
     changed("rows", "None: every result has the same outcome in all reports.", count, table)

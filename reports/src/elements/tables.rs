@@ -1,6 +1,6 @@
 //! Tables of granular elements.
 
-use crate::table::{Cell, Column as Head, Format, Row, Table};
+use crate::table::{Cell, Column as Head, Format, Table};
 use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
 use grainbench_fields::course::{Course, of_means};
@@ -38,7 +38,7 @@ pub(super) fn elements(course: &Course) -> Table<'_> {
             row.extend(place(course, cell));
             row.push(frame.masked[cell].words().into());
             row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value(column, frame, cell))));
-            Row::from(row)
+            row.into_iter().collect()
         })
     });
     Table::new("elements", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
@@ -55,7 +55,7 @@ pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Table<'a> {
         row.extend(stop.position.iter().map(|along| Cell::from(*along)));
         row.push(Cell::finite(stop.strain));
         row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value_at(column, frame, stop.position))));
-        Row::from(row)
+        row.into_iter().collect()
     });
     Table::new("tracers", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
 }
@@ -74,7 +74,7 @@ pub(super) fn means(course: &Course, blocks: usize) -> Table<'_> {
         row.extend(
             of_means().map(|column| Cell::finite(whole.and_then(|element| (column.of)(&element, &course.grains)))),
         );
-        Row::from(row)
+        row.into_iter().collect()
     });
     let columns = place_heads().chain(COLUMNS.iter().flat_map(both));
     Table::new("means", columns.chain(of_means().map(|column| head(column, "_of_means"))), rows)

@@ -1,6 +1,6 @@
 //! Time series as CSV and as Parquet.
 
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 use grainbench_solver::record::Series;
 
 /// Returns the table with the columns `step`, `time (s)`, `NAME (unit)`, … and one row per sample. A short column ends
@@ -11,7 +11,7 @@ pub fn table(series: &Series) -> Table<'_> {
     let quantities = series.columns.iter().map(|column| Column::number(&column.name).unit(&column.unit));
     let rows = series.step.iter().zip(&series.time).enumerate().map(|(sample, (step, time))| {
         let values = series.values.iter().map(|column| Cell::from(column.get(sample).copied()));
-        Row::from([Cell::from(*step), Cell::from(*time)].into_iter().chain(values).collect::<Vec<_>>())
+        [Cell::from(*step), Cell::from(*time)].into_iter().chain(values).collect()
     });
     Table::new("series", columns.chain(quantities), rows)
 }

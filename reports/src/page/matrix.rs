@@ -149,7 +149,7 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
         let cells = columns.iter().map(|(solver, results)| {
             results[field].as_ref().map_or(table::Cell::from(""), |results| cell(field, solver, results).into())
         });
-        table::Row::from([physics.title().into()].into_iter().chain(cells).collect::<Vec<table::Cell>>())
+        [physics.title().into()].into_iter().chain(cells).collect()
     };
     let table =
         table::Table::new("Median error by field of physics and solver", heads, fields.iter().enumerate().map(row));

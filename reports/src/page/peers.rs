@@ -8,7 +8,7 @@ use crate::judged::{self, ExternalResults};
 use crate::number;
 use crate::report::Report;
 use crate::row;
-use crate::table::{Cell, Column, Row, Table};
+use crate::table::{Cell, Column, Table};
 
 /// Renders the section; it is empty if there are no external solvers.
 pub(crate) fn render(report: &Report) -> Markup {
@@ -66,7 +66,7 @@ fn by_case(report: &Report) -> Table<'_> {
         let worst = ours(report, case).map(|worst| number::significant(worst, 2));
         let counts =
             report.judged.iter().map(|results| Cell::from(cell(results.count(Some(case)), results.worst(case))));
-        Row::from([Cell::from(case), worst.into()].into_iter().chain(counts).collect::<Vec<_>>())
+        [Cell::from(case), worst.into()].into_iter().chain(counts).collect()
     };
     let columns = [Column::heading("Case"), Column::text("ours")].into_iter().chain(programs);
     Table::new("Programs by case", columns, judged::cases(&report.judged).into_iter().map(row))

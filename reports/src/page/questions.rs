@@ -146,7 +146,7 @@ fn steps(stability: &Stability) -> Markup {
     };
     let row = |case: &&str| {
         let marks = lines.iter().map(|line| mark(case, line));
-        Row::from([Cell::from(case.replace('-', " "))].into_iter().chain(marks).collect::<Vec<_>>())
+        [Cell::from(case.replace('-', " "))].into_iter().chain(marks).collect::<Row>()
     };
     let total = |line: &&Hold| {
         let found = || held.iter().filter_map(|case| severity(case, line));
@@ -155,7 +155,7 @@ fn steps(stability: &Stability) -> Markup {
         Cell::from(html! { span.mark.pass title=(title) { "✓" (holds) @if holds < asked { "/" (asked) } } })
     };
     let totals = [Cell::from(format!("{} other cases", held.len()))].into_iter().chain(lines.iter().map(total));
-    let rows = hard.iter().map(row).chain([Row::from(totals.collect::<Vec<_>>())]);
+    let rows = hard.iter().map(row).chain([totals.collect::<Row>()]);
     let table = Table::new("Hard cases by solver", columns, rows);
     html! {
         @if let Some(figure) = &figure { (drawn(figure)) }

@@ -39,19 +39,15 @@ pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
 
 /// Returns the graph of error against time over all cases. The table of factors is its legend.
 fn over_cases(costs: &Costs) -> Graph {
-    let mut curves = Vec::new();
-    for line in &costs.lines {
-        let means =
-            line.factors.iter().zip(TARGETS).filter_map(|(factor, target)| Some((factor.as_ref()?.place?, target)));
-        curves.push(Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect()));
-    }
     let points = |line: &Line| line.points.iter().copied().filter(|(_, error)| *error >= LEAST).collect::<Vec<_>>();
     // The points of each solver follow its line and have the style of the line.
-    let curves = curves
-        .into_iter()
-        .zip(&costs.lines)
-        .flat_map(|(curve, line)| [curve, Curve::new("", Stroke::Beside, points(line))])
-        .collect();
+    let curves = costs.lines.iter().flat_map(|line| {
+        let means = line.factors.iter().zip(TARGETS);
+        let means = means.filter_map(|(factor, target)| Some((factor.as_ref()?.place?, target)));
+        let means = Curve::new(line.solver.clone(), Stroke::MarkedLine, means.collect());
+        [means, Curve::new("", Stroke::Beside, points(line))]
+    });
+    let curves = curves.collect();
     Graph { x: Axis::log("time / least time for 1 % error"), y: Axis::log("|error| / scale"), curves }
 }
 
@@ -69,8 +65,8 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
     let columns = columns.chain(TARGETS.map(|target| Column::number(number::fraction(target))));
     let row = |(line, (_, key)): (&Line, _)| {
         let factors = line.factors.iter().map(|factor| Cell::from(cell(factor.as_ref(), line.asked)));
-        let cells = [Cell::from(html! { (key) " " (line.solver) })].into_iter().chain(factors).collect::<Vec<_>>();
-        Row::from(cells).class(if stamp.is_old(&line.solver) { "old" } else { "" })
+        let cells = [Cell::from(html! { (key) " " (line.solver) })].into_iter().chain(factors);
+        cells.collect::<Row>().class(if stamp.is_old(&line.solver) { "old" } else { "" })
     };
     html! {
         (Table::new("", columns, costs.lines.iter().zip(graph::keys(&graph)).map(row)).page(""))

@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use crate::number;
 use crate::report::RunCost;
 use crate::row;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 
 /// Renders the table of negative controls with their results.
 pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
@@ -58,7 +58,7 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
         cells.extend([Cell::from(&run.resolution), run.time_step.into(), run.fraction_of_critical.into()]);
         cells.extend([run.steps.into(), run.particle_steps.into(), run.contact_evaluations.into()]);
         cells.push(Cell::finite(Some(run.wall_seconds)));
-        Row::from(cells)
+        cells.into_iter().collect()
     };
     html! {
         p.note { "Counts do not depend on the machine, but the wall time does." }

@@ -4,7 +4,7 @@ use super::point::{Counts, Diagram, Point, PointStatus};
 use crate::distinct;
 use crate::number;
 use crate::plot::palette::SOLVERS;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
 /// Errors for which the cost is stated, as fractions of the scale of the quantity.
@@ -123,22 +123,14 @@ pub fn figure(diagram: &Diagram) -> Figure {
             Some(point) => format!("{line} ({})", word(point.standing)),
         };
         curves.push(Curve::new(label, Stroke::MarkedLine, own.iter().filter_map(|point| drawn(point)).collect()));
-        let others: Vec<_> = of_line(diagram, line).filter(|point| !is_own(point)).filter_map(drawn).collect();
-        if !others.is_empty() {
-            curves.push(Curve::new("", Stroke::Beside, others));
-        }
-        let failed: Vec<_> = of_line(diagram, line)
-            .filter(|point| point.standing == PointStatus::Failed)
-            .filter_map(|point| point.wall_seconds.map(|wall| (wall, top)))
-            .collect();
-        if !failed.is_empty() {
-            curves.push(Curve::new("", Stroke::Failed, failed));
-        }
+        let others = of_line(diagram, line).filter(|point| !is_own(point)).filter_map(drawn);
+        curves.push(Curve::new("", Stroke::Beside, others.collect()));
+        let failed = of_line(diagram, line).filter(|point| point.standing == PointStatus::Failed);
+        let failed = failed.filter_map(|point| point.wall_seconds.map(|wall| (wall, top)));
+        curves.push(Curve::new("", Stroke::Failed, failed.collect()));
         bars.extend(floors(diagram, line));
     }
-    if !bars.is_empty() {
-        curves.push(Curve::new("floor: error that refinement does not reduce", Stroke::Bars, bars));
-    }
+    curves.push(Curve::new("floor: error that refinement does not reduce", Stroke::Bars, bars));
     let all = front(&diagram.points);
     let mut stairs = Vec::new();
     for pair in all.windows(2) {
@@ -146,9 +138,9 @@ pub fn figure(diagram: &Diagram) -> Figure {
             stairs.extend([a, (b.0, a.1), b]);
         }
     }
-    if !stairs.is_empty() {
-        curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
-    }
+    curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
+    // The legend names each solver, also without points.
+    curves.retain(|curve| curve.stroke == Stroke::MarkedLine || !curve.points.is_empty());
     let failures = diagram.points.iter().any(|point| point.standing == PointStatus::Failed);
     let crosses = if failures { " Crosses at the top are failed runs, drawn at the time of the failure." } else { "" };
     Figure::graph(
@@ -216,7 +208,6 @@ fn best<'a>(diagrams: &'a [Diagram], unit: &'a str, line: &'a str) -> Vec<&'a Po
 
 /// Returns the bias and the spread of measured/expected. The bias is the geometric mean, and the spread is the standard
 /// deviation of the natural logarithm.
-#[must_use]
 fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     let logs: Vec<f64> = points
         .iter()
@@ -275,7 +266,7 @@ pub(super) fn points_table(diagrams: &[Diagram]) -> Table<'_> {
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
         row.extend(times.map(Cell::from));
         row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
-        Row::from(row)
+        row.into_iter().collect()
     });
     Table::new("points", columns.into_iter().chain(times).chain(counts), rows)
 }

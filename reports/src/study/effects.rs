@@ -3,7 +3,7 @@
 use crate::line::scene_name;
 use crate::number;
 use crate::row;
-use crate::table::{Cell, Column, Row, Table};
+use crate::table::{Column, Table};
 use crate::{class, distinct};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, html};
@@ -27,7 +27,6 @@ pub enum EffectResult {
 
 impl EffectResult {
     /// Returns the name used in tables.
-    #[must_use]
     const fn word(self) -> &'static str {
         match self {
             Self::Needed => "needed",
@@ -167,7 +166,7 @@ pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let row = |scene: &(&str, &str)| {
         let marks =
             effects.iter().map(|effect| find(*scene, effect).map_or_else(|| "".into(), |entry| warmth(entry).into()));
-        Row::from([scene_name(scene.0, scene.1).into()].into_iter().chain(marks).collect::<Vec<Cell>>())
+        [scene_name(scene.0, scene.1).into()].into_iter().chain(marks).collect()
     };
     let table = Table::new("Scenes by effects", columns, scenes.iter().map(row));
     html! {

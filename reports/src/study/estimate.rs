@@ -7,7 +7,7 @@ use crate::number;
 use crate::page::{captioned, slug};
 use crate::plot::DrawError;
 use crate::row;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
@@ -50,7 +50,6 @@ impl Reduction {
     }
 
     /// Returns the definition of the scale of a quantity.
-    #[must_use]
     const fn scale(self) -> &'static str {
         match self {
             Self::End => "the larger of |reference value| and the largest |value| of this quantity over the run",
@@ -170,7 +169,6 @@ pub struct EstimatedPoint {
 
 impl EstimatedPoint {
     /// Returns the upper end of the interval of the error.
-    #[must_use]
     fn at_most(&self) -> f64 {
         self.error + self.uncertainty
     }
@@ -263,7 +261,6 @@ pub struct SceneCost {
 
 impl SceneCost {
     /// Returns the solvers of the study.
-    #[must_use]
     fn solvers(&self) -> Vec<&str> {
         let run = self.levels.iter().map(|level| level.solver.as_str());
         distinct(self.names.iter().map(String::as_str).chain(run))
@@ -401,15 +398,11 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
     for solver in cost.estimated() {
         let mut points: Vec<_> = quantity.of_solver(solver).map(place).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
-        if !points.is_empty() {
-            curves.push(Curve::new(solver, Stroke::MarkedLine, points));
-        }
+        curves.push(Curve::new(solver, Stroke::MarkedLine, points));
         let softer = quantity.points.iter().filter(|point| point.solver == solver && point.softer);
-        let softer: Vec<_> = softer.map(place).collect();
-        if !softer.is_empty() {
-            curves.push(Curve::new("", Stroke::Beside, softer));
-        }
+        curves.push(Curve::new("", Stroke::Beside, softer.map(place).collect()));
     }
+    curves.retain(|curve| !curve.points.is_empty());
     let bar = |point: &EstimatedPoint| {
         let (time, error) = place(point);
         let high = point.at_most().max(error);
@@ -490,7 +483,7 @@ fn costs(cost: &SceneCost) -> Markup {
     };
     let row = |quantity: &Quantity| {
         let cells = solvers.iter().map(|solver| cell(quantity, solver));
-        Row::from([breakable(&quantity.name).into()].into_iter().chain(cells).collect::<Vec<_>>())
+        [breakable(&quantity.name).into()].into_iter().chain(cells).collect()
     };
     let columns = [quantity_column()].into_iter().chain(solvers.iter().map(|solver| Column::text(*solver)));
     Table::new("Which solver at 1 %", columns, cost.quantities.iter().map(row)).page("cases")

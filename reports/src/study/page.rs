@@ -143,7 +143,7 @@ fn which(study: &Study) -> Markup {
             })
         };
         let name = html! { (diagram.case) "/" (diagram.variant) span.title { (diagram.quantity) } };
-        Row::from([Cell::from(name)].into_iter().chain(lines.iter().map(cell)).collect::<Vec<_>>())
+        [Cell::from(name)].into_iter().chain(lines.iter().map(cell)).collect()
     };
     Table::new("Which solver for which scene at 1 %", columns, study.diagrams.iter().map(row)).page("cases")
 }

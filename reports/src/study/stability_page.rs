@@ -7,7 +7,7 @@ use crate::number;
 use crate::page::captioned;
 use crate::plot::DrawError;
 use crate::row;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 use crate::{class, distinct};
 use maud::{Markup, html};
 
@@ -116,7 +116,7 @@ fn matrix(rows: &[HardCaseResult]) -> Markup {
         };
         let must = rows.iter().find(|row| row.case == case).map_or("", |row| row.must.as_str());
         let name = html! { (case) span.title { (must) } };
-        Row::from([Cell::from(name)].into_iter().chain(solvers.iter().map(result)).collect::<Vec<_>>())
+        [Cell::from(name)].into_iter().chain(solvers.iter().map(result)).collect()
     };
     let cases = distinct(rows.iter().map(|row| row.case.as_str()));
     Table::new("Hard cases", columns, cases.into_iter().map(row)).page("cases")

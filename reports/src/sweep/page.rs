@@ -6,7 +6,7 @@ use crate::class;
 use crate::number;
 use crate::page::{provenance, shell};
 use crate::row;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Format, Table};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 
@@ -88,7 +88,7 @@ fn worst(sweep: &Sweep) -> Markup {
         let mut cells: Vec<Cell> = point.factors.iter().map(|value| value_words(value).into()).collect();
         cells.extend([&point.solver, &point.resolution].map(Cell::from));
         cells.extend([point.error().into(), words(point).into()]);
-        Row::from(cells)
+        cells.into_iter().collect()
     };
     let table = Table::new("Farthest outside", factors.chain(columns), points.iter().take(MOST).map(row));
     html! {

@@ -2,7 +2,7 @@
 
 use super::{Point, RunCounts, Sweep};
 use crate::rows::expectation;
-use crate::table::{Cell, Column, Row, Table};
+use crate::table::{Cell, Column, Table};
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
@@ -43,7 +43,7 @@ pub(super) fn table(sweep: &Sweep) -> Table<'_> {
             cells.extend([count(|ran| Some(ran.steps)), count(|ran| Some(ran.particle_steps))]);
             cells.extend([count(|ran| ran.contact_evaluations), count(|ran| ran.node_updates)]);
             cells.extend([ran.map(|ran| ran.time_step), wall(point)].map(Cell::from));
-            Row::from(cells)
+            cells.into_iter().collect()
         })
     });
     Table::new("rows", columns.chain(COUNTS.map(number)), rows)

@@ -14,36 +14,26 @@ pub(super) fn draw(panel: &Panel, y_label: &str, x_label: Option<&str>) -> Marku
         |tick: &Tick| tick.label.clone().map(|label| (panel.across(tick.value), text_width(&label, TICK), label));
     let up = |tick: &Tick| tick.label.clone().map(|label| (panel.up(tick.value), TICK, label));
     let (x_labels, y_labels) = (apart(x_ticks.iter().filter_map(across)), apart(y_ticks.iter().filter_map(up)));
-    let path = |ticks: &mut dyn Iterator<Item = String>| ticks.collect::<String>();
-    let grid = |labelled: bool| {
-        let across = x_ticks
-            .iter()
-            .filter(|tick| tick.label.is_some() == labelled)
-            .map(|tick| format!("M{} {}V{}", px(panel.across(tick.value)), px(frame.top), px(frame.bottom)));
-        let up = y_ticks
-            .iter()
-            .filter(|tick| tick.label.is_some() == labelled)
-            .map(|tick| format!("M{} {}H{}", px(frame.left), px(panel.up(tick.value)), px(frame.right)));
-        path(&mut across.chain(up))
-    };
-    let length = |labelled: bool| if labelled { 6 } else { 3 };
-    let marks = path(
-        &mut x_ticks
-            .iter()
-            .map(|tick| {
-                format!("M{} {}v{}", px(panel.across(tick.value)), px(frame.bottom), length(tick.label.is_some()))
-            })
-            .chain(y_ticks.iter().map(|tick| {
-                format!("M{} {}h-{}", px(frame.left), px(panel.up(tick.value)), length(tick.label.is_some()))
-            })),
-    );
-    let (left, right, top, bottom) = (px(frame.left), px(frame.right), px(frame.top), px(frame.bottom));
+    let [left, right, top, bottom] = [frame.left, frame.right, frame.top, frame.bottom].map(px);
+    let [mut fine, mut grid, mut marks] = [const { String::new() }; 3];
+    for tick in &x_ticks {
+        let (lines, length) = if tick.label.is_some() { (&mut grid, 6) } else { (&mut fine, 3) };
+        let x = px(panel.across(tick.value));
+        lines.push_str(&format!("M{x} {top}V{bottom}"));
+        marks.push_str(&format!("M{x} {bottom}v{length}"));
+    }
+    for tick in &y_ticks {
+        let (lines, length) = if tick.label.is_some() { (&mut grid, 6) } else { (&mut fine, 3) };
+        let y = px(panel.up(tick.value));
+        lines.push_str(&format!("M{left} {y}H{right}"));
+        marks.push_str(&format!("M{left} {y}h-{length}"));
+    }
     let place = format!("translate(20 {}) rotate(-90)", px(0.5 * (frame.top + frame.bottom)));
     // The label of a low panel may be longer than the panel, but must not reach the next label.
     let y_size = (LABEL * (frame.bottom - frame.top + 40.0) / text_width(y_label, LABEL)).min(LABEL);
     html! {
-        path d=(grid(false)) fill="none" stroke="#f0f0f0" stroke-width=".8" {}
-        path d=(grid(true)) fill="none" stroke="#ddd" stroke-width=".8" {}
+        path d=(fine) fill="none" stroke="#f0f0f0" stroke-width=".8" {}
+        path d=(grid) fill="none" stroke="#ddd" stroke-width=".8" {}
         path d=(format!("M{left} {top}V{bottom}H{right}")) fill="none" stroke="#222" stroke-width="1.2" {}
         path d=(marks) fill="none" stroke="#222" {}
         g font-size=(TICK) fill="#222" {
