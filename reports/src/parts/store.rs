@@ -51,17 +51,15 @@ pub enum StoreError {
     Damaged(String),
 }
 
-/// Location of the parts.
-enum Place {
-    /// A hidden folder, which is created when it is first needed and deleted with the store.
-    Scratch { beside: PathBuf, made: Option<TempDir> },
-    /// A folder that remains after the process has ended.
-    Folder(PathBuf),
-}
-
 /// Store of the snapshots of a run, in order of time.
 pub struct SnapshotStore {
-    place: Place,
+    /// Folder of the parts or, for scratch, the folder in which a hidden folder is created when it is first needed.
+    root: PathBuf,
+    /// True if the parts are in a hidden folder, which is deleted with the store. Otherwise they remain after the process has
+    /// ended.
+    is_scratch: bool,
+    /// Hidden folder.
+    scratch: Option<TempDir>,
     kept: CheckpointSnapshots,
     /// Size of the snapshots in memory (bytes).
     waiting_bytes: usize,
@@ -95,19 +93,19 @@ impl SnapshotStore {
     #[must_use]
     pub fn for_output(out: &Path) -> Self {
         let beside = if out.is_dir() { out } else { parent_of(out) };
-        Self::at(Place::Scratch { beside: beside.to_path_buf(), made: None })
+        Self::at(beside.to_path_buf(), true)
     }
 
     /// Returns a store for a run with checkpoints. The parts are in `<checkpoint>.parts`, so that another run can
     /// continue from the checkpoint.
     #[must_use]
     pub fn for_checkpoint(checkpoint: &Path) -> Self {
-        Self::at(Place::Folder(parts_of(checkpoint)))
+        Self::at(parts_of(checkpoint), false)
     }
 
-    fn at(place: Place) -> Self {
-        let kept = CheckpointSnapshots::default();
-        Self { place, kept, waiting_bytes: 0, open: None, in_short: false, without: Vec::new() }
+    fn at(root: PathBuf, is_scratch: bool) -> Self {
+        let (kept, without) = (CheckpointSnapshots::default(), Vec::new());
+        Self { root, is_scratch, scratch: None, kept, waiting_bytes: 0, open: None, in_short: false, without }
     }
 
     /// Sets the grain columns of the run. Columns that its snapshots do not contain are not written.
@@ -178,7 +176,7 @@ impl SnapshotStore {
         if self.waiting_bytes < WAITING || self.in_short {
             return Ok(());
         }
-        self.spill().map_err(|source| WriteError::new(self.shown(), source))
+        self.spill().map_err(|source| WriteError::new(&self.root, source))
     }
 
     /// Adds the last state of a run that crashed or was interrupted. It is stored even if no snapshot format is
@@ -225,13 +223,16 @@ impl SnapshotStore {
     /// When a file cannot be written.
     pub fn keep(&mut self) -> Result<Vec<u8>, WriteError> {
         self.settle()?;
-        postcard::to_allocvec(&self.kept).map_err(|error| WriteError::new(self.shown(), io::Error::other(error)))
+        postcard::to_allocvec(&self.kept).map_err(|error| WriteError::new(&self.root, io::Error::other(error)))
     }
 
     /// Deletes all parts that the store does not list. Call it only after a checkpoint that lists all parts was
     /// written.
     pub fn forget_others(&self) {
-        let Place::Folder(folder) = &self.place else { return };
+        if self.is_scratch {
+            return;
+        }
+        let folder = &self.root;
         let _ = remove_leftovers(folder);
         let known: BTreeSet<OsString> = self.kept.closed.iter().map(|seal| OsString::from(&seal.name)).collect();
         let Ok(entries) = fs::read_dir(folder) else { return };
@@ -256,7 +257,7 @@ impl SnapshotStore {
     /// Closes the open part. If `spills`, the snapshots in memory are written to it first.
     fn write_out(&mut self, spills: bool) -> Result<(), WriteError> {
         let spilled = if spills { self.spill() } else { Ok(()) };
-        spilled.and_then(|()| self.close()).map_err(|source| WriteError::new(self.shown(), source))
+        spilled.and_then(|()| self.close()).map_err(|source| WriteError::new(&self.root, source))
     }
 
     /// Returns the number of all snapshots of the run.
@@ -287,7 +288,7 @@ impl SnapshotStore {
         mut look: impl FnMut(&Snapshot) -> Result<(), E>,
     ) -> Result<(), E> {
         for seal in &self.kept.closed {
-            let mut reader = PartReader::open(&self.place_of(seal)).map_err(&unreadable)?;
+            let mut reader = PartReader::open(&self.place().join(&seal.name)).map_err(&unreadable)?;
             while let Some(snapshot) = reader.next().map_err(&unreadable)? {
                 look(&snapshot)?;
             }
@@ -311,7 +312,7 @@ impl SnapshotStore {
         }
         let mut last = self.kept.waiting.last().cloned();
         if let (None, Some(seal)) = (&last, self.kept.closed.last()) {
-            let mut reader = PartReader::open(&self.place_of(seal))?;
+            let mut reader = PartReader::open(&self.place().join(&seal.name))?;
             while let Some(snapshot) = reader.next()? {
                 last = Some(snapshot);
             }
@@ -328,7 +329,7 @@ impl SnapshotStore {
         self.write_out(!self.kept.waiting.is_empty())?;
         let of_part = |seal: &Seal| {
             let name = PathBuf::from(&seal.name);
-            files(&self.place_of(seal)).into_iter().map(move |(file, path)| (path, name.join(file)))
+            files(&self.place().join(&seal.name)).into_iter().map(move |(file, path)| (path, name.join(file)))
         };
         Ok(self.kept.closed.iter().flat_map(of_part).collect())
     }
@@ -356,34 +357,18 @@ impl SnapshotStore {
 
     /// Returns the folder of the parts, and creates it if it is missing.
     fn folder(&mut self) -> io::Result<PathBuf> {
-        match &mut self.place {
-            Place::Folder(folder) => {
-                fs::create_dir_all(&folder)?;
-                Ok(folder.clone())
-            }
-            Place::Scratch { beside, made } => {
-                if made.is_none() {
-                    fs::create_dir_all(&beside)?;
-                    *made = Some(temporary_in(beside)?);
-                }
-                Ok(made.as_ref().map_or_else(|| beside.clone(), |made| made.path().to_path_buf()))
+        if self.scratch.is_none() {
+            fs::create_dir_all(&self.root)?;
+            if self.is_scratch {
+                self.scratch = Some(temporary_in(&self.root)?);
             }
         }
+        Ok(self.place().to_path_buf())
     }
 
-    fn place_of(&self, seal: &Seal) -> PathBuf {
-        match &self.place {
-            Place::Folder(folder) => folder.join(&seal.name),
-            Place::Scratch { beside, made } => made.as_ref().map_or(beside.as_path(), TempDir::path).join(&seal.name),
-        }
-    }
-
-    /// Returns the path that error messages name.
-    fn shown(&self) -> PathBuf {
-        match &self.place {
-            Place::Folder(folder) => folder.clone(),
-            Place::Scratch { beside, .. } => beside.clone(),
-        }
+    /// Returns the folder of the parts, which may be missing.
+    fn place(&self) -> &Path {
+        self.scratch.as_ref().map_or(self.root.as_path(), TempDir::path)
     }
 }
 
