@@ -37,8 +37,7 @@ pub struct Headline {
 
 impl Headline {
     /// Counts results and controls.
-    #[must_use]
-    pub fn from_results<'a>(
+    pub(crate) fn from_results<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
         controls: impl IntoIterator<Item = &'a ControlResult>,
     ) -> Self {
@@ -58,8 +57,7 @@ impl Headline {
     }
 
     /// Counts the results and controls of a case.
-    #[must_use]
-    pub fn of_section(section: &Section) -> Self {
+    pub(crate) fn of_section(section: &Section) -> Self {
         Self::from_results(&section.verdicts, &section.controls)
     }
 
@@ -147,8 +145,7 @@ impl Headline {
 }
 
 /// Returns |error|/allowed. It is infinite if a non-zero error has no tolerance, or if there is no finite error.
-#[must_use]
-pub fn used_tolerance(verdict: &Verdict) -> f64 {
+pub(crate) fn used_tolerance(verdict: &Verdict) -> f64 {
     match verdict.error.map(f64::abs) {
         Some(0.0) => 0.0,
         Some(error) if error.is_finite() && verdict.allowed > 0.0 => error / verdict.allowed,

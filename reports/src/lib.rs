@@ -38,7 +38,7 @@ pub use parts::{SnapshotStore, each_snapshot};
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use store::{SaveError, write_report};
-pub use terminal::{summary_table, summary_table_within};
+pub use terminal::summary_table_within;
 
 /// Returns the CSS class of a colour.
 pub(crate) const fn class(severity: Severity) -> &'static str {

@@ -59,8 +59,7 @@ pub fn control(control: &ControlResult) -> String {
 }
 
 /// Returns the line of a negative control without the case.
-#[must_use]
-pub fn control_in_section(control: &ControlResult) -> String {
+pub(crate) fn control_in_section(control: &ControlResult) -> String {
     in_section(&control.variant, tried(control))
 }
 
@@ -85,8 +84,7 @@ fn tried(control: &ControlResult) -> String {
 }
 
 /// Returns the word that describes an expected value, by kind of evidence.
-#[must_use]
-pub const fn expected_word(evidence: Evidence) -> &'static str {
+pub(crate) const fn expected_word(evidence: Evidence) -> &'static str {
     match evidence {
         Evidence::Analytic => "exact",
         Evidence::Experiment => "measured",
@@ -107,8 +105,7 @@ pub fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
 
 /// Returns `of SCALE` if the scale of the error differs from the magnitude of the expected value or of the nearest bound;
 /// none otherwise.
-#[must_use]
-pub fn scale_note(verdict: &Verdict) -> Option<String> {
+pub(crate) fn scale_note(verdict: &Verdict) -> Option<String> {
     let scale = verdict.scale?;
     let own = verdict.expected.map_or(0.0, |expected| expected.nearest(verdict.value.unwrap_or(0.0)).abs());
     ((scale - own).abs() > 1e-6 * own).then(|| format!("of {}", number::with_unit(scale, &verdict.unit)))

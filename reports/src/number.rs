@@ -16,8 +16,7 @@ pub fn value(value: f64) -> String {
 }
 
 /// Returns a value with its unit. The unit `1` of a pure number is left out.
-#[must_use]
-pub fn with_unit(number: f64, unit: &str) -> String {
+pub(crate) fn with_unit(number: f64, unit: &str) -> String {
     append_unit(value(number), unit)
 }
 
@@ -89,8 +88,7 @@ impl TimeUnit {
     }
 
     /// Returns a duration (s) in this unit, with its symbol and at most three significant digits.
-    #[must_use]
-    pub fn with_symbol(self, seconds: f64) -> String {
+    pub(crate) fn with_symbol(self, seconds: f64) -> String {
         append_unit(significant(seconds * self.scale, 3), self.symbol)
     }
 }
@@ -106,8 +104,7 @@ fn unit_of(seconds: f64) -> (f64, &'static str) {
 }
 
 /// Returns `10ⁿ` with a superscript exponent.
-#[must_use]
-pub fn power_of_ten(exponent: i32) -> String {
+pub(crate) fn power_of_ten(exponent: i32) -> String {
     format!("10{}", superscript(exponent))
 }
 

@@ -63,8 +63,7 @@ impl Report {
     }
 
     /// Returns a report that contains only the results to be shown, and their controls.
-    #[must_use]
-    pub fn view(&self) -> Cow<'_, Self> {
+    pub(crate) fn view(&self) -> Cow<'_, Self> {
         if self.shown.is_empty() {
             return Cow::Borrowed(self);
         }

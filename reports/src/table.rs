@@ -76,16 +76,14 @@ impl Column {
     }
 
     /// Returns the column with another CSS class of its cells.
-    #[must_use]
-    pub const fn class(mut self, class: &'static str) -> Self {
+    pub(crate) const fn class(mut self, class: &'static str) -> Self {
         self.class = class;
         self
     }
 
     /// Returns the column with a least width (characters). In a narrow terminal it shrinks to it, and longer cells end with
     /// `…`.
-    #[must_use]
-    pub const fn shrinks_to(mut self, least: usize) -> Self {
+    pub(crate) const fn shrinks_to(mut self, least: usize) -> Self {
         self.least = Some(least);
         self
     }
@@ -224,8 +222,7 @@ pub struct Row {
 
 impl Row {
     /// Returns the row with a CSS class.
-    #[must_use]
-    pub const fn class(mut self, class: &'static str) -> Self {
+    pub(crate) const fn class(mut self, class: &'static str) -> Self {
         self.class = class;
         self
     }
@@ -322,8 +319,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the table for a terminal of a width (characters). The last columns shrink first, down to their least widths.
-    #[must_use]
-    pub fn text_within(self, most: usize) -> String {
+    pub(crate) fn text_within(self, most: usize) -> String {
         let is_number: Vec<bool> = self.columns.iter().map(|column| column.class == "n").collect();
         let least: Vec<Option<usize>> = self.columns.iter().map(|column| column.least).collect();
         let mut rows = self.texts();

@@ -18,15 +18,9 @@ const COLUMNS: [(&str, usize); 6] =
 /// Largest number of reasons for amber results.
 const REASONS: usize = 6;
 
-/// Returns one row per case, the counts, all failures, the reasons of amber results, and a sentence. Tables are as wide as
-/// their texts. There are no colour codes, because the text is also written to files.
-#[must_use]
-pub fn summary_table(report: &Report) -> String {
-    summary_table_within(report, usize::MAX)
-}
-
-/// Returns the text of [`summary_table`] with a table that is at most `width` characters wide, if possible. Longer cells
-/// are cut and end with `…`.
+/// Returns one row per case, the counts, all failures, the reasons of amber results, and a sentence. The table is at most
+/// `width` characters wide, if possible; longer cells are cut and end with `…`. There are no colour codes, because the text is
+/// also written to files.
 #[must_use]
 pub fn summary_table_within(report: &Report, width: usize) -> String {
     let (counts, all) = (Headline::of_report(report), report);
@@ -152,7 +146,7 @@ mod tests {
 
     #[test]
     fn reads_well() {
-        insta::assert_snapshot!(summary_table(&sample::report()));
+        insta::assert_snapshot!(summary_table_within(&sample::report(), usize::MAX));
     }
 
     /// No line of the table is wider than the terminal, and a wide terminal cuts nothing.
@@ -178,7 +172,7 @@ mod tests {
         }
         assert_eq!(amber_lines(&report), ["▲ 9 not-available (lammps): it is not installed"]);
         assert!(conclusion(&report).unwrap().contains("No result is conclusive. 9 are amber"));
-        assert!(!summary_table(&report).contains("0/"), "an amber result reads as a failure");
+        assert!(!summary_table_within(&report, usize::MAX).contains("0/"), "an amber result reads as a failure");
         for (at, row) in report.sections.iter_mut().flat_map(|section| &mut section.verdicts).enumerate() {
             row.detail = Some(format!("reason {at}"));
         }

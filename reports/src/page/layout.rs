@@ -38,8 +38,7 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
 }
 
 /// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
-#[must_use]
-pub fn slug(name: &str) -> String {
+pub(crate) fn slug(name: &str) -> String {
     let mut slug = String::new();
     for letter in name.chars() {
         if letter.is_ascii_alphanumeric() {

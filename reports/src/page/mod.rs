@@ -18,9 +18,8 @@ pub(crate) mod summary;
 mod tables;
 
 pub use cards::meaning;
-pub use layout::slug;
 use layout::{CSS, SCRIPT};
-pub(crate) use layout::{captioned, rows_of, shell, sign, unique};
+pub(crate) use layout::{captioned, rows_of, shell, sign, slug, unique};
 pub use provenance::{AUTHOR, TITLE};
 
 use std::collections::BTreeSet;

@@ -190,8 +190,7 @@ impl SnapshotStore {
     }
 
     /// Returns true if snapshots were omitted because no snapshot format is requested.
-    #[must_use]
-    pub const fn has_left_out(&self) -> bool {
+    pub(crate) const fn has_left_out(&self) -> bool {
         self.in_short && self.kept.left_out
     }
 
@@ -306,7 +305,7 @@ impl SnapshotStore {
     ///
     /// # Errors
     /// When the part of the snapshot cannot be read.
-    pub fn readable_end(&self) -> io::Result<Option<Snapshot>> {
+    pub(crate) fn readable_end(&self) -> io::Result<Option<Snapshot>> {
         if self.kept.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
             return Ok(None);
         }

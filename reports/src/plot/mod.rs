@@ -60,7 +60,7 @@ pub fn draw(figure: &Figure) -> Result<String, DrawError> {
 ///
 /// # Errors
 /// When a field has no panel, or when its frames differ in size or number.
-pub fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError> {
+pub(crate) fn draw_small(figure: &Figure) -> Result<(String, Option<String>), DrawError> {
     let Drawing::Field(field) = &figure.drawing else { return Ok((draw(figure)?, None)) };
     let (light, reel) = reel::light(field).map_err(wrong(figure))?;
     Ok((markup(&field::draw(&figure.title, &light).map_err(wrong(figure))?), reel))

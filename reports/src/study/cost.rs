@@ -35,7 +35,7 @@ pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str
 }
 
 /// Returns the points of a solver in a diagram.
-pub fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
+pub(crate) fn of_line<'a>(diagram: &'a Diagram, line: &'a str) -> impl Iterator<Item = &'a Point> {
     diagram.points.iter().filter(move |point| point.solver == line)
 }
 
@@ -53,8 +53,7 @@ pub fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
 }
 
 /// Returns true if no other solver reaches the error `target` in less time.
-#[must_use]
-pub fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
+pub(crate) fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
     let others = || lines([diagram]).into_iter().filter(|other| *other != line);
     time(diagram, line, target)
         .is_some_and(|mine| others().filter_map(|other| time(diagram, other, target)).all(|other| mine <= other))
@@ -189,8 +188,7 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
 
 /// Returns figures of measured against expected values over all cases, one for each unit. For each quantity, a solver
 /// has the point with its smallest error.
-#[must_use]
-pub fn scatters(diagrams: &[Diagram]) -> Vec<Figure> {
+pub(crate) fn scatters(diagrams: &[Diagram]) -> Vec<Figure> {
     let mut units: Vec<&str> = diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
     units.sort_unstable();
     units.dedup();

@@ -306,8 +306,7 @@ impl SceneCost {
     }
 
     /// Returns the sentence about the cost of an error of at most `target` in one quantity.
-    #[must_use]
-    pub fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
+    pub(crate) fn sentence_of(&self, quantity: &Quantity, target: f64, limits: &[Limit]) -> String {
         let cheapest = |solver: &str| {
             let point = quantity.cheapest(solver, target)?;
             Some((point.setting.as_str(), point.wall_seconds))
@@ -533,8 +532,7 @@ fn references(cost: &SceneCost) -> Markup {
 }
 
 /// Returns the difference of two solvers in words. Methods agree only if the uncertainty of their difference is small.
-#[must_use]
-pub fn difference_words(difference: &Difference<'_>) -> String {
+pub(crate) fn difference_words(difference: &Difference<'_>) -> String {
     let [a, b] = difference.solvers;
     let [size, uncertainty] = [difference.size, difference.uncertainty].map(number::fraction);
     if difference.size > difference.uncertainty {
@@ -572,8 +570,7 @@ fn agreement(cost: &SceneCost) -> Markup {
 
 /// Returns, for each setting with softer contacts, its time relative to the same level of the scene. Also returns the quantity
 /// that changes most beyond its uncertainty, with this change.
-#[must_use]
-pub fn softer_words(cost: &SceneCost) -> Vec<String> {
+pub(crate) fn softer_words(cost: &SceneCost) -> Vec<String> {
     let points =
         || cost.quantities.iter().flat_map(|quantity| quantity.points.iter().map(move |point| (quantity, point)));
     let settings = distinct(points().filter(|(_, point)| point.softer).map(|(_, point)| point.setting.as_str()));

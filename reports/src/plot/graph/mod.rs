@@ -135,8 +135,7 @@ pub fn draw(title: &str, graph: &Graph) -> String {
 }
 
 /// Draws a graph as an SVG document with the given form.
-#[must_use]
-pub fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
+pub(crate) fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let (x, y) = scales(graph);
     let looks = looks(&graph.curves, &x, &y);
     let notes = notes(graph);
