@@ -57,7 +57,8 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
              outside a colour scale have the colour of its nearest end.",
             summary.velocity
         );
-        let title = format!("Granular elements, {}", cells(summary));
+        let [x, y, z] = summary.cell.map(|size| number::significant(size, 3));
+        let title = format!("Granular elements, cells of {x} × {y} × {z} m");
         write_page(
             &mut out,
             &summary.source,
@@ -66,10 +67,4 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
         )?;
     }
     Ok(out.commit()?)
-}
-
-/// Returns the size of the cells in words.
-fn cells(summary: &Summary) -> String {
-    let [x, y, z] = summary.cell.map(|size| number::significant(size, 3));
-    format!("cells of {x} × {y} × {z} m")
 }

@@ -178,11 +178,7 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     if columns.len() < all.len() {
         columns.push(OTHERS);
     }
-    let mut fields: Vec<(Physics, Vec<(&Section, &String)>)> = Vec::new();
-    for physics in fields_of(report) {
-        let is_in = |(section, _): &(&Section, &String)| section.physics == physics;
-        fields.push((physics, report.sections.iter().zip(anchors).filter(is_in).collect()));
-    }
+    let of_field = |physics| report.sections.iter().zip(anchors).filter(move |(section, _)| section.physics == physics);
     let table = html! {
         table {
             thead {
@@ -192,10 +188,10 @@ pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
                     @for results in &report.judged { th scope="col" { span { (results.program) } } }
                 }
             }
-            @for (physics, of_field) in &fields {
+            @for physics in fields_of(report) {
                 tbody {
                     tr.field { th scope="rowgroup" colspan=(columns.len() + report.judged.len() + 1) { (physics.title()) } }
-                    @for (section, anchor) in of_field {
+                    @for (section, anchor) in of_field(physics) {
                         tr data-case=(section.name) {
                             th scope="row" { a href={ "#" (anchor) } { (section.name) } }
                             @for column in &columns { td { (ours(section, column, anchor)) } }

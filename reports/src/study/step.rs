@@ -47,8 +47,10 @@ pub(crate) fn render(model: &Model) -> Markup {
     let row = |price: &TaskCost| {
         let time = median(&price.nanoseconds);
         let part = html! { (price.solver) ", " (price.piece) span.title { (price.found) } };
-        let [bytes, additions] = [streamed, computed].map(|rate| number::significant(time * rate, 3));
-        row![part, number::significant(time, 3), spread(price), bytes, additions]
+        let shown = |value| number::significant(value, 3);
+        let spread =
+            range(&price.nanoseconds).map(|[least, _, largest]| format!("{} to {}", shown(least), shown(largest)));
+        row![part, shown(time), spread.unwrap_or_default(), shown(time * streamed), shown(time * computed)]
     };
     let table = Table::new("Cost of a step", columns, model.prices.iter().map(row));
     html! {
@@ -65,13 +67,6 @@ pub(crate) fn render(model: &Model) -> Markup {
         }
         (table.page("cases"))
     }
-}
-
-/// Returns the smallest and the largest timing.
-fn spread(price: &TaskCost) -> String {
-    let shown = |value| number::significant(value, 3);
-    range(&price.nanoseconds)
-        .map_or_else(String::new, |[least, _, largest]| format!("{} to {}", shown(least), shown(largest)))
 }
 
 #[cfg(test)]
