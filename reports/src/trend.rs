@@ -14,7 +14,6 @@ use maud::{Markup, PreEscaped, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
-use std::fs;
 use std::path::Path;
 
 /// Largest number of changed results that are listed.
@@ -108,30 +107,10 @@ const KINDS: [(&str, Severity); 3] =
 /// When a file cannot be written or a figure cannot be drawn.
 pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), SaveError> {
     let page = render(columns)?;
-    // The other files of the directory stay unchanged.
     let mut out = StagedDir::new(dir.as_ref())?;
-    keep(&mut out, dir.as_ref(), dir.as_ref())?;
     out.write("trend.html", page)?;
-    Ok(out.commit()?)
-}
-
-/// Adds the existing files of a directory to the staged directory, except hidden files and `manifest.json`.
-fn keep(out: &mut StagedDir, root: &Path, folder: &Path) -> Result<(), SaveError> {
-    let write_error = |source| grainbench_store::WriteError::new(folder, source);
-    for entry in fs::read_dir(folder).map_err(write_error)? {
-        let path = entry.map_err(write_error)?.path();
-        let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-        if name.starts_with('.') || name == "manifest.json" {
-            continue;
-        }
-        if path.is_dir() {
-            keep(out, root, &path)?;
-        } else {
-            let bytes = fs::read(&path).map_err(|source| grainbench_store::WriteError::new(&path, source))?;
-            out.write(path.strip_prefix(root).unwrap_or(&path), bytes)?;
-        }
-    }
-    Ok(())
+    // The other files of the directory stay unchanged.
+    Ok(out.commit_beside()?)
 }
 
 fn render(columns: &[Column]) -> Result<String, DrawError> {
