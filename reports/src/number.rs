@@ -67,8 +67,7 @@ pub fn counted(number: usize, noun: &str) -> String {
 /// Returns a duration (s) with an SI prefix and at most three significant digits.
 #[must_use]
 pub fn seconds(seconds: f64) -> String {
-    let (scale, unit) = unit_of(seconds);
-    append_unit(significant(seconds * scale, 3), unit)
+    TimeUnit::of([seconds]).with_symbol(seconds)
 }
 
 /// Unit of a group of durations, so that a reader compares their numbers: that of the largest duration.
@@ -79,11 +78,17 @@ pub struct TimeUnit {
 }
 
 impl TimeUnit {
-    /// Returns the unit for durations (s). Durations that are not finite are ignored.
+    /// Returns the unit in which the largest duration (s) has one to three digits before the decimal point. Durations that
+    /// are not finite are ignored.
     #[must_use]
     pub fn of(seconds: impl IntoIterator<Item = f64>) -> Self {
         let largest = seconds.into_iter().filter(|seconds| seconds.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
-        let (scale, symbol) = unit_of(largest);
+        let (scale, symbol) = match largest {
+            size if size == 0.0 || size >= 1.0 => (1.0, "s"),
+            size if size >= 1e-3 => (1e3, "ms"),
+            size if size >= 1e-6 => (1e6, "µs"),
+            _ => (1e9, "ns"),
+        };
         Self { scale, symbol }
     }
 
@@ -93,27 +98,11 @@ impl TimeUnit {
     }
 }
 
-/// Returns the factor and the symbol of the unit in which a duration (s) has one to three digits before the decimal point.
-fn unit_of(seconds: f64) -> (f64, &'static str) {
-    match seconds.abs() {
-        size if size == 0.0 || size >= 1.0 || !size.is_finite() => (1.0, "s"),
-        size if size >= 1e-3 => (1e3, "ms"),
-        size if size >= 1e-6 => (1e6, "µs"),
-        _ => (1e9, "ns"),
-    }
-}
-
 /// Returns `10ⁿ` with a superscript exponent.
 pub(crate) fn power_of_ten(exponent: i32) -> String {
-    format!("10{}", superscript(exponent))
-}
-
-/// Returns the exponent `e` with `10ᵉ ≤ value < 10ᵉ⁺¹`, after rounding to `digits` significant digits.
-fn exponent_of(value: f64, digits: usize) -> i32 {
-    format!("{:.*e}", digits.saturating_sub(1), value)
-        .split_once('e')
-        .and_then(|(_, exponent)| exponent.parse().ok())
-        .unwrap_or(0)
+    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
+    let raised = |letter: char| letter.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
+    format!("10{}", exponent.to_string().chars().map(raised).collect::<String>())
 }
 
 /// Returns a value with `digits` significant digits, including trailing zeros. A value below 10⁴ keeps all digits before
@@ -129,13 +118,14 @@ fn fixed(value: f64, digits: usize) -> String {
         return "0".to_owned();
     }
     let places = i32::try_from(digits).unwrap_or(i32::MAX).saturating_sub(1);
-    let exponent = exponent_of(value, digits);
+    // The exponent is that of the rounded value.
+    let scientific = format!("{:.*e}", digits.saturating_sub(1), value);
+    let (mantissa, exponent) = scientific.split_once('e').unwrap_or((&scientific, "0"));
+    let exponent = exponent.parse().unwrap_or(0);
     let text = if (-3..=places.max(3)).contains(&exponent) {
         let decimals = usize::try_from(places - exponent).unwrap_or(0);
         format!("{value:.decimals$}")
     } else {
-        let text = format!("{:.*e}", digits.saturating_sub(1), value);
-        let mantissa = text.split_once('e').map_or("", |(mantissa, _)| mantissa);
         format!("{mantissa}×{}", power_of_ten(exponent))
     };
     text.replacen('-', "−", 1)
@@ -153,12 +143,6 @@ fn trim(text: &str) -> String {
 
 fn append_unit(number: String, unit: &str) -> String {
     if unit == "1" || unit.is_empty() { number } else { format!("{number}{THIN}{unit}") }
-}
-
-fn superscript(number: i32) -> String {
-    const DIGITS: [char; 10] = ['⁰', '¹', '²', '³', '⁴', '⁵', '⁶', '⁷', '⁸', '⁹'];
-    let raised = |letter: char| letter.to_digit(10).map_or('⁻', |digit| DIGITS[digit as usize]);
-    number.to_string().chars().map(raised).collect()
 }
 
 #[cfg(test)]
