@@ -3,7 +3,6 @@
 use std::io::{self, Write};
 
 use grainbench_solver::record::Snapshot;
-use nalgebra::Vector3;
 
 /// Columns of every snapshot, named as in LAMMPS.
 const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
@@ -38,15 +37,11 @@ pub fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
         write!(out, "{} {} {:?} {:?}", grain.id, u32::from(grain.material) + 1, grain.radius, grain.mass)?;
         let forces = [grain.force, grain.torque].into_iter().flatten().filter(|_| has_forces);
         for vector in [grain.position, grain.velocity, grain.spin].into_iter().chain(forces) {
-            write_vector(out, &vector)?;
+            write!(out, " {:?} {:?} {:?}", vector.x, vector.y, vector.z)?;
         }
         writeln!(out)?;
     }
     Ok(())
-}
-
-fn write_vector(out: &mut impl Write, vector: &Vector3<f64>) -> io::Result<()> {
-    write!(out, " {:?} {:?} {:?}", vector.x, vector.y, vector.z)
 }
 
 /// Returns the bounds of the box along an axis (m). These are the bounds of the domain, or of the grains if the domain

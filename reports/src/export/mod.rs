@@ -14,7 +14,6 @@ use std::io::{self, BufWriter};
 use std::path::PathBuf;
 
 use grainbench_solver::record::{Record, Series, Snapshot};
-use serde::Serialize;
 
 use crate::parts::{READABLE, SnapshotStore};
 use grainbench_store::StagedDir;
@@ -78,19 +77,9 @@ pub fn write_run(
 /// Name of the file that describes a crashed run.
 pub const BROKEN_FILE: &str = "broken.json";
 
-/// Error and final state of a crashed run.
-#[derive(Debug, Serialize)]
-struct CrashState<'b> {
-    /// Error message of the solver.
-    error: &'b str,
-    /// Step number of the last snapshot, which is the state at the crash.
-    step: u64,
-    /// Time of the last snapshot (s).
-    time: f64,
-}
-
 /// Writes the output of a crashed run: `broken.json` instead of a record, the time series up to the crash, and the
-/// snapshots. The last snapshot is the state at the crash.
+/// snapshots. The last snapshot is the state at the crash. `broken.json` contains the error message of the solver, and the
+/// step and the time (s) of this snapshot.
 ///
 /// # Errors
 /// When a file cannot be written.
@@ -104,7 +93,8 @@ pub fn write_remains(
     snapshots.settle()?;
     let at = |source| WriteError::new(out.target().join(BROKEN_FILE), source);
     let (step, time) = snapshots.end().map_or((0, 0.0), |end| (end.step, end.time));
-    let text = serde_json::to_string_pretty(&CrashState { error, step, time }).map_err(|error| at(error.into()))?;
+    let state = serde_json::json!({ "error": error, "step": step, "time": time });
+    let text = serde_json::to_string_pretty(&state).map_err(|error| at(error.into()))?;
     out.write(BROKEN_FILE, text + "\n")?;
     write_series(series, formats, out)?;
     write_snapshots(snapshots, formats, out)

@@ -127,11 +127,6 @@ pub(crate) fn important(ledger: &[Entry]) -> Markup {
     }
 }
 
-/// Returns the quantity whose error changes most, relative to its tolerance.
-fn farthest(entry: &Entry) -> Option<&Shift> {
-    entry.shifts.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)))
-}
-
 /// Returns the change of the error without the effect, divided by the tolerance; infinity if an error is missing.
 fn moved(shift: &Shift) -> f64 {
     match (shift.with, shift.without) {
@@ -224,7 +219,9 @@ fn table(ledger: &[Entry]) -> Markup {
         let key = if entry.on { entry.key.clone() } else { format!("disabled; tried with {}", entry.tried.join(", ")) };
         let class = class(entry.worth.severity());
         let result = html! { span class={ "mark " (class) } { (entry.worth.word()) } };
-        let change = farthest(entry).map(|shift| {
+        // The quantity whose error changes most, relative to its tolerance.
+        let farthest = entry.shifts.iter().max_by(|a, b| moved(a).total_cmp(&moved(b)));
+        let change = farthest.map(|shift| {
             let [with, without] = [shift.with, shift.without].map(number::error);
             let allowed = number::fraction(shift.allowed);
             format!("{}, {}: {with} → {without} (allowed {allowed})", shift.quantity, shift.solver)
