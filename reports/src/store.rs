@@ -178,10 +178,6 @@ mod tests {
         ] {
             assert!(out.join(name).is_file(), "{name}");
         }
-        // With this variable, a copy of the report is written, so that it can be opened in a browser.
-        if let Ok(copy) = std::env::var("GRAINBENCH_REPORT_DIR") {
-            write_report(copy, &report, false).unwrap();
-        }
     }
 
     #[test]

@@ -213,9 +213,5 @@ mod tests {
         for name in ["snapshots.parquet", "grains.parquet", "contacts.parquet", "walls.parquet"] {
             assert!(parts[0].path().join(name).is_file(), "{name}");
         }
-        // With this variable, a copy of the files is written, so that they can be opened in other programs.
-        if let Ok(copy) = std::env::var("GRAINBENCH_EXPORT_DIR") {
-            written(&sample::record().snapshots, &all, Path::new(&copy));
-        }
     }
 }
