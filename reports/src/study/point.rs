@@ -40,15 +40,10 @@ pub struct Counts {
 
 impl From<&Cost> for Counts {
     fn from(cost: &Cost) -> Self {
-        Self {
-            steps: cost.steps,
-            particle_steps: cost.particle_steps,
-            contact_evaluations: cost.contact_evaluations,
-            pair_tests: cost.pair_tests,
-            neighbour_builds: cost.neighbour_builds,
-            node_updates: cost.node_updates,
-            bytes: cost.bytes,
-        }
+        let &Cost {
+            steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds, node_updates, bytes, ..
+        } = cost;
+        Self { steps, particle_steps, contact_evaluations, pair_tests, neighbour_builds, node_updates, bytes }
     }
 }
 
