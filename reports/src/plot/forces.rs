@@ -4,7 +4,7 @@
 use grainbench_harness::figure::{ForceBar, ForcePlot};
 use maud::{Markup, html};
 
-use super::{WIDTH, document, fine as px};
+use super::{View, WIDTH, document, fine as px};
 use crate::number;
 
 const MARGIN: f64 = 24.0;
@@ -14,20 +14,6 @@ const KEY: f64 = 64.0;
 const TALLEST: f64 = 620.0;
 const STICKING: &str = "#0072b2";
 const SLIPPING: &str = "#d55e00";
-
-/// Transformation from metres to drawing units, with y upwards.
-struct View {
-    scale: f64,
-    left: f64,
-    bottom: f64,
-    low: [f64; 2],
-}
-
-impl View {
-    fn at(&self, point: [f64; 2]) -> (f64, f64) {
-        (self.left + (point[0] - self.low[0]) * self.scale, self.bottom - (point[1] - self.low[1]) * self.scale)
-    }
-}
 
 /// Draws a force plot as a complete SVG document. Parts with coordinates that are not finite are left out, and a note
 /// states their number.
@@ -60,7 +46,7 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
     let room = WIDTH - 2.0 * MARGIN;
     let scale = (room / size[0]).min(TALLEST / size[1]);
     let drawn = [size[0] * scale, size[1] * scale];
-    let view = View { scale, left: MARGIN + 0.5 * (room - drawn[0]), bottom: TOP + drawn[1], low };
+    let view = View { scale: [scale; 2], left: MARGIN + 0.5 * (room - drawn[0]), bottom: TOP + drawn[1], low };
     let height = TOP + drawn[1] + KEY;
 
     let strongest = bars.iter().map(|bar| bar.force.abs()).fold(0.0, f64::max);
@@ -82,8 +68,8 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
         }
         g stroke="#222" stroke-width="4" stroke-linecap="round" {
             @for (a, b) in &walls {
-                @let (a, b) = (view.at(*a), view.at(*b));
-                line x1=(px(a.0)) y1=(px(a.1)) x2=(px(b.0)) y2=(px(b.1)) {}
+                @let ([x1, y1], [x2, y2]) = (view.at(*a).map(px), view.at(*b).map(px));
+                line x1=(x1) y1=(y1) x2=(x2) y2=(y2) {}
             }
         }
         (key(view.bottom + 40.0, strongest, &width_of, &bars, has_angles))
@@ -96,8 +82,8 @@ pub fn draw(title: &str, plot: &ForcePlot) -> String {
 
 /// Draws the outline of a disc and, if its angle is known, a radius that rotates with the disc.
 fn disc(view: &View, centre: [f64; 2], radius: f64, angle: f64) -> Markup {
-    let (x, y) = view.at(centre);
-    let radius = radius * view.scale;
+    let [x, y] = view.at(centre);
+    let radius = radius * view.scale[0];
     let rim = (x + radius * angle.cos(), y - radius * angle.sin());
     html! {
         circle cx=(px(x)) cy=(px(y)) r=(px(radius)) {}
@@ -106,11 +92,10 @@ fn disc(view: &View, centre: [f64; 2], radius: f64, angle: f64) -> Markup {
 }
 
 fn bar_between(view: &View, bar: &ForceBar, width: f64) -> Markup {
-    let (from, to) = (view.at(bar.from), view.at(bar.to));
-    let length = (to.0 - from.0).hypot(to.1 - from.1);
-    let turn = (to.1 - from.1).atan2(to.0 - from.0).to_degrees();
-    let place = format!("translate({} {}) rotate({turn:.2})", px(from.0), px(from.1));
-    html! { g transform=(place) { (bar_along(length, width, bar.slipping)) } }
+    let ([x, y], [to_x, to_y]) = (view.at(bar.from), view.at(bar.to));
+    let turn = (to_y - y).atan2(to_x - x).to_degrees();
+    let place = format!("translate({} {}) rotate({turn:.2})", px(x), px(y));
+    html! { g transform=(place) { (bar_along((to_x - x).hypot(to_y - y), width, bar.slipping)) } }
 }
 
 /// Draws a bar along x from the origin. Bars of slipping contacts are striped, so that they are distinct without

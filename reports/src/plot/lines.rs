@@ -5,7 +5,7 @@ use grainbench_harness::figure::{LinePlot, Lines, Sheet};
 use maud::{Markup, html};
 
 use super::scale::Scale;
-use super::{WIDTH, document, px, text_width, wrap};
+use super::{View, WIDTH, document, px, text_width, wrap};
 
 /// Width to the left of a sheet, for numbers and label (drawing units).
 const LEFT: f64 = 62.0;
@@ -58,8 +58,8 @@ pub fn draw(title: &str, plot: &LinePlot) -> String {
     let mut missing = 0;
     let mut sheets = Vec::new();
     for sheet in &plot.sheets {
-        let view = View { scale, left: left + LEFT, bottom, seen: sheet.seen, to_scale: plot.to_scale };
-        sheets.push(draw_sheet(sheet, &title_lines(sheet), &view, &plot.axes, &mut missing));
+        let view = View { scale, left: left + LEFT, bottom, low: sheet.seen[0] };
+        sheets.push(draw_sheet(sheet, &title_lines(sheet), &view, plot, &mut missing));
         left += LEFT + size(sheet)[0] * scale[0] + RIGHT;
     }
     let kinds = legend(&plot.sheets);
@@ -86,31 +86,16 @@ fn size(sheet: &Sheet) -> [f64; 2] {
     [0, 1].map(|axis| if (high[axis] - low[axis]).is_finite() { (high[axis] - low[axis]).max(0.0) } else { 0.0 })
 }
 
-/// Transformation from the plane to drawing units, with y upwards.
-struct View {
-    scale: [f64; 2],
-    left: f64,
-    bottom: f64,
-    seen: [[f64; 2]; 2],
-    to_scale: bool,
+/// Returns x and y of the upper left corner, width and height of a rectangle in the drawing.
+fn rectangle(view: &View, [low, high]: [[f64; 2]; 2]) -> [String; 4] {
+    let ([x, y], [right, foot]) = (view.at([low[0], high[1]]), view.at([high[0], low[1]]));
+    [x, y, right - x, foot - y].map(px)
 }
 
-impl View {
-    fn at(&self, point: [f64; 2]) -> [f64; 2] {
-        let low = self.seen[0];
-        [self.left + (point[0] - low[0]) * self.scale[0], self.bottom - (point[1] - low[1]) * self.scale[1]]
-    }
-
-    /// Returns x and y of the upper left corner, width and height of a rectangle in the drawing.
-    fn rectangle(&self, [low, high]: [[f64; 2]; 2]) -> [String; 4] {
-        let ([x, y], [right, foot]) = (self.at([low[0], high[1]]), self.at([high[0], low[1]]));
-        [x, y, right - x, foot - y].map(px)
-    }
-}
-
-fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[String; 2], missing: &mut usize) -> Markup {
-    let [x, y, width, height] = view.rectangle(sheet.seen);
-    let marked = sheet.marked.map(|part| view.rectangle(part));
+fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, plot: &LinePlot, missing: &mut usize) -> Markup {
+    let [across, up] = &plot.axes;
+    let [x, y, width, height] = rectangle(view, sheet.seen);
+    let marked = sheet.marked.map(|part| rectangle(view, part));
     let [low, high] = sheet.seen;
     let middle = view.at([0.5 * (low[0] + high[0]), 0.5 * (low[1] + high[1])]);
     let room = |axis: usize| (((high[axis] - low[axis]) * view.scale[axis] / 70.0) as u32).max(2);
@@ -124,7 +109,7 @@ fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[Stri
         // A nested SVG element clips the lines at the edges of the sheet.
         svg x=(x) y=(y) width=(width) height=(height) viewBox=(format!("{x} {y} {width} {height}")) {
             g fill="none" stroke-linecap="round" {
-                @for (place, kind) in sheet.kinds.iter().enumerate() { (draw_lines(kind, place, view, missing)) }
+                @for (place, kind) in sheet.kinds.iter().enumerate() { (draw_lines(kind, place, view, plot.to_scale, missing)) }
             }
         }
         rect x=(x) y=(y) width=(width) height=(height) fill="none" stroke="#222" {}
@@ -152,7 +137,7 @@ fn draw_sheet(sheet: &Sheet, title: &[String], view: &View, [across, up]: &[Stri
     }
 }
 
-fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> Markup {
+fn draw_lines(kind: &Lines, place: usize, view: &View, to_scale: bool, missing: &mut usize) -> Markup {
     let mut paths = vec![String::new(); WIDTHS + 1];
     let mut before: Option<([f64; 2], usize)> = None;
     for (from, to, width) in &kind.lines {
@@ -174,7 +159,7 @@ fn draw_lines(kind: &Lines, place: usize, view: &View, missing: &mut usize) -> M
     html! {
         @for (class, path) in paths.iter().enumerate().filter(|(_, path)| !path.is_empty()) {
             path d=(path) stroke=(colour) stroke-width=(px(0.3 + WIDEST * class as f64 / WIDTHS as f64))
-                stroke-dasharray=[dash(view.to_scale, place)] stroke-opacity=[(!view.to_scale && 2 * class < WIDTHS).then_some(THIN)] {}
+                stroke-dasharray=[dash(to_scale, place)] stroke-opacity=[(!to_scale && 2 * class < WIDTHS).then_some(THIN)] {}
         }
     }
 }

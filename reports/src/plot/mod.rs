@@ -82,6 +82,23 @@ pub fn film(figure: &Figure) -> Result<Option<Vec<u8>>, DrawError> {
     }
 }
 
+/// Transformation from a plane to drawing units, with y upwards.
+struct View {
+    /// Drawing units per unit of each coordinate.
+    scale: [f64; 2],
+    left: f64,
+    bottom: f64,
+    /// Point of the plane at the lower left corner.
+    low: [f64; 2],
+}
+
+impl View {
+    fn at(&self, point: [f64; 2]) -> [f64; 2] {
+        let [x, y] = [0, 1].map(|axis| (point[axis] - self.low[axis]) * self.scale[axis]);
+        [self.left + x, self.bottom - y]
+    }
+}
+
 /// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so widths of the
 /// letters of DejaVu Sans are used, the widest of [`FONTS`].
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
