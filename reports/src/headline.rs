@@ -36,7 +36,6 @@ pub struct Headline {
 }
 
 impl Headline {
-    /// Counts results and controls.
     pub(crate) fn from_results<'a>(
         verdicts: impl IntoIterator<Item = &'a Verdict>,
         controls: impl IntoIterator<Item = &'a ControlResult>,
@@ -56,7 +55,6 @@ impl Headline {
         counts
     }
 
-    /// Counts the results and controls of a case.
     pub(crate) fn of_section(section: &Section) -> Self {
         Self::from_results(&section.verdicts, &section.controls)
     }

@@ -7,6 +7,7 @@ use crate::study::cost::{self, TARGETS, time};
 use crate::study::effects::Entry;
 use crate::study::point::{Diagram, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
+use grainbench_harness::statistics::range;
 use serde::{Deserialize, Serialize};
 
 /// Index in [`TARGETS`] of the error for which the first screen shows costs.
@@ -156,8 +157,9 @@ fn geometric_mean(values: &[f64]) -> Option<f64> {
     (!values.is_empty()).then(|| (sum / values.len() as f64).exp())
 }
 
-fn ends(values: &[f64]) -> [f64; 2] {
-    values.iter().fold([f64::INFINITY, 0.0], |[low, high], &value| [low.min(value), high.max(value)])
+/// Returns the smallest and the largest value; none for an empty list.
+fn ends(values: &[f64]) -> Option<[f64; 2]> {
+    range(values).map(|[low, _, high]| [low, high])
 }
 
 fn cheapest(diagram: &Diagram, lines: &[&str], target: f64) -> Option<f64> {
@@ -222,14 +224,11 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
         reached().filter_map(|(diagram, mine)| Some(mine / time(diagram, "dem", target)?)).collect();
     let seconds: Vec<f64> = reached().map(|(_, time)| time).collect();
     let times = over(target);
-    if seconds.is_empty() {
-        return None;
-    }
     Some(Factor {
         times: geometric_mean(&times).unwrap_or(1.0),
         compared: times.len(),
         place: geometric_mean(&over(TARGETS[AT])),
-        seconds: ends(&seconds),
+        seconds: ends(&seconds)?,
         reached: seconds.len(),
         over_dem: geometric_mean(&over_dem).filter(|_| line != "dem").map(|mean| (mean, over_dem.len())),
     })
@@ -260,16 +259,14 @@ impl Effects {
 fn hold(study: &Study, solver: &str) -> Hold {
     let limits = || study.limits.iter().filter(|row| row.solver == solver);
     let over: Vec<f64> = limits().filter_map(|row| Some(row.found? / row.exact?)).collect();
-    let free: Vec<(f64, &str)> =
-        limits().filter(|row| row.exact.is_none()).filter_map(|row| Some((row.found?, row.unit.as_str()))).collect();
+    let free = || limits().filter(|row| row.exact.is_none() && row.found.is_some());
+    let found: Vec<f64> = free().filter_map(|row| row.found).collect();
     let hard = || study.hard.iter().filter(|row| row.solver == solver);
     let count = |standing: Hardness| hard().filter(|row| row.standing == standing).count();
     Hold {
         solver: solver.to_owned(),
-        limit: (!over.is_empty()).then(|| (ends(&over), over.len())),
-        found: free
-            .first()
-            .map(|(_, unit)| (ends(&free.iter().map(|(found, _)| *found).collect::<Vec<_>>()), (*unit).to_owned())),
+        limit: ends(&over).map(|ends| (ends, over.len())),
+        found: ends(&found).zip(free().next().map(|row| row.unit.clone())),
         holds: count(Hardness::Holds),
         smaller: count(Hardness::HoldsAtASmallerStep),
         typed: count(Hardness::TypedFailure),

@@ -170,46 +170,25 @@ impl<T: Into<Self>> From<Option<T>> for Cell {
     }
 }
 
-impl From<u64> for Cell {
-    fn from(count: u64) -> Self {
-        Self::Whole(count)
-    }
+/// Implements the conversions of values to cells.
+macro_rules! cells {
+    ($($type:ty: $value:ident => $cell:expr,)+) => {$(
+        impl From<$type> for Cell {
+            fn from($value: $type) -> Self {
+                $cell
+            }
+        }
+    )+};
 }
 
-impl From<usize> for Cell {
-    fn from(count: usize) -> Self {
-        Self::Whole(count as u64)
-    }
-}
-
-impl From<f64> for Cell {
-    fn from(value: f64) -> Self {
-        Self::Number(value)
-    }
-}
-
-impl From<String> for Cell {
-    fn from(text: String) -> Self {
-        Self::Text(text)
-    }
-}
-
-impl From<&str> for Cell {
-    fn from(text: &str) -> Self {
-        Self::Text(text.to_owned())
-    }
-}
-
-impl From<&String> for Cell {
-    fn from(text: &String) -> Self {
-        Self::Text(text.clone())
-    }
-}
-
-impl From<Markup> for Cell {
-    fn from(page: Markup) -> Self {
-        Self::Page(page, None)
-    }
+cells! {
+    u64: count => Self::Whole(count),
+    usize: count => Self::Whole(count as u64),
+    f64: value => Self::Number(value),
+    String: text => Self::Text(text),
+    &str: text => Self::Text(text.to_owned()),
+    &String: text => Self::Text(text.clone()),
+    Markup: page => Self::Page(page, None),
 }
 
 /// Row of a table.

@@ -62,7 +62,6 @@ pub(crate) fn render(report: &Report, anchors: &[String], has_rows: &dyn Fn(&str
     }
 }
 
-/// Returns the results of a solver.
 pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Item = &'a Verdict> {
     report.verdicts().filter(move |row| row.solver == solver)
 }

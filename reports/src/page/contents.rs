@@ -6,7 +6,6 @@ use super::questions;
 use crate::headline::Headline;
 use crate::report::Report;
 
-/// Renders the contents.
 pub(crate) fn render(report: &Report, anchors: &[String]) -> Markup {
     html! {
         nav.contents aria-label="Contents" {

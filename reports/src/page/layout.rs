@@ -7,7 +7,6 @@ use grainbench_harness::verdict::{Outcome, Severity};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
-/// Style sheet of the page.
 pub(super) const CSS: &str = include_str!("style.css");
 /// Optional script of the page for search, filters and films.
 pub(super) const SCRIPT: &str = include_str!("page.js");
@@ -73,7 +72,6 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     (symbol, class(outcome.severity()))
 }
 
-/// Renders a figure with its caption.
 pub(crate) fn captioned(figure: &Figure) -> Result<Markup, DrawError> {
     Ok(html! {
         figure {

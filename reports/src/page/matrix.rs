@@ -42,7 +42,6 @@ fn stripe(counts: &[(Outcome, usize)]) -> &'static str {
     if counts.iter().skip(1).any(is_hidden) { " part" } else { "" }
 }
 
-/// Describes the results of a cell.
 fn description(case: &str, solver: &str, counts: &[(Outcome, usize)]) -> String {
     let parts: Vec<String> = counts.iter().map(|(outcome, count)| format!("{count} {}", outcome.word())).collect();
     format!("{case}, {solver}: {}", parts.join(", "))
@@ -106,7 +105,6 @@ impl FieldResults {
         (!rows.is_empty()).then(|| Self { error, counts: counts(rows.iter().map(|row| row.outcome)) })
     }
 
-    /// Returns true if all results pass.
     fn passes(&self) -> bool {
         self.counts.iter().all(|(outcome, _)| *outcome == Outcome::Pass)
     }

@@ -20,7 +20,6 @@ pub(crate) struct CaseSection<'a> {
     details: Vec<Details>,
 }
 
-/// A part within closed details.
 struct Details {
     id: Option<String>,
     class: &'static str,

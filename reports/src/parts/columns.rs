@@ -19,7 +19,6 @@ pub(super) enum Value<'r> {
 /// Visitor of the columns of a row, in a fixed order. One implementation reads values from the row; another one writes
 /// values to it.
 pub(super) trait Columns {
-    /// Visits a value.
     fn visit(&mut self, name: &'static str, value: Value<'_>);
 
     /// Visits several numbers, such as the components of a vector.
@@ -65,7 +64,6 @@ pub(super) trait Row: Sized {
     /// Returns a row with default values.
     fn blank() -> Self;
 
-    /// Visits the columns of the row.
     fn visit(&mut self, columns: &mut impl Columns);
 }
 

@@ -156,7 +156,6 @@ fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetErr
     }
 }
 
-/// Returns the file name of a table.
 pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
 }
@@ -192,7 +191,6 @@ impl<W: Write + Send> GroupedTable<W> {
         group.close().map(drop).map_err(io_error)
     }
 
-    /// Closes the file.
     pub(crate) fn close(self) -> io::Result<()> {
         self.file.close().map(drop).map_err(io_error)
     }
