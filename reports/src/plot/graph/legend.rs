@@ -55,19 +55,14 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, labelled: &[usize]
         (panel.x().position(last.0) > 0.75).then(|| panel.up(last.1))
     };
     let ends: Option<Vec<(usize, f64)>> = labelled.iter().map(|&at| Some((at, end(at)?))).collect();
-    let stacked = |order: Vec<usize>| {
-        let mut top = first;
-        order
-            .into_iter()
-            .map(|at| {
-                let here = top;
-                top += height(at) + gap;
-                (at, here)
-            })
-            .collect::<Vec<_>>()
-    };
     let Some(mut ends) = ends.filter(|_| whole + 4.0 * labelled.len() as f64 <= frame.bottom - first) else {
-        return stacked(labelled.to_vec());
+        let mut top = first;
+        let stacked = labelled.iter().map(|&at| {
+            let here = top;
+            top += height(at) + gap;
+            (at, here)
+        });
+        return stacked.collect();
     };
     ends.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Entries that would overlap move down, and entries below the lower edge then move up.

@@ -266,33 +266,24 @@ fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
     let mut coloured = palette::places(&labels).into_iter();
     let is_open = is_any_crowded(curves, x, y);
-    let mut dashed = 0;
+    let mut dashed = 0..;
     let mut before = CurveStyle { colour: palette::colour(0), marker: palette::marker(0), dash: None, open: false };
-    curves
-        .iter()
-        .map(|curve| {
-            match curve.stroke {
-                Stroke::Beside | Stroke::Failed => return before,
-                Stroke::Bars => return CurveStyle { colour: palette::FAINT, ..before },
-                _ => {}
-            }
-            if curve.stroke == Stroke::Dashed {
-                let here = dashed;
-                dashed += 1;
-                CurveStyle {
-                    colour: palette::shade(here),
-                    marker: palette::marker(here),
-                    dash: Some(palette::dash(here)),
-                    open: false,
-                }
-            } else {
-                let here = coloured.next().unwrap_or_default();
-                let open = is_open && curve.stroke == Stroke::Markers;
-                before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None, open };
-                before
-            }
-        })
-        .collect()
+    let look = |curve: &Curve| match curve.stroke {
+        Stroke::Beside | Stroke::Failed => before,
+        Stroke::Bars => CurveStyle { colour: palette::FAINT, ..before },
+        Stroke::Dashed => {
+            let here = dashed.next().unwrap_or_default();
+            let (colour, marker, dash) = (palette::shade(here), palette::marker(here), Some(palette::dash(here)));
+            CurveStyle { colour, marker, dash, open: false }
+        }
+        Stroke::Line | Stroke::Markers | Stroke::MarkedLine => {
+            let here = coloured.next().unwrap_or_default();
+            let open = is_open && curve.stroke == Stroke::Markers;
+            before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None, open };
+            before
+        }
+    };
+    curves.iter().map(look).collect()
 }
 
 /// Returns notes about the points that cannot be plotted.
@@ -304,13 +295,9 @@ fn notes(graph: &Graph) -> Vec<String> {
         .filter(finite)
         .filter(|point| (graph.x.logarithmic && point.0 <= 0.0) || (graph.y.logarithmic && point.1 <= 0.0))
         .count();
-    let mut notes = Vec::new();
-    for (count, what) in [(low, "at or below zero"), (infinite, "without a finite value")] {
-        if count > 0 {
-            notes.push(format!("({} {what} not shown)", number::counted(count, "point")));
-        }
-    }
-    notes
+    let notes = [(low, "at or below zero"), (infinite, "without a finite value")].into_iter();
+    let notes = notes.filter(|(count, _)| *count > 0);
+    notes.map(|(count, what)| format!("({} {what} not shown)", number::counted(count, "point"))).collect()
 }
 
 #[cfg(test)]
