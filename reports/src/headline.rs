@@ -116,29 +116,22 @@ impl Headline {
     /// Returns the counts in one sentence. Outcomes without results are left out, except for `pass` and `fail`.
     #[must_use]
     pub fn sentence(self) -> String {
-        let mut parts = Vec::new();
-        for outcome in OUTCOMES {
-            let count = self.count(outcome);
-            if count > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail) {
-                let regression = if outcome == Outcome::Pass && self.regression > 0 {
-                    format!(" ({} of them regression)", self.regression)
-                } else {
-                    String::new()
-                };
-                parts.push(format!("{count} {}{regression}", outcome.word()));
-            }
-        }
-        let controls = if self.controls > 0 {
-            let broken = if self.controls_broken > 0 {
-                format!(", {} of them by breaking", self.controls_broken)
-            } else {
-                String::new()
+        let is_shown = |outcome: &Outcome| self.count(*outcome) > 0 || matches!(outcome, Outcome::Pass | Outcome::Fail);
+        let part = |outcome: Outcome| {
+            let regression = match self.regression {
+                count if outcome == Outcome::Pass && count > 0 => format!(" ({count} of them regression)"),
+                _ => String::new(),
             };
-            format!("; negative controls: {} of {} turned red{broken}", self.controls_red, self.controls)
-        } else {
-            String::new()
+            format!("{} {}{regression}", self.count(outcome), outcome.word())
         };
-        format!("{}{controls}", parts.join(", "))
+        let mut text = OUTCOMES.into_iter().filter(is_shown).map(part).collect::<Vec<_>>().join(", ");
+        if self.controls > 0 {
+            text += &format!("; negative controls: {} of {} turned red", self.controls_red, self.controls);
+        }
+        if self.controls_broken > 0 {
+            text += &format!(", {} of them by breaking", self.controls_broken);
+        }
+        text
     }
 }
 

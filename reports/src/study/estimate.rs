@@ -279,11 +279,6 @@ impl SceneCost {
         }
     }
 
-    /// Returns the words about a solver without a value.
-    fn without_value(&self, solver: &str) -> String {
-        format!("{solver} has no value ({})", self.reason(solver))
-    }
-
     /// Returns the fastest setting of a solver with which the error of each quantity is certainly at most `target`, and its
     /// time (s).
     #[must_use]
@@ -346,7 +341,7 @@ impl SceneCost {
         let unreached = |solver: &&str| {
             let own = || quantities.iter().filter_map(|quantity| Some((quantity, least(quantity, solver)?)));
             let Some((quantity, error)) = own().max_by(|a, b| a.1.total_cmp(&b.1)) else {
-                return self.without_value(solver);
+                return format!("{solver} has no value ({})", self.reason(solver));
             };
             let (within, all) = (own().filter(|(_, error)| *error <= target).count(), own().count());
             let at_best = format!("at best {}", number::fraction(error));
