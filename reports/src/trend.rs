@@ -181,11 +181,10 @@ fn table(columns: &[Column], shared: &[&String]) -> Markup {
     let heads = ["Report", "Name", "Commit", "Date", "Pass", "Fail, broken or stale", "Amber"].map(Head::text);
     let heads = heads.into_iter().chain(COUNTED.map(|name| Head::new(name.replace('_', " "), Format::Count)));
     let row = |(at, column): (usize, &Column)| {
-        let mut row = vec![Cell::from(at + 1)];
-        row.extend([&column.name, &column.commit, &column.date].map(Cell::from));
-        row.extend(KINDS.map(|(_, severity)| Cell::from(column.count(severity))));
-        row.extend(COUNTED.map(|name| Cell::from(column.sum(name, shared))));
-        row.into_iter().collect()
+        let names = [&column.name, &column.commit, &column.date].map(Cell::from);
+        let outcomes = KINDS.map(|(_, severity)| Cell::from(column.count(severity)));
+        let counts = COUNTED.map(|name| Cell::from(column.sum(name, shared)));
+        [Cell::from(at + 1)].into_iter().chain(names).chain(outcomes).chain(counts).collect()
     };
     let table = Table::new("Reports", heads, columns.iter().enumerate().map(row));
     html! { section id="reports" { h2 { "Reports" } (table.page("")) } }

@@ -38,9 +38,8 @@ pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
 /// Renders the table with the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
     let has_variants = runs.iter().any(|run| !run.variant.is_empty());
-    let mut columns = vec![
-        Column::heading("Solver"),
-        Column::text("Variant"),
+    let columns = [Column::heading("Solver")].into_iter().chain(has_variants.then(|| Column::text("Variant")));
+    let columns = columns.chain([
         Column::text("Resolution"),
         Column::new("Δt", Format::Seconds),
         Column::number("Δt / critical"),
@@ -48,17 +47,12 @@ pub(crate) fn costs(runs: &[RunCost]) -> Markup {
         Column::new("Particle-steps", Format::Count),
         Column::new("Contact evaluations", Format::Count),
         Column::new("Wall time", Format::Seconds),
-    ];
-    if !has_variants {
-        columns.remove(1);
-    }
+    ]);
     let row = |run: &RunCost| {
-        let mut cells = vec![Cell::from(&run.solver)];
-        cells.extend(has_variants.then(|| Cell::from(&run.variant)));
-        cells.extend([Cell::from(&run.resolution), run.time_step.into(), run.fraction_of_critical.into()]);
-        cells.extend([run.steps.into(), run.particle_steps.into(), run.contact_evaluations.into()]);
-        cells.push(Cell::finite(Some(run.wall_seconds)));
-        cells.into_iter().collect()
+        let names = [Cell::from(&run.solver)].into_iter().chain(has_variants.then(|| Cell::from(&run.variant)));
+        let steps = [Cell::from(&run.resolution), run.time_step.into(), run.fraction_of_critical.into()];
+        let counts = [Cell::from(run.steps), run.particle_steps.into(), run.contact_evaluations.into()];
+        names.chain(steps).chain(counts).chain([Cell::finite(Some(run.wall_seconds))]).collect()
     };
     html! {
         p.note { "Counts do not depend on the machine, but the wall time does." }

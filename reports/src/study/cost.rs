@@ -259,12 +259,9 @@ pub(super) fn points_table(diagrams: &[Diagram]) -> Table<'_> {
     let counts = Counts::default().named().map(|(name, _)| Column::new(name, Format::Count));
     let rows = diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| {
         let names = [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs];
-        let mut row: Vec<Cell> = names.map(Cell::from).into();
-        row.push(word(point.standing).into());
+        let names = names.map(Cell::from).into_iter().chain([word(point.standing).into()]);
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
-        row.extend(times.map(Cell::from));
-        row.extend(point.counts.named().map(|(_, count)| Cell::from(count)));
-        row.into_iter().collect()
+        names.chain(times.map(Cell::from)).chain(point.counts.named().map(|(_, count)| count.into())).collect()
     });
     Table::new("points", columns.into_iter().chain(times).chain(counts), rows)
 }
