@@ -1,8 +1,7 @@
 //! Trend over several reports: outcomes and counts side by side, written as `trend.html`.
 
 use crate::number;
-use crate::page::{shell, sign};
-use crate::plot::{self, DrawError};
+use crate::page::{captioned, shell, sign};
 use crate::row;
 use crate::store::SaveError;
 use crate::table::{Cell, Column as Head, Format, Row, Table};
@@ -10,7 +9,7 @@ use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::{Outcome, Severity};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir};
-use maud::{Markup, PreEscaped, html};
+use maud::{Markup, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
 use std::collections::BTreeMap;
@@ -104,22 +103,20 @@ const KINDS: [(&str, Severity); 3] =
 /// Adds `trend.html` to the directory of a report. The columns are in order of time, and the last is this report.
 ///
 /// # Errors
-/// When a file cannot be written or a figure cannot be drawn.
+/// When a file cannot be written.
 pub fn write_trend(dir: impl AsRef<Path>, columns: &[Column]) -> Result<(), SaveError> {
-    let page = render(columns)?;
     let mut out = StagedDir::new(dir.as_ref())?;
-    out.write("trend.html", page)?;
+    out.write("trend.html", render(columns))?;
     // The other files of the directory stay unchanged.
     Ok(out.commit_beside()?)
 }
 
-fn render(columns: &[Column]) -> Result<String, DrawError> {
+fn render(columns: &[Column]) -> String {
     let shared: Vec<&String> = columns.first().map_or_else(Vec::new, |first| {
         first.runs.keys().filter(|run| columns.iter().all(|column| column.runs.contains_key(*run))).collect()
     });
     let mut figures = vec![verdicts(columns)];
     figures.extend(counts(columns, &shared));
-    let drawn = figures.iter().map(plot::draw).collect::<Result<Vec<_>, _>>()?;
     let body = html! {
         main.alone {
             header id="summary" {
@@ -128,15 +125,13 @@ fn render(columns: &[Column]) -> Result<String, DrawError> {
                 p.lead { "Verdicts and operation counts, from the oldest report to this one. Counts do not depend on \
                           the machine, so a change shows that the program changed." }
             }
-            @for (figure, svg) in figures.iter().zip(&drawn) {
-                figure { div class="plot graph" { (PreEscaped(svg)) } figcaption { (figure.caption) } }
-            }
+            @for figure in &figures { (captioned(figure)) }
             (table(columns, &shared))
             (changed_rows(columns))
             (changed_counts(columns, &shared))
         }
     };
-    Ok(shell("grainbench · trend", &body))
+    shell("grainbench · trend", &body)
 }
 
 fn verdicts(columns: &[Column]) -> Figure {

@@ -1,8 +1,8 @@
 //! Frame of every page, and the names and signs that all pages share.
 
 use crate::class;
-use crate::plot::{self, DrawError, markup};
-use grainbench_harness::figure::Figure;
+use crate::plot::{graph, markup};
+use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_harness::verdict::{Outcome, Severity};
 use maud::{DOCTYPE, Markup, PreEscaped, html};
 use std::collections::BTreeSet;
@@ -72,11 +72,14 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     (symbol, class(outcome.severity()))
 }
 
-pub(crate) fn captioned(figure: &Figure) -> Result<Markup, DrawError> {
-    Ok(html! {
+/// Renders a graph with its caption.
+pub(crate) fn captioned(figure: &Figure) -> Markup {
+    html! {
         figure {
-            div class="plot graph" { (PreEscaped(plot::draw(figure)?)) }
+            @if let Drawing::Graph(graph) = &figure.drawing {
+                div class="plot graph" { (PreEscaped(markup(&graph::draw(&figure.title, graph)))) }
+            }
             figcaption { (figure.caption) }
         }
-    })
+    }
 }

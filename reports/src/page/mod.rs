@@ -61,7 +61,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
         sections.push(CaseSection::new(section, anchor, names, &mut taken)?);
     }
     let contents = contents::render(report, &anchors);
-    let studies = questions::sections(&report.measured)?;
+    let studies = questions::sections(&report.measured);
     let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) };
     // The first screen is largest if the page contains all results.
     let head = |has_rows: &dyn Fn(&str) -> bool| overview::render(report, counts, &anchors, has_rows);

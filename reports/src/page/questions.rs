@@ -9,7 +9,7 @@ use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, S
 use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
 use crate::plot::scale::Scale;
-use crate::plot::{self, DrawError, FONTS, palette};
+use crate::plot::{self, FONTS, palette};
 use crate::report::Report;
 use crate::study::cost::TARGETS;
 use crate::study::effects::{EffectResult, Entry, change, median};
@@ -59,13 +59,10 @@ pub(crate) fn render(report: &Report, physics: &Markup) -> Markup {
 }
 
 /// Renders the sections with all numbers on stability and on effects. The section on costs is beside the matrix.
-///
-/// # Errors
-/// When a figure cannot be drawn.
-pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
-    let stable = measured.stability.as_ref().map(stability_page::tables).transpose()?;
+pub(crate) fn sections(measured: &Measurements) -> Markup {
+    let stable = measured.stability.as_ref().map(stability_page::tables);
     let effects = measured.effects.as_ref().map(|effects| effects::heat(&effects.ledger));
-    Ok(html! {
+    html! {
         @if stable.is_some() || effects.is_some() {
             section {
                 @for ((id, heading), all) in QUESTIONS[1..].iter().zip([stable, effects]) {
@@ -74,7 +71,7 @@ pub(crate) fn sections(measured: &Measurements) -> Result<Markup, DrawError> {
                 }
             }
         }
-    })
+    }
 }
 
 /// Renders the date of a measurement, and the solvers that have changed since.

@@ -5,7 +5,6 @@ use super::stability::Limit;
 use crate::distinct;
 use crate::number;
 use crate::page::{captioned, slug};
-use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Table};
 use grainbench_harness::evidence::Evidence;
@@ -422,10 +421,10 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawError> {
-    let pictures: Vec<Markup> = figures(cost).iter().map(captioned).collect::<Result<_, _>>()?;
-    let folded = pictures.len().saturating_sub(OPEN);
-    Ok(html! {
+pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Markup {
+    let figures = figures(cost);
+    let folded = figures.len().saturating_sub(OPEN);
+    html! {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs in " (cost.scene) }
@@ -448,11 +447,11 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawE
             h3 { "Reference values" }
             (references(cost))
             (agreement(cost))
-            div.figures.two { @for picture in pictures.iter().take(OPEN) { (picture) } }
+            div.figures.two { @for figure in figures.iter().take(OPEN) { (captioned(figure)) } }
             @if folded > 0 {
                 details {
                     summary { "Figures of " (folded) " further quantities" }
-                    div.figures.two { @for picture in pictures.iter().skip(OPEN) { (picture) } }
+                    div.figures.two { @for figure in figures.iter().skip(OPEN) { (captioned(figure)) } }
                 }
             }
             (softer(cost))
@@ -461,7 +460,7 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Result<Markup, DrawE
                 (levels(&cost.levels))
             }
         }
-    })
+    }
 }
 
 /// Renders the fastest setting of each solver for an error of 1 %, by quantity.

@@ -3,7 +3,6 @@
 use crate::distinct;
 use crate::number;
 use crate::page::captioned;
-use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Column, Format, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
@@ -66,11 +65,7 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
 }
 
 /// Renders the table and the figure with their text.
-///
-/// # Errors
-/// When the figure cannot be drawn.
-pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
-    let picture = figure(loads).map(|figure| captioned(&figure)).transpose()?;
+pub(crate) fn render(loads: &[Load]) -> Markup {
     const TIMES: [&str; 4] = ["Start-up", "A step", "A grain in a step", "A simulated second"];
     let columns = [Column::heading("Discs, solver")].into_iter();
     let columns =
@@ -84,16 +79,16 @@ pub(crate) fn render(loads: &[Load]) -> Result<Markup, DrawError> {
         row![name, start_up, step, grain, second, load.absent.as_deref().unwrap_or_default()]
     };
     let table = Table::new("Cost of a step for few and for many grains", columns, loads.iter().map(row));
-    Ok(html! {
+    html! {
         h3 { "From one grain to ten thousand" }
         p {
             "Most quantities above need one or two grains. Here discs are stacked in a box, and each solver has a "
             "usual resolution. The table shows the processor time of one thread: a long run minus a short run, so "
             "start-up cancels."
         }
-        @if let Some(picture) = &picture { (picture) }
+        @if let Some(figure) = figure(loads) { (captioned(&figure)) }
         (table.page("cases"))
-    })
+    }
 }
 
 #[cfg(test)]
@@ -111,7 +106,7 @@ mod tests {
             absent,
         };
         let loads = [load("dem", vec![lap], None), load("lammps", Vec::new(), Some("not installed".to_owned()))];
-        let page = render(&loads).unwrap().into_string();
+        let page = render(&loads).into_string();
         for time in [2e-3, 4e-6, 4e-8, 0.5] {
             let cell = format!("<td class=\"n\">{}</td>", number::seconds(time));
             assert!(page.contains(&cell), "{cell} is not in {page}");

@@ -4,36 +4,30 @@ use super::point::{Diagram, Point, PointStatus};
 use super::{Study, cost, effects, estimate, load, stability_page, step};
 use crate::measured::Costs;
 use crate::number::{self, TimeUnit};
-use crate::page::{captioned as figure, provenance, shell, slug, summary, unique};
-use crate::plot::DrawError;
+use crate::page::{captioned, provenance, shell, slug, summary, unique};
 use crate::row;
 use crate::table::{Cell, Column, Format, Row, Table};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
 /// Renders the page of a study.
-///
-/// # Errors
-/// When a figure cannot be drawn.
-pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
+pub(crate) fn render(study: &Study) -> String {
     let mut taken = BTreeSet::from(["summary".to_owned(), "provenance".to_owned()]);
     let mut sections = Vec::new();
     if !study.diagrams.is_empty() {
-        sections.push(cost_summary(study)?);
-        for diagram in &study.diagrams {
-            let anchor = unique(&slug(&format!("cost-{}-{}", diagram.case, diagram.variant)), &mut taken);
-            sections.push(cost_section(diagram, &anchor)?);
-        }
+        sections.push(cost_summary(study));
     }
-    for cost in &study.scenes {
-        sections.push(estimate::render(cost, &study.limits)?);
+    for diagram in &study.diagrams {
+        let anchor = unique(&slug(&format!("cost-{}-{}", diagram.case, diagram.variant)), &mut taken);
+        sections.push(cost_section(diagram, &anchor));
     }
+    sections.extend(study.scenes.iter().map(|cost| estimate::render(cost, &study.limits)));
     let is_cost = !(study.diagrams.is_empty() && study.scenes.is_empty());
     let mut title = "what accuracy costs";
     if !(study.limits.is_empty() && study.hard.is_empty()) {
         title = if is_cost { title } else { "what stays stable" };
         sections.push(if study.scenes.is_empty() {
-            stability_page::render(study)?
+            stability_page::render(study)
         } else {
             stability_page::largest_steps(&study.limits)
         });
@@ -52,7 +46,7 @@ pub(crate) fn render(study: &Study) -> Result<String, DrawError> {
             (provenance::render(&study.provenance))
         }
     };
-    Ok(shell(&format!("grainbench · {title}"), &body))
+    shell(&format!("grainbench · {title}"), &body)
 }
 
 /// Returns one sentence for each error, about the cost over all cases.
@@ -82,10 +76,9 @@ fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
     cost::TARGETS.into_iter().enumerate().map(sentence).collect()
 }
 
-fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
+fn cost_summary(study: &Study) -> Markup {
     let costs = Costs::from_study(study, &|solver| study.sources.get(solver).cloned());
-    let scatters: Vec<Markup> = cost::scatters(&study.diagrams).iter().map(figure).collect::<Result<_, _>>()?;
-    Ok(html! {
+    html! {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What accuracy costs" }
@@ -105,11 +98,11 @@ fn cost_summary(study: &Study) -> Result<Markup, DrawError> {
             }
             h3 { "Which solver for which scene at 1 %" }
             (which(study))
-            @if !study.loads.is_empty() { (load::render(&study.loads)?) }
-            @for scatter in &scatters { (scatter) }
+            @if !study.loads.is_empty() { (load::render(&study.loads)) }
+            @for scatter in cost::scatters(&study.diagrams) { (captioned(&scatter)) }
             @if let Some(model) = &study.model { (step::render(model)) }
         }
-    })
+    }
 }
 
 fn changes(study: &Study, old: &str) -> Markup {
@@ -163,13 +156,12 @@ fn not_reached(diagram: &Diagram, line: &str) -> String {
     }
 }
 
-fn cost_section(diagram: &Diagram, anchor: &str) -> Result<Markup, DrawError> {
-    let picture = figure(&cost::figure(diagram))?;
-    Ok(html! {
+fn cost_section(diagram: &Diagram, anchor: &str) -> Markup {
+    html! {
         section.case id=(anchor) {
             p.kicker { (diagram.case) "/" (diagram.variant) }
             h2 { (diagram.quantity) }
-            (picture)
+            (captioned(&cost::figure(diagram)))
             ul { @for target in cost::TARGETS { li { (cost::sentence(diagram, target)) } } }
             (reasons(diagram))
             details {
@@ -178,7 +170,7 @@ fn cost_section(diagram: &Diagram, anchor: &str) -> Result<Markup, DrawError> {
             }
             p.back { a href="#summary" { "↑ Summary" } }
         }
-    })
+    }
 }
 
 /// Renders the reasons why points have no error. Each reason appears once per solver.

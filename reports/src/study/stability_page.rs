@@ -5,7 +5,6 @@ use super::stability::{HardCaseResult, Hardness, Limit, figures};
 use crate::measured::{Hold, Stability};
 use crate::number;
 use crate::page::captioned;
-use crate::plot::DrawError;
 use crate::row;
 use crate::table::{Cell, Column, Format, Table};
 use crate::{class, distinct};
@@ -28,26 +27,25 @@ fn totals(lines: &[Hold]) -> Markup {
 }
 
 /// Renders the section of the page.
-pub(crate) fn render(study: &Study) -> Result<Markup, DrawError> {
+pub(crate) fn render(study: &Study) -> Markup {
     if let ([first, ..], []) = (&study.limits[..], &study.hard[..])
         && first.scene.ends_with(".toml")
     {
-        return Ok(html! {
+        return html! {
             header id="summary" {
                 p.kicker { "grainbench" }
                 h1 { "What stays stable in " (first.scene) }
             }
             (largest_steps(&study.limits))
-        });
+        };
     }
-    let tables = tables(&Stability::from_study(study, &|_| None))?;
-    Ok(html! {
+    html! {
         header id="summary" {
             p.kicker { "grainbench" }
             h1 { "What stays stable" }
-            (tables)
+            (tables(&Stability::from_study(study, &|_| None)))
         }
-    })
+    }
 }
 
 /// Renders the table of the largest stable steps in one scene.
@@ -66,9 +64,8 @@ pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
 }
 
 /// Renders the figures and tables.
-pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
-    let pictures: Vec<Markup> = figures(&stability.limits).iter().map(captioned).collect::<Result<_, _>>()?;
-    Ok(html! {
+pub(crate) fn tables(stability: &Stability) -> Markup {
+    html! {
         p.lead {
             "The largest stable step of each solver, found by bisection between stable and failed runs, with the exact \
              limit if "
@@ -83,10 +80,10 @@ pub(crate) fn tables(stability: &Stability) -> Result<Markup, DrawError> {
         }
         @if !stability.limits.is_empty() {
             h3 { "Largest stable steps" }
-            div.figures { @for picture in &pictures { (picture) } }
+            div.figures { @for figure in figures(&stability.limits) { (captioned(&figure)) } }
             (limits(&stability.limits, "Assembly", with_parameter).page("rows"))
         }
-    })
+    }
 }
 
 /// Returns the symbol and the CSS class of a result.

@@ -77,7 +77,7 @@ pub fn write_study(dir: impl AsRef<Path>, study: &Study) -> Result<(), SaveError
     out.write(STUDY_FILE, stored + "\n")?;
     out.write("results.json", study_json(study).map_err(SaveError::encode("results.json"))?)?;
     out.write_with("points.csv", |file| cost::points_table(&study.diagrams).csv(file))?;
-    out.write("index.html", page::render(study)?)?;
+    out.write("index.html", page::render(study))?;
     for (name, figure) in named_figures(study) {
         out.write(format!("figures/{name}.svg"), plot::draw(&figure)?)?;
     }
