@@ -132,23 +132,16 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };
-    // Solvers with equal curves share one curve, because equal curves would hide each other.
-    let mut groups = Vec::<(Vec<&str>, Points)>::new();
-    for solver in distinct(rows.iter().map(|row| row.solver.as_str())) {
-        let found = points(&|row| row.found.filter(|_| row.solver == solver));
-        match groups.iter_mut().find(|(_, points)| *points == found) {
-            Some((solvers, _)) => solvers.push(solver),
-            None => groups.push((vec![solver], found)),
-        }
-    }
+    let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
+    let found = |solver: &str| points(&|row| row.found.filter(|_| row.solver == solver));
     let stroke = if exact { Stroke::Markers } else { Stroke::MarkedLine };
-    for (solvers, found) in groups.into_iter().filter(|(_, found)| !found.is_empty()) {
-        let label = match solvers.split_first() {
-            Some((first, [])) => (*first).to_owned(),
-            Some((first, others)) => format!("{first} (and {}: equal)", others.join(", ")),
-            None => continue,
-        };
-        curves.push(Curve::new(label, stroke, found));
+    // Solvers with equal curves share one curve, because equal curves would hide each other.
+    for line in distinct(solvers.iter().map(|solver| found(solver))).into_iter().filter(|line| !line.is_empty()) {
+        let mut equal = solvers.iter().copied().filter(|solver| found(solver) == line);
+        let first = equal.next().unwrap_or_default();
+        let others = equal.collect::<Vec<_>>().join(", ");
+        let label = if others.is_empty() { first.to_owned() } else { format!("{first} (and {others}: equal)") };
+        curves.push(Curve::new(label, stroke, line));
     }
     for scene in distinct(rows.iter().map(|row| row.scene.as_str())) {
         let first = rows.iter().find(|row| row.scene == scene).map_or("", |row| row.solver.as_str());
