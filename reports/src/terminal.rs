@@ -104,16 +104,13 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
 
 fn row(section: &Section) -> Row {
     let counts = Headline::of_section(section);
-    let worst = headline::worst(&section.verdicts).map_or_else(
-        || "—".to_owned(),
-        |verdict| {
-            let used = headline::used_tolerance(verdict);
-            // A result outside its tolerance does not read as 1.
-            let shown =
-                if (1.0..1.05).contains(&used) && used > 1.0 { "> 1".to_owned() } else { number::significant(used, 2) };
-            format!("{shown} {}", verdict.quantity)
-        },
-    );
+    let worst = headline::worst(&section.verdicts).map(|verdict| {
+        let used = headline::used_tolerance(verdict);
+        // A result outside its tolerance does not read as 1.
+        let shown =
+            if (1.0..1.05).contains(&used) && used > 1.0 { "> 1".to_owned() } else { number::significant(used, 2) };
+        format!("{shown} {}", verdict.quantity)
+    });
     row![
         &section.name,
         headline::solvers(section).join(", "),
