@@ -197,15 +197,9 @@ mod tests {
         let all = [SnapshotFormat::Dump, SnapshotFormat::Vtk, SnapshotFormat::Parquet];
         written(&sample::record().snapshots, &all, &target);
         assert!(!target.join("vtk/points.pvd").exists(), "rigid grains have no points");
-        for name in [
-            "series.csv",
-            "record.json",
-            "snapshots.dump",
-            "vtk/grains.pvd",
-            "vtk/contacts.pvd",
-            "vtk/grains-000001.vtp",
-            "vtk/contacts-000000.vtp",
-        ] {
+        let names = "series.csv record.json snapshots.dump vtk/grains.pvd vtk/contacts.pvd vtk/grains-000001.vtp \
+                     vtk/contacts-000000.vtp";
+        for name in names.split(' ') {
             assert!(target.join(name).is_file(), "{name}");
         }
         let parts: Vec<_> = std::fs::read_dir(target.join("snapshots")).unwrap().flatten().collect();
