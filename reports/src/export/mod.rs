@@ -70,8 +70,7 @@ pub fn write_run(
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
     out.write_with(record_json::RECORD_FILE, |file| record_json::write(record, snapshots, file))?;
-    write_series(&record.series, formats, out)?;
-    write_snapshots(snapshots, formats, out)
+    write_series(&record.series, snapshots, formats, out)
 }
 
 /// Name of the file that describes a crashed run.
@@ -96,23 +95,20 @@ pub fn write_remains(
     let state = serde_json::json!({ "error": error, "step": step, "time": time });
     let text = serde_json::to_string_pretty(&state).map_err(|error| at(error.into()))?;
     out.write(BROKEN_FILE, text + "\n")?;
-    write_series(series, formats, out)?;
-    write_snapshots(snapshots, formats, out)
+    write_series(series, snapshots, formats, out)
 }
 
-fn write_series(series: &Series, formats: &BTreeSet<SnapshotFormat>, out: &mut StagedDir) -> Result<(), WriteError> {
-    out.write_with("series.csv", |file| series::table(series).csv(file))?;
-    if formats.contains(&SnapshotFormat::Parquet) {
-        out.write_with("series.parquet", |file| series::table(series).parquet(file))?;
-    }
-    Ok(())
-}
-
-fn write_snapshots(
+/// Writes the time series and the snapshots.
+fn write_series(
+    series: &Series,
     snapshots: &mut SnapshotStore,
     formats: &BTreeSet<SnapshotFormat>,
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
+    out.write_with("series.csv", |file| series::table(series).csv(file))?;
+    if formats.contains(&SnapshotFormat::Parquet) {
+        out.write_with("series.parquet", |file| series::table(series).parquet(file))?;
+    }
     if formats.contains(&SnapshotFormat::Dump) {
         out.write_with("snapshots.dump", |file| {
             dump::begin(file)?;
