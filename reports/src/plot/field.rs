@@ -43,7 +43,7 @@ const REST: u16 = 12;
 ///
 /// # Errors
 /// When the field has no panel, or when frames differ in size or number.
-pub fn draw(title: &str, field: &Field) -> io::Result<String> {
+pub(crate) fn draw(title: &str, field: &Field) -> io::Result<String> {
     let size = check(field)?;
     let is_film = field.times.len() > 1;
     let count = field.panels.len();
@@ -152,7 +152,7 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
 ///
 /// # Errors
 /// When the field has no panel, or when frames differ in size or number.
-pub fn film(field: &Field) -> io::Result<Vec<u8>> {
+pub(crate) fn film(field: &Field) -> io::Result<Vec<u8>> {
     let Frames { width, height, levels } = frames(field)?;
     png(field.shades, (width, height), &levels)
 }

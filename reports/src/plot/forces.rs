@@ -17,8 +17,7 @@ const SLIPPING: &str = "#d55e00";
 
 /// Draws a force plot as a complete SVG document. Parts with coordinates that are not finite are left out, and a note
 /// states their number.
-#[must_use]
-pub fn draw(title: &str, plot: &ForcePlot) -> String {
+pub(crate) fn draw(title: &str, plot: &ForcePlot) -> String {
     let finite = |point: &[f64; 2]| point[0].is_finite() && point[1].is_finite();
     let discs: Vec<_> = plot.discs.iter().filter(|(centre, radius, _)| finite(centre) && radius.is_finite()).collect();
     let has_angles = discs.iter().any(|(_, _, angle)| angle.is_finite());

@@ -36,8 +36,7 @@ const THIN: f64 = 0.6;
 
 /// Draws lines as a complete SVG document. Lines with coordinates that are not finite are left out, and a note states
 /// their number.
-#[must_use]
-pub fn draw(title: &str, plot: &LinePlot) -> String {
+pub(crate) fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
     let some = |length: f64| if length > 0.0 { length } else { 1.0 };
     let across = some(plot.sheets.iter().map(|sheet| size(sheet)[0]).sum());

@@ -1,12 +1,12 @@
 //! Figures as SVG text. They need no external font or library.
 
-pub mod field;
-pub mod forces;
-pub mod graph;
-pub mod lines;
-pub mod palette;
+mod field;
+mod forces;
+pub(crate) mod graph;
+mod lines;
+pub(crate) mod palette;
 mod reel;
-pub mod scale;
+pub(crate) mod scale;
 pub mod style;
 pub(crate) mod text;
 

@@ -1,13 +1,13 @@
 //! Colours, markers and dashes that are distinct without colour vision and in grey print.
 
 /// Colour of secondary text.
-pub const FAINT: &str = "#666";
+pub(crate) const FAINT: &str = "#666";
 
 /// Colours of Okabe and Ito without yellow and black. Yellow is too pale on white, and dashed curves are black.
 pub(super) const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 
 /// Solvers whose colour and marker are the same in all figures.
-pub const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
+pub(crate) const SOLVERS: [&str; 5] = ["dem", "rigid", "mpm", "lammps", "liggghts"];
 
 /// Shades of dashed curves: exact solutions and limits.
 const SHADES: [&str; 3] = ["#222", "#666", "#999"];
@@ -17,7 +17,7 @@ const DASHES: [(u32, u32); 4] = [(9, 5), (3, 4), (16, 5), (5, 10)];
 
 /// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Marker {
+pub(crate) enum Marker {
     /// Disc.
     Circle,
     /// Square with horizontal edges.
@@ -47,8 +47,7 @@ const MARKERS: [Marker; 7] = [
 impl Marker {
     /// Returns the corners of the shape, with y downwards. The shape is about as large as a disc of radius 1; the
     /// circle has no corners.
-    #[must_use]
-    pub fn corners(self) -> Vec<(f64, f64)> {
+    pub(crate) fn corners(self) -> Vec<(f64, f64)> {
         let polygon = |count: u32, radii: &[f64], first: f64| {
             (0..count)
                 .zip(radii.iter().cycle())
@@ -74,8 +73,7 @@ impl Marker {
 /// Returns the indices of the styles of all curves that are not dashed. If a solver in [`SOLVERS`] has exactly one curve, the
 /// curve has the index of the solver. All other curves have indices of no solver in the graph. A label is the name of the
 /// solver, alone or followed by ` (` or `: `.
-#[must_use]
-pub fn places(labels: &[&str]) -> Vec<usize> {
+pub(crate) fn places(labels: &[&str]) -> Vec<usize> {
     let solver = |label: &&str| {
         let name = label.split(" (").next()?.split(": ").next()?;
         SOLVERS.iter().position(|solver| *solver == name)
@@ -88,27 +86,23 @@ pub fn places(labels: &[&str]) -> Vec<usize> {
 }
 
 /// Returns the colour of a curve. `place` is an index from [`places`].
-#[must_use]
-pub fn colour(place: usize) -> &'static str {
+pub(crate) fn colour(place: usize) -> &'static str {
     COLOURS[place % COLOURS.len()]
 }
 
 /// Returns the marker of a curve. `place` is an index from [`places`]. With seven markers and six colours, combinations
 /// repeat after 42 curves.
-#[must_use]
-pub fn marker(place: usize) -> Marker {
+pub(crate) fn marker(place: usize) -> Marker {
     MARKERS[place % MARKERS.len()]
 }
 
 /// Returns the shade of a dashed curve. `place` is its index among the dashed curves.
-#[must_use]
-pub fn shade(place: usize) -> &'static str {
+pub(crate) fn shade(place: usize) -> &'static str {
     SHADES[place % SHADES.len()]
 }
 
 /// Returns the lengths of dash and gap of a dashed curve (drawing units). `place` is its index among the dashed curves.
-#[must_use]
-pub fn dash(place: usize) -> (u32, u32) {
+pub(crate) fn dash(place: usize) -> (u32, u32) {
     DASHES[place % DASHES.len()]
 }
 

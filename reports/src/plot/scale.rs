@@ -8,7 +8,7 @@ use crate::number::{power_of_ten, significant};
 
 /// Scale of a linear or logarithmic axis.
 #[derive(Clone, Debug)]
-pub struct Scale {
+pub(crate) struct Scale {
     logarithmic: bool,
     /// Lower end of the axis: the value or, for a logarithmic axis, its decimal logarithm.
     low: f64,
@@ -22,18 +22,17 @@ pub struct Scale {
 
 /// A tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Tick {
+pub(crate) struct Tick {
     /// Value at the tick.
-    pub value: f64,
+    pub(crate) value: f64,
     /// Label; none for minor ticks.
-    pub label: Option<String>,
+    pub(crate) label: Option<String>,
 }
 
 impl Scale {
     /// Returns an axis that contains all `values`. `margin` is a margin at both ends, as a fraction of the range, and
     /// `room` is the approximate number of labels. Values that the axis cannot show are ignored.
-    #[must_use]
-    pub fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
+    pub(crate) fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
         let mut scale = Self {
             logarithmic,
             low: f64::INFINITY,
@@ -73,26 +72,22 @@ impl Scale {
     }
 
     /// Sets the values of the labelled ticks. Without values, ticks are at round numbers.
-    #[must_use]
-    pub fn at_levels(self, levels: &[f64]) -> Self {
+    pub(crate) fn at_levels(self, levels: &[f64]) -> Self {
         Self { levels: levels.iter().copied().filter(|level| self.shows(*level)).collect(), ..self }
     }
 
     /// Returns true if the axis can show a value: it is finite and, on a logarithmic axis, positive.
-    #[must_use]
-    pub fn shows(&self, value: f64) -> bool {
+    pub(crate) fn shows(&self, value: f64) -> bool {
         value.is_finite() && !(self.logarithmic && value <= 0.0)
     }
 
     /// Returns the position of a value on the axis, from 0 at the lower end to 1 at the upper end.
-    #[must_use]
-    pub fn position(&self, value: f64) -> f64 {
+    pub(crate) fn position(&self, value: f64) -> f64 {
         (self.place(value) - self.low) / (self.high - self.low)
     }
 
     /// Returns the ticks in ascending order.
-    #[must_use]
-    pub fn ticks(&self) -> Vec<Tick> {
+    pub(crate) fn ticks(&self) -> Vec<Tick> {
         if !self.levels.is_empty() {
             let digits = |level: f64| if is_round(level, 5) { 5 } else { 3 };
             let plain: Vec<String> = self.levels.iter().map(|level| significant(*level, digits(*level))).collect();

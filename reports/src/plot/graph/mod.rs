@@ -99,23 +99,22 @@ impl Panel {
 
 /// Size of a drawing, and flag for its legend.
 #[derive(Clone, Copy)]
-pub struct Form {
+pub(crate) struct Form {
     /// Width (drawing units).
-    pub width: f64,
+    pub(crate) width: f64,
     /// Height (drawing units).
-    pub height: f64,
+    pub(crate) height: f64,
     /// True if the drawing has a legend.
-    pub legend: bool,
+    pub(crate) legend: bool,
 }
 
 impl Form {
     /// Form of the figures in files and on pages.
-    pub const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
+    pub(crate) const FIGURE: Self = Self { width: WIDTH, height: HEIGHT, legend: true };
 }
 
 /// Returns the label and a drawn sample of each labelled curve, for a legend outside the graph.
-#[must_use]
-pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
+pub(crate) fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
     let (x, y) = scales(graph);
     let labelled = graph.curves.iter().zip(looks(&graph.curves, &x, &y)).filter(|(curve, _)| !curve.label.is_empty());
     let sample = |(curve, look): (&'_ Curve, CurveStyle)| {
@@ -129,8 +128,7 @@ pub fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
 }
 
 /// Draws a graph as a complete SVG document.
-#[must_use]
-pub fn draw(title: &str, graph: &Graph) -> String {
+pub(crate) fn draw(title: &str, graph: &Graph) -> String {
     draw_as(title, graph, Form::FIGURE)
 }
 
