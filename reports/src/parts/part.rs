@@ -184,8 +184,7 @@ impl PartReader {
             }
             Ok(rows)
         }
-        let Some(SnapshotRow { snapshot: number, step, time, row: Frame(frame) }) = self.frames.next_if(|_| true)?
-        else {
+        let Some(SnapshotRow { snapshot: number, step, time, row: frame }) = self.frames.next_if(|_| true)? else {
             return Ok(None);
         };
         let contacts = all(&mut self.contacts, number)?;
@@ -193,11 +192,12 @@ impl PartReader {
             step,
             time,
             grains: all(&mut self.grains, number)?,
-            contacts: frame.contacts.map(|_| contacts),
+            contacts: frame.has_contacts.then_some(contacts),
             walls: all(&mut self.walls, number)?,
             bodies: all(&mut self.bodies, number)?,
             points: all(&mut self.points, number)?,
-            ..frame
+            bounds: frame.bounds,
+            periodic: frame.periodic,
         }))
     }
 }

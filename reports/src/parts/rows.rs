@@ -27,20 +27,18 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
     columns_of.into_iter().filter(|(chosen, _)| !columns.has(*chosen)).flat_map(|(_, names)| names).collect()
 }
 
-/// A snapshot without the data that are stored in other tables.
-pub(super) struct Frame(pub(super) Snapshot);
+/// Data of a snapshot that no other table contains.
+#[derive(Default)]
+pub(super) struct Frame {
+    pub(super) bounds: (Vector3<f64>, Vector3<f64>),
+    pub(super) periodic: [bool; 3],
+    /// True if contacts were reported.
+    pub(super) has_contacts: bool,
+}
 
 impl Frame {
-    pub(super) fn from_snapshot(snapshot: &Snapshot) -> Self {
-        Self(Snapshot {
-            grains: Vec::new(),
-            // The table of snapshots stores a flag that is true if contacts were reported.
-            contacts: snapshot.contacts.as_ref().map(|_| Vec::new()),
-            walls: Vec::new(),
-            bodies: Vec::new(),
-            points: Vec::new(),
-            ..*snapshot
-        })
+    pub(super) const fn from_snapshot(snapshot: &Snapshot) -> Self {
+        Self { bounds: snapshot.bounds, periodic: snapshot.periodic, has_contacts: snapshot.contacts.is_some() }
     }
 }
 
@@ -48,29 +46,16 @@ impl Row for Frame {
     const TABLE: &'static str = "snapshots";
 
     fn blank() -> Self {
-        Self(Snapshot {
-            step: 0,
-            time: 0.0,
-            bounds: (Vector3::zeros(), Vector3::zeros()),
-            periodic: [false; 3],
-            grains: Vec::new(),
-            contacts: None,
-            walls: Vec::new(),
-            bodies: Vec::new(),
-            points: Vec::new(),
-        })
+        Self::default()
     }
 
     fn visit(&mut self, columns: &mut impl Visit) {
-        let snapshot = &mut self.0;
-        columns.numbers(["low_x", "low_y", "low_z"], &mut snapshot.bounds.0);
-        columns.numbers(["high_x", "high_y", "high_z"], &mut snapshot.bounds.1);
-        for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut snapshot.periodic) {
+        columns.numbers(["low_x", "low_y", "low_z"], &mut self.bounds.0);
+        columns.numbers(["high_x", "high_y", "high_z"], &mut self.bounds.1);
+        for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut self.periodic) {
             columns.visit(name, Value::Flag(periodic));
         }
-        let mut has_contacts = snapshot.contacts.is_some();
-        columns.visit("contacts_told", Value::Flag(&mut has_contacts));
-        snapshot.contacts = has_contacts.then(Vec::new);
+        columns.visit("contacts_told", Value::Flag(&mut self.has_contacts));
     }
 }
 
