@@ -24,19 +24,15 @@ pub fn each_snapshot<E>(
         let record = record_json::load(dir).map_err(|error| unreadable(error.to_string()))?;
         return record.snapshots.into_iter().try_for_each(look);
     }
-    let read_error = |path: &Path| {
-        let path = path.display().to_string();
-        let unreadable = &unreadable;
-        move |error: io::Error| unreadable(format!("{path}: cannot be read: {error}"))
-    };
-    let entries =
-        fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>).map_err(read_error(&folder))?;
-    let mut parts: Vec<PathBuf> = entries.into_iter().map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    let failed = |path: &Path, error: io::Error| unreadable(format!("{}: cannot be read: {error}", path.display()));
+    let entries = fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let entries = entries.map_err(|error| failed(&folder, error))?.into_iter();
+    let mut parts: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
     // The name of a part begins with its number.
     parts.sort();
     for part in parts {
-        let mut reader = PartReader::open(&part).map_err(read_error(&part))?;
-        while let Some(snapshot) = reader.next().map_err(read_error(&part))? {
+        let mut reader = PartReader::open(&part).map_err(|error| failed(&part, error))?;
+        while let Some(snapshot) = reader.next().map_err(|error| failed(&part, error))? {
             look(snapshot)?;
         }
     }
