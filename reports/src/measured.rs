@@ -170,9 +170,8 @@ impl Costs {
     /// Summarises a stored study. `today` returns the hash of the present sources of a solver.
     #[must_use]
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
-        let names = cost::lines(&study.diagrams);
-        let is_told = |name: &&&str| study.diagrams.iter().any(|diagram| cost::of_line(diagram, name).next().is_some());
-        let names: Vec<&str> = names.iter().filter(is_told).copied().collect();
+        let mut names = cost::lines(&study.diagrams);
+        names.retain(|name| study.diagrams.iter().any(|diagram| cost::of_line(diagram, name).next().is_some()));
         let lines = names.iter().map(|name| Line {
             solver: (*name).to_owned(),
             asked: study.diagrams.iter().filter(|diagram| is_asked(diagram, name)).count(),
@@ -213,8 +212,7 @@ fn factor(study: &Study, line: &str, lines: &[&str], target: f64) -> Option<Fact
     let reached = || study.diagrams.iter().filter_map(|diagram| Some((diagram, time(diagram, line, target)?)));
     // A solver without a competitor is always the cheapest, so its ratio would say nothing about its cost.
     let competes = |diagram: &Diagram, target: f64| {
-        let reaching = lines.iter().filter(|other| time(diagram, other, target).is_some());
-        reaching.filter(|other| **other != line).count() > 0
+        lines.iter().any(|other| *other != line && time(diagram, other, target).is_some())
     };
     let over = |target: f64| -> Vec<f64> {
         let compared = reached().filter(|(diagram, _)| competes(diagram, target));

@@ -7,7 +7,7 @@ use crate::number;
 use grainbench_fields::picture::Shot;
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
 use grainbench_harness::raster::{RIM, Raster, VOID, level, lit};
-use grainbench_solver::record::{Partner, Snapshot, WallState};
+use grainbench_solver::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::{Vector2, Vector3};
 use std::f64::consts::TAU;
 
@@ -234,27 +234,19 @@ pub(crate) fn grains(shots: &[Shot<'_>], times: &[f64]) -> Option<Figure> {
         if film { "Grains, film" } else { "Grains" },
         "Grains from the front, from the right and from above, without perspective, coloured by speed. Lines are \
          walls.",
-        field(&view, shots, times, ("speed", "m/s"), range, Shades::Lit, &frame),
+        field(&view, &shots.iter().collect::<Vec<_>>(), times, ("speed", "m/s"), range, Shades::Lit, &frame),
     ))
 }
 
 /// Returns a figure of the contact forces as bars; none if no record contains a contact.
 pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
     let view = View::from_shots(shots)?;
-    let shots_with_contacts: Vec<Shot<'_>> = shots
-        .iter()
-        .filter(|shot| shot.frames.iter().all(|snapshot| snapshot.contacts.is_some()))
-        .map(|shot| Shot { title: shot.title.clone(), frames: shot.frames.clone() })
-        .collect();
-    let strength = |contact: &grainbench_solver::record::ContactState| {
-        (contact.shear_force - contact.normal * contact.normal_force).norm()
-    };
-    let all = shots_with_contacts
-        .iter()
-        .flat_map(|shot| &shot.frames)
-        .flat_map(|snapshot| snapshot.told_contacts())
-        .map(strength);
-    let range = (0.0, readable(all.filter(|force| force.is_finite()).fold(0.0, f64::max)));
+    let has_contacts = |shot: &&Shot<'_>| shot.frames.iter().all(|snapshot| snapshot.contacts.is_some());
+    let (shown, others): (Vec<&Shot<'_>>, Vec<&Shot<'_>>) = shots.iter().partition(has_contacts);
+    let strength = |contact: &ContactState| (contact.shear_force - contact.normal * contact.normal_force).norm();
+    let all = || shown.iter().flat_map(|shot| &shot.frames).flat_map(|snapshot| snapshot.told_contacts()).map(strength);
+    all().next()?;
+    let range = (0.0, readable(all().filter(|force| force.is_finite()).fold(0.0, f64::max)));
     let frame = |snapshot: &&Snapshot| {
         let mut canvas = Canvas::new(&view);
         let mut contacts: Vec<_> = snapshot.told_contacts().iter().collect();
@@ -272,11 +264,7 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
         canvas.walls(snapshot);
         canvas.raster()
     };
-    if shots_with_contacts.iter().flat_map(|shot| &shot.frames).all(|snapshot| snapshot.told_contacts().is_empty()) {
-        return None;
-    }
-    let missing = shots.iter().filter(|shot| shot.frames.iter().any(|snapshot| snapshot.contacts.is_none()));
-    let missing = not_recorded(missing.map(|shot| shot.title.as_str()));
+    let missing = not_recorded(others.iter().map(|shot| shot.title.as_str()));
     Some(Figure::field(
         "forces",
         "Contact forces",
@@ -284,7 +272,7 @@ pub(crate) fn forces(shots: &[Shot<'_>]) -> Option<Figure> {
             "Each bar connects the centres of two grains in contact. Its width is proportional to the contact \
                   force.{missing}"
         ),
-        field(&view, &shots_with_contacts, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
+        field(&view, &shown, &[0.0], ("contact force", "N"), range, Shades::Amount, &frame),
     ))
 }
 
@@ -296,14 +284,14 @@ pub(crate) fn not_recorded<'a>(names: impl Iterator<Item = &'a str>) -> String {
 
 fn field(
     view: &View,
-    shots: &[Shot<'_>],
+    shots: &[&Shot<'_>],
     times: &[f64],
     (label, unit): (&str, &str),
     range: (f64, f64),
     shades: Shades,
     frame: &dyn Fn(&&Snapshot) -> Raster,
 ) -> Field {
-    let panel = |shot: &Shot<'_>| Panel {
+    let panel = |shot: &&Shot<'_>| Panel {
         title: shot.title.clone(),
         frames: shot.frames.iter().map(frame).collect(),
         own: None,
