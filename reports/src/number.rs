@@ -133,10 +133,7 @@ fn fixed(value: f64, digits: usize) -> String {
 
 /// Removes trailing zeros after the decimal point.
 fn trim(text: &str) -> String {
-    let (mantissa, power) = match text.split_once('×') {
-        Some((mantissa, power)) => (mantissa, format!("×{power}")),
-        None => (text, String::new()),
-    };
+    let (mantissa, power) = text.split_at(text.find('×').unwrap_or(text.len()));
     let mantissa = if mantissa.contains('.') { mantissa.trim_end_matches('0').trim_end_matches('.') } else { mantissa };
     format!("{mantissa}{power}")
 }

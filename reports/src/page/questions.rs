@@ -102,11 +102,8 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
     let section = report.sections.iter().find(|section| section.name == diagram.case);
     let name = section.map_or(diagram.case.as_str(), |section| section.title.as_str());
     figure.title = format!("{name}, {}", diagram.variant);
-    let cheapest = |line: &Line| {
-        let point = cost::cheapest(diagram, &line.solver, TARGETS[AT])?;
-        Some((line.solver.clone(), point.wall_seconds?))
-    };
-    let mut times: Vec<(String, f64)> = costs.lines.iter().filter_map(cheapest).collect();
+    let time = |line: &Line| cost::time(diagram, &line.solver, TARGETS[AT]);
+    let mut times: Vec<_> = costs.lines.iter().filter_map(|line| Some((&line.solver, time(line)?))).collect();
     times.sort_by(|(_, a), (_, b)| a.total_cmp(b));
     let unit = TimeUnit::of(times.iter().map(|(_, seconds)| *seconds));
     let times: Vec<String> =

@@ -61,12 +61,10 @@ pub(crate) fn draw(title: &str, plot: &LinePlot) -> String {
         sheets.push(draw_sheet(sheet, &title_lines(sheet), &view, plot, &mut missing));
         left += LEFT + size(sheet)[0] * scale[0] + RIGHT;
     }
-    let kinds = legend(&plot.sheets);
-    let rows: Vec<(usize, Vec<String>)> =
-        kinds.into_iter().map(|(place, label)| (place, wrap(&label, 15.0, WIDTH - LEFT - 56.0))).collect();
     let (mut y, mut keys) = (bottom + FOOT + 6.0, Vec::new());
-    for (place, lines) in &rows {
-        keys.push(key(*place, lines, y, dash(plot.to_scale, *place)));
+    for (place, label) in legend(&plot.sheets) {
+        let lines = wrap(label, 15.0, WIDTH - LEFT - 56.0);
+        keys.push(key(place, &lines, y, dash(plot.to_scale, place)));
         y += LINE * lines.len() as f64;
     }
     let height = y + if missing > 0 { LINE } else { 4.0 };
@@ -164,11 +162,11 @@ fn draw_lines(kind: &Lines, place: usize, view: &View, to_scale: bool, missing: 
 }
 
 /// Returns the index and the label of each group that has lines.
-fn legend(sheets: &[Sheet]) -> Vec<(usize, String)> {
+fn legend(sheets: &[Sheet]) -> Vec<(usize, &str)> {
     let most = sheets.iter().map(|sheet| sheet.kinds.len()).max().unwrap_or(0);
     let label = |place: usize| {
         let mut all = sheets.iter().filter_map(|sheet| sheet.kinds.get(place));
-        all.find(|kind| !kind.lines.is_empty()).map(|kind| (place, kind.label.clone()))
+        all.find(|kind| !kind.lines.is_empty()).map(|kind| (place, kind.label.as_str()))
     };
     (0..most).filter_map(label).collect()
 }
