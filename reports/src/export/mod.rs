@@ -158,40 +158,37 @@ fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), Write
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::path::Path;
 
-    fn written(snapshots: &[Snapshot], formats: &[SnapshotFormat], target: &Path) {
-        let mut store = SnapshotStore::for_output(target);
+    /// Writes a run to a temporary directory. Returns its guard and the output directory.
+    fn written(snapshots: &[Snapshot], formats: &[SnapshotFormat]) -> (tempfile::TempDir, PathBuf) {
+        let dir = tempfile::tempdir().unwrap();
+        let target = dir.path().join("out");
+        let mut store = SnapshotStore::for_output(&target);
         snapshots.iter().for_each(|snapshot| store.add(snapshot.clone()).unwrap());
-        let mut out = StagedDir::new(target).unwrap();
+        let mut out = StagedDir::new(&target).unwrap();
         write_run(&sample::record(), &mut store, &formats.iter().copied().collect(), &mut out).unwrap();
         out.commit().unwrap();
+        (dir, target)
     }
 
     #[test]
     fn material_points_have_files_of_their_own() {
-        let dir = tempfile::tempdir().unwrap();
-        let target = dir.path().join("out");
-        written(&[sample::snapshot(), sample::deformable()], &[SnapshotFormat::Vtk], &target);
+        let (_dir, target) = written(&[sample::snapshot(), sample::deformable()], &[SnapshotFormat::Vtk]);
         assert!(target.join("vtk/points-000001.vtp").is_file() && target.join("vtk/points.pvd").is_file());
         assert!(!target.join("vtk/points-000000.vtp").exists() && !target.join("snapshots.dump").exists());
     }
 
     #[test]
     fn contacts_that_nobody_told_have_no_file() {
-        let dir = tempfile::tempdir().unwrap();
-        let target = dir.path().join("out");
         let untold = Snapshot { contacts: None, ..sample::snapshot() };
-        written(&[untold, sample::snapshot()], &[SnapshotFormat::Vtk], &target);
+        let (_dir, target) = written(&[untold, sample::snapshot()], &[SnapshotFormat::Vtk]);
         assert!(!target.join("vtk/contacts-000000.vtp").exists() && target.join("vtk/contacts-000001.vtp").is_file());
     }
 
     #[test]
     fn writes_every_format() {
-        let dir = tempfile::tempdir().unwrap();
-        let target = dir.path().join("out");
         let all = [SnapshotFormat::Dump, SnapshotFormat::Vtk, SnapshotFormat::Parquet];
-        written(&sample::record().snapshots, &all, &target);
+        let (_dir, target) = written(&sample::record().snapshots, &all);
         assert!(!target.join("vtk/points.pvd").exists(), "rigid grains have no points");
         let names = "series.csv record.json snapshots.dump vtk/grains.pvd vtk/contacts.pvd vtk/grains-000001.vtp \
                      vtk/contacts-000000.vtp";

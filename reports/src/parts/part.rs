@@ -95,8 +95,7 @@ pub(super) struct OpenPart {
 }
 
 impl OpenPart {
-    /// Begins a part that will be moved to a folder when it is closed. `without` contains columns of the grains table
-    /// that are not written.
+    /// Begins a part that will be moved to a folder when it is closed.
     pub(super) fn begin(folder: &Path, without: &[&'static str]) -> io::Result<Self> {
         let directory = temporary_in(folder)?;
         fs::create_dir(directory.path().join("part"))?;

@@ -64,8 +64,7 @@ pub struct SnapshotStore {
     /// Size of the snapshots in memory (bytes).
     waiting_bytes: usize,
     open: Option<OpenPart>,
-    /// True if no snapshot format is requested. If the run then exceeds [`READABLE`] rows, only its last snapshot is
-    /// stored, and only if it has at most [`READABLE`] rows.
+    /// True if no snapshot format is requested (see [`SnapshotStore::in_short`]).
     in_short: bool,
     /// Columns of the grains table that are not written.
     without: Vec<&'static str>,
