@@ -10,8 +10,7 @@ use crate::report::Report;
 const LETTER: usize = 7;
 
 /// Returns the badge as SVG.
-#[must_use]
-pub fn badge(report: &Report) -> String {
+pub(crate) fn badge(report: &Report) -> String {
     let counts = Headline::of_report(report);
     let red = counts.red() + (counts.controls - counts.controls_red);
     let reason = report.red_because.first().and_then(|reason| reason.split(':').next());

@@ -84,8 +84,7 @@ impl Headline {
 
     /// Returns the passed results out of the conclusive ones, such as `3/5`. If there are none, returns words, because
     /// `0/2` would read as a failure. Amber results have a count of their own.
-    #[must_use]
-    pub fn passed(self) -> String {
+    pub(crate) fn passed(self) -> String {
         match self.conclusive() {
             0 if OUTCOMES.into_iter().any(|outcome| outcome.is_judged() && self.count(outcome) > 0) => {
                 "not conclusive".to_owned()
@@ -154,8 +153,7 @@ pub fn worst<'a>(rows: impl IntoIterator<Item = &'a Verdict>) -> Option<&'a Verd
 }
 
 /// Returns the solvers of a case, each once: first in the order of the results, then solvers that have only runs.
-#[must_use]
-pub fn solvers(section: &Section) -> Vec<&str> {
+pub(crate) fn solvers(section: &Section) -> Vec<&str> {
     let rows = section.verdicts.iter().map(|verdict| verdict.solver.as_str());
     distinct(rows.chain(section.runs.iter().map(|run| run.solver.as_str())))
 }

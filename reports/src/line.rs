@@ -98,8 +98,7 @@ pub(crate) const fn expected_word(evidence: Evidence) -> &'static str {
 }
 
 /// Returns the expectation with its unit, such as `1.43 m/s`, `≥ 5` or `order 2`; a dash if there is none.
-#[must_use]
-pub fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
+pub(crate) fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
     expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 

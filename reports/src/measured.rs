@@ -128,8 +128,7 @@ pub struct Hold {
 
 impl Hold {
     /// Returns the number of hard cases that the solver can represent.
-    #[must_use]
-    pub const fn asked(&self) -> usize {
+    pub(crate) const fn asked(&self) -> usize {
         self.holds + self.smaller + self.typed + self.wrong
     }
 }

@@ -35,8 +35,7 @@ pub fn fraction(size: f64) -> String {
 }
 
 /// Returns a signed error in the form of [`fraction`], or a dash if there is none.
-#[must_use]
-pub fn error(error: Option<f64>) -> String {
+pub(crate) fn error(error: Option<f64>) -> String {
     match error {
         Some(error) if error > 0.0 => format!("+{}", fraction(error)),
         Some(error) => fraction(error),
@@ -80,8 +79,7 @@ pub struct TimeUnit {
 impl TimeUnit {
     /// Returns the unit in which the largest duration (s) has one to three digits before the decimal point. Durations that
     /// are not finite are ignored.
-    #[must_use]
-    pub fn of(seconds: impl IntoIterator<Item = f64>) -> Self {
+    pub(crate) fn of(seconds: impl IntoIterator<Item = f64>) -> Self {
         let largest = seconds.into_iter().filter(|seconds| seconds.is_finite()).fold(0.0, |a: f64, b| a.max(b.abs()));
         let (scale, symbol) = match largest {
             size if size == 0.0 || size >= 1.0 => (1.0, "s"),

@@ -64,14 +64,12 @@ impl Column {
     }
 
     /// Returns a column of numbers that pages show with three significant digits.
-    #[must_use]
-    pub fn number(name: impl Into<String>) -> Self {
+    pub(crate) fn number(name: impl Into<String>) -> Self {
         Self::new(name, Format::Digits(3))
     }
 
     /// Returns the column with a unit.
-    #[must_use]
-    pub fn unit(self, unit: impl Into<String>) -> Self {
+    pub(crate) fn unit(self, unit: impl Into<String>) -> Self {
         Self { unit: unit.into(), ..self }
     }
 
@@ -126,8 +124,7 @@ pub enum Cell {
 
 impl Cell {
     /// Returns a number; an empty cell if the number is not finite.
-    #[must_use]
-    pub fn finite(value: Option<f64>) -> Self {
+    pub(crate) fn finite(value: Option<f64>) -> Self {
         value.filter(|value| value.is_finite()).into()
     }
 
@@ -339,8 +336,7 @@ impl<'a> Table<'a> {
     }
 
     /// Returns the table as a part of a page with a CSS class. A table with a name scrolls if the screen is narrower.
-    #[must_use]
-    pub fn page(self, class: &str) -> Markup {
+    pub(crate) fn page(self, class: &str) -> Markup {
         let Self { name, columns, rows } = self;
         let rows: Vec<Row> = rows.collect();
         let units = time_units(&columns, &rows);

@@ -13,7 +13,7 @@ const FORCES: &str = " fx fy fz tqx tqy tqz";
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn begin(out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn begin(out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ITEM: UNITS\nsi")
 }
 
@@ -21,7 +21,7 @@ pub fn begin(out: &mut impl Write) -> io::Result<()> {
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     writeln!(out, "ITEM: TIME\n{:?}", snapshot.time)?;
     writeln!(out, "ITEM: TIMESTEP\n{}", snapshot.step)?;
     writeln!(out, "ITEM: NUMBER OF ATOMS\n{}", snapshot.grains.len())?;

@@ -1,9 +1,9 @@
 //! Export of records to file formats of other programs.
 
-pub mod dump;
+mod dump;
 pub mod record_json;
-pub mod series;
-pub mod vtk;
+mod series;
+pub(crate) mod vtk;
 
 #[cfg(test)]
 pub(crate) mod sample;

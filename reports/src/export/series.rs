@@ -5,8 +5,7 @@ use grainbench_solver::record::Series;
 
 /// Returns the table with the columns `step`, `time (s)`, `NAME (unit)`, … and one row per sample. A short column ends
 /// with empty cells.
-#[must_use]
-pub fn table(series: &Series) -> Table<'_> {
+pub(crate) fn table(series: &Series) -> Table<'_> {
     let columns = [Column::new("step", Format::Count), Column::number("time").unit("s")].into_iter();
     let quantities = series.columns.iter().map(|column| Column::number(&column.name).unit(&column.unit));
     let rows = series.step.iter().zip(&series.time).enumerate().map(|(sample, (step, time))| {

@@ -12,7 +12,7 @@ use nalgebra::Vector3;
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_grains(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_grains(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let grains = &snapshot.grains;
     open(out, snapshot.time, grains.len(), grains.len(), 0)?;
     writeln!(out, "<PointData Scalars=\"radius\" Vectors=\"velocity\">")?;
@@ -44,7 +44,7 @@ fn write_if_complete<T>(
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_points(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_points(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let points = &snapshot.points;
     open(out, snapshot.time, points.len(), points.len(), 0)?;
     writeln!(out, "<PointData Scalars=\"body\" Vectors=\"velocity\" Tensors=\"stress\">")?;
@@ -70,7 +70,7 @@ pub fn write_points(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()>
 ///
 /// # Errors
 /// When `out` cannot be written.
-pub fn write_contacts(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
+pub(crate) fn write_contacts(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
     let by_id: HashMap<u32, &GrainState> = snapshot.grains.iter().map(|grain| (grain.id, grain)).collect();
     // Contacts with grains that are not in the snapshot are left out.
     let contacts: Vec<(&ContactState, [Vector3<f64>; 2])> =
@@ -93,8 +93,7 @@ pub fn write_contacts(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<(
 }
 
 /// Returns a ParaView collection (`.pvd`) of files, with the time (s) of each file.
-#[must_use]
-pub fn collection(files: &[(f64, String)]) -> String {
+pub(crate) fn collection(files: &[(f64, String)]) -> String {
     let mut text = String::from(
         "<?xml version=\"1.0\"?>\n\
          <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",

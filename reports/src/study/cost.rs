@@ -14,8 +14,7 @@ const LEAST: f64 = 1e-16;
 
 /// Returns the Pareto front in the order of time: all points for which no other point has both less error and less
 /// time.
-#[must_use]
-pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
+pub(crate) fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
     let mut sorted: Vec<(f64, f64, &Point)> =
         points.into_iter().filter_map(|point| point.place().map(|(error, time)| (time, error, point))).collect();
     sorted.sort_by(|a, b| a.0.total_cmp(&b.0).then(a.1.total_cmp(&b.1)));
@@ -28,7 +27,7 @@ pub fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> 
     sorted.into_iter().map(|(_, _, point)| point).collect()
 }
 
-/// Returns the solvers of some diagrams: all of [`SOLVERS`], followed by all other solvers that have points.
+/// Returns the solvers of some diagrams: all of `SOLVERS`, followed by all other solvers that have points.
 pub fn lines<'a>(diagrams: impl IntoIterator<Item = &'a Diagram>) -> Vec<&'a str> {
     let points = diagrams.into_iter().flat_map(|diagram| &diagram.points);
     distinct(SOLVERS.into_iter().chain(points.map(|point| point.solver.as_str())))
@@ -47,8 +46,7 @@ pub fn cheapest<'a>(diagram: &'a Diagram, line: &'a str, target: f64) -> Option<
 }
 
 /// Returns the time (s) of the cheapest setting of a solver with at most the error `target`.
-#[must_use]
-pub fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
+pub(crate) fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
     cheapest(diagram, line, target)?.wall_seconds
 }
 
@@ -105,8 +103,7 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
 }
 
 /// Returns the figure of error against time for the points of a diagram.
-#[must_use]
-pub fn figure(diagram: &Diagram) -> Figure {
+pub(crate) fn figure(diagram: &Diagram) -> Figure {
     let drawn = |point: &Point| point.place().map(|(error, time)| (time, error.max(LEAST)));
     let errors = || diagram.points.iter().filter_map(drawn).map(|(_, error)| error);
     let top = 10.0 * errors().fold(LEAST, f64::max);

@@ -38,8 +38,7 @@ impl EffectResult {
     }
 
     /// Returns the colour of the result.
-    #[must_use]
-    pub const fn severity(self) -> Severity {
+    pub(crate) const fn severity(self) -> Severity {
         match self {
             Self::Needed | Self::Inert => Severity::Green,
             Self::NotWorthSimulating | Self::Untold => Severity::Amber,

@@ -39,8 +39,7 @@ pub enum Reduction {
 
 impl Reduction {
     /// Returns the reduction in words.
-    #[must_use]
-    pub fn word(self) -> String {
+    pub(crate) fn word(self) -> String {
         match self {
             Self::End => "at the end".to_owned(),
             Self::Mean => "mean over time".to_owned(),
@@ -71,8 +70,7 @@ pub enum Basis {
 
 impl Basis {
     /// Returns the method in words.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
+    pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Extrapolated => "extrapolated",
             Self::Spread => "no visible order: finest level, spread of the levels",
@@ -99,8 +97,7 @@ pub enum LevelStatus {
 
 impl LevelStatus {
     /// Returns the status in words.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
+    pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Measured => "measured",
             Self::Failed => "failed",
@@ -220,8 +217,7 @@ impl Quantity {
     }
 
     /// Returns the differences between the reference values of all pairs of solvers.
-    #[must_use]
-    pub fn differences(&self) -> Vec<Difference<'_>> {
+    pub(crate) fn differences(&self) -> Vec<Difference<'_>> {
         let mut found = Vec::new();
         for (at, a) in self.estimates.iter().enumerate() {
             for b in &self.estimates[at + 1..] {

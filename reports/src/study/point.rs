@@ -134,8 +134,7 @@ impl Point {
     }
 
     /// Returns the error and the wall-clock time (s); none if one of them is missing.
-    #[must_use]
-    pub fn place(&self) -> Option<(f64, f64)> {
+    pub(crate) fn place(&self) -> Option<(f64, f64)> {
         match (self.standing, self.error, self.wall_seconds) {
             (PointStatus::Measured, Some(error), Some(wall)) => Some((error, wall)),
             _ => None,

@@ -56,14 +56,12 @@ pub enum Hardness {
 
 impl Hardness {
     /// Returns true if the required property holds at some time step.
-    #[must_use]
-    pub const fn holds(self) -> bool {
+    pub(crate) const fn holds(self) -> bool {
         matches!(self, Self::Holds | Self::HoldsAtASmallerStep)
     }
 
     /// Returns the name used in tables.
-    #[must_use]
-    pub const fn word(self) -> &'static str {
+    pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Holds => "holds",
             Self::HoldsAtASmallerStep => "holds at a smaller step",
@@ -98,8 +96,7 @@ pub const DOCUMENTED: [&str; 3] = ["lammps", "liggghts", "rigid"];
 impl HardCaseResult {
     /// Returns the colour of the result; none if the solver cannot run the case. A wrong result without an error is red, unless
     /// the error of the solver is documented.
-    #[must_use]
-    pub fn severity(&self) -> Option<Severity> {
+    pub(crate) fn severity(&self) -> Option<Severity> {
         match self.standing {
             Hardness::Holds => Some(Severity::Green),
             Hardness::QuietlyWrong if !DOCUMENTED.contains(&self.solver.as_str()) => Some(Severity::Red),

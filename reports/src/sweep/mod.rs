@@ -174,14 +174,12 @@ pub fn counts<'a>(points: impl IntoIterator<Item = &'a Point>) -> [usize; 4] {
 
 impl Point {
     /// Returns the colour of the worst result; none if no quantity has an expectation.
-    #[must_use]
-    pub fn severity(&self) -> Option<Severity> {
+    pub(crate) fn severity(&self) -> Option<Severity> {
         self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity).max()
     }
 
     /// Returns the largest |error| of all quantities; none if no quantity has an error.
-    #[must_use]
-    pub fn error(&self) -> Option<f64> {
+    pub(crate) fn error(&self) -> Option<f64> {
         self.left.looked.iter().filter_map(|looked| looked.error).map(f64::abs).reduce(f64::max)
     }
 }
