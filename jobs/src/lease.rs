@@ -140,7 +140,7 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
         }
         let (Ok(text), Some(age)) = (fs::read_to_string(&path), age(&path, now)) else { continue };
         let Ok(contents) = serde_json::from_str::<LeaseContents>(&text) else { continue };
-        let is_gone = contents.host == machine::name() && machine::runs(contents.process) == Some(false);
+        let is_gone = machine::has_ended(contents.process, &contents.host) == Some(true);
         if is_gone || age > seconds {
             let _ = fs::remove_file(&path);
         } else {

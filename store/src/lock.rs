@@ -99,13 +99,8 @@ fn remove_abandoned(path: &Path, after: Duration) -> bool {
 }
 
 fn is_abandoned(path: &Path, text: &str, after: Duration) -> bool {
-    if let Some((process, host)) = owner_in(text)
-        && host == machine::name()
-        && let Some(runs) = machine::runs(process)
-    {
-        return !runs;
-    }
-    age(path).is_some_and(|age| age > after)
+    let has_ended = owner_in(text).and_then(|(process, host)| machine::has_ended(process, host));
+    has_ended.unwrap_or_else(|| age(path).is_some_and(|age| age > after))
 }
 
 /// Returns the age of a file by the clock of its file system, or `None` if the file does not exist.

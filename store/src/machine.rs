@@ -1,6 +1,7 @@
 //! Name and load of the local machine.
 
 use std::fs;
+use std::path::Path;
 
 /// Returns the host name. The node name of a batch system is appended if it differs.
 #[must_use]
@@ -25,9 +26,10 @@ pub fn load() -> Option<f64> {
     fs::read_to_string("/proc/loadavg").ok()?.split(' ').next()?.parse().ok()
 }
 
-/// Returns true if a process with this number exists on this machine, or `None` if the system does not report
+/// Returns true if a process has ended. Returns `None` if it belongs to another machine or the system does not report
 /// processes.
 #[must_use]
-pub fn runs(process: u32) -> Option<bool> {
-    std::path::Path::new("/proc/self").exists().then(|| std::path::Path::new(&format!("/proc/{process}")).exists())
+pub fn has_ended(process: u32, host: &str) -> Option<bool> {
+    let is_reported = host == name() && Path::new("/proc/self").exists();
+    is_reported.then(|| !Path::new(&format!("/proc/{process}")).exists())
 }

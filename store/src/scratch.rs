@@ -56,7 +56,9 @@ pub fn remove_leftovers(folder: &Path) -> io::Result<()> {
         let path = entry?.path();
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let Some((process, host)) = owner_in(&name) else { continue };
-        if !is_gone(process, host, &path) {
+        // The age of the file decides if the process cannot be checked.
+        let has_ended = machine::has_ended(process, host);
+        if !has_ended.unwrap_or_else(|| age_of(&path).is_some_and(|age| age > PATIENCE)) {
             continue;
         }
         let swept = if path.is_dir() { fs::remove_dir_all(&path) } else { fs::remove_file(&path) };
@@ -64,17 +66,6 @@ pub fn remove_leftovers(folder: &Path) -> io::Result<()> {
         swept.or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     }
     Ok(())
-}
-
-/// Returns true if a process has ended. If the process cannot be checked, returns true if its file is older than
-/// [`PATIENCE`].
-fn is_gone(process: u32, host: &str, made: &Path) -> bool {
-    if host == machine::name()
-        && let Some(runs) = machine::runs(process)
-    {
-        return !runs;
-    }
-    age_of(made).is_some_and(|age| age > PATIENCE)
 }
 
 /// Returns the time since the last change of a file.
