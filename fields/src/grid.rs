@@ -83,3 +83,28 @@ pub(crate) fn inside(snapshot: &Snapshot, mut place: Vector3<f64>) -> Vector3<f6
     }
     place
 }
+
+/// Returns the shortest vector (m) between the periodic images of two positions. `between` is their difference (m).
+pub(crate) fn nearest_image(snapshot: &Snapshot, mut between: Vector3<f64>) -> Vector3<f64> {
+    let length = snapshot.bounds.1 - snapshot.bounds.0;
+    for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
+        between[axis] -= (between[axis] / length[axis]).round() * length[axis];
+    }
+    between
+}
+
+/// Returns the shifts (m) from a position to itself and to its images across the periodic sides of the first `dimension`
+/// axes.
+pub(crate) fn image_shifts(snapshot: &Snapshot, dimension: usize) -> Vec<Vector3<f64>> {
+    let length = snapshot.bounds.1 - snapshot.bounds.0;
+    let along = |axis: usize| -> &[f64] {
+        if axis < dimension && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
+    };
+    let mut shifts = Vec::new();
+    for &i in along(0) {
+        for &j in along(1) {
+            shifts.extend(along(2).iter().map(|&k| Vector3::new(i, j, k).component_mul(&length)));
+        }
+    }
+    shifts
+}

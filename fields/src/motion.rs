@@ -6,7 +6,7 @@
 //! |v′|² = (1/n) Σ |v_i − v⁰ − L (x_i − x̄)|²
 //! ```
 
-use crate::grid::{Grid, inside};
+use crate::grid::{Grid, inside, nearest_image};
 use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
@@ -58,12 +58,8 @@ pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
 #[must_use]
 pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     let elapsed = after.time - before.time;
-    let length = after.bounds.1 - after.bounds.0;
     let mover = |grain: &GrainState| {
-        let mut step = grain.position - before.grain(grain.id)?.position;
-        for axis in (0..3).filter(|&axis| after.periodic[axis]) {
-            step[axis] -= (step[axis] / length[axis]).round() * length[axis];
-        }
+        let step = nearest_image(after, grain.position - before.grain(grain.id)?.position);
         Some(Mover { position: grain.position, velocity: step / elapsed, weight: 1.0 })
     };
     after.grains.iter().filter_map(mover).collect()

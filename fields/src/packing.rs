@@ -1,9 +1,9 @@
 //! Packing fraction: the fraction of each cell that grains fill, from their exact volumes in the cell.
 
-use crate::grid::{Grid, inside};
+use crate::grid::{Grid, image_shifts, inside};
 use crate::overlap::{disc_in_box, sphere_in_box};
 use grainbench_scene::dimension::Dimension;
-use grainbench_solver::record::{GrainState, Snapshot};
+use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
 
 /// Returns the packing fraction φ of every cell: the volume of grains and their periodic images within the cell,
@@ -14,7 +14,10 @@ use nalgebra::Vector3;
 pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<f64> {
     let mut filled = vec![0.0; grid.cells()];
     if snapshot.points.is_empty() {
-        snapshot.grains.iter().for_each(|grain| of_grain(snapshot, grain, space, grid, &mut filled));
+        let shifts = image_shifts(snapshot, space.count());
+        for (grain, shift) in snapshot.grains.iter().flat_map(|grain| shifts.iter().map(move |shift| (grain, shift))) {
+            share_out(grain.position + shift, grain.radius, space, grid, &mut filled);
+        }
     } else {
         for point in &snapshot.points {
             if let Some(cell) = grid.find(inside(snapshot, point.position)) {
@@ -26,22 +29,7 @@ pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> V
     filled
 }
 
-/// Adds the volumes of a grain and its periodic images to the cells.
-fn of_grain(snapshot: &Snapshot, grain: &GrainState, space: Dimension, grid: &Grid, filled: &mut [f64]) {
-    let (low, high) = snapshot.bounds;
-    let shifts = |axis: usize| -> &[f64] {
-        if axis < space.count() && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
-    };
-    for &i in shifts(0) {
-        for &j in shifts(1) {
-            for &k in shifts(2) {
-                let centre = grain.position + Vector3::new(i, j, k).component_mul(&(high - low));
-                share_out(centre, grain.radius, space, grid, filled);
-            }
-        }
-    }
-}
-
+/// Adds the volume of a grain or of a periodic image to the cells.
 fn share_out(centre: Vector3<f64>, radius: f64, space: Dimension, grid: &Grid, filled: &mut [f64]) {
     let reach = |axis: usize| {
         if axis >= space.count() {

@@ -1,6 +1,7 @@
 //! Rasters of two-dimensional snapshots: for each pixel, the body and a quantity of its material.
 
 use crate::disc::LoadedDisc;
+use crate::grid::image_shifts;
 use crate::points::{self, Material};
 use crate::quantity::Quantity;
 pub use crate::view::View;
@@ -50,11 +51,10 @@ impl Painting {
         };
         // A pixel in the overlap of two discs shows the disc in which it lies deeper.
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
-        let length = snapshot.bounds.1 - snapshot.bounds.0;
-        let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };
+        let shifts = image_shifts(snapshot, 2);
         for (place, grain) in snapshot.grains.iter().enumerate() {
-            for (&i, &j) in shifts(0).iter().flat_map(|i| shifts(1).iter().map(move |j| (i, j))) {
-                let centre = [grain.position.x + i * length.x, grain.position.y + j * length.y];
+            for shift in &shifts {
+                let centre = [grain.position.x + shift.x, grain.position.y + shift.y];
                 let (columns, rows) = self.view.pixels_around(centre, grain.radius);
                 for (column, row) in rows.flat_map(|row| columns.clone().map(move |column| (column, row))) {
                     let seen = self.view.centre(column, row);

@@ -1,6 +1,6 @@
 //! Material of a two-dimensional snapshot at each pixel of a view.
 
-use crate::grid::inside;
+use crate::grid::{image_shifts, inside};
 use crate::view::View;
 use grainbench_solver::record::{Owner, PointState, Snapshot};
 
@@ -68,13 +68,12 @@ pub(crate) fn at_pixels(
 /// Visits the pixels near each point and its periodic images. The arguments of `show` are the pixel, the squared
 /// distance in units of the point's width, and the index of the point.
 fn lay(snapshot: &Snapshot, view: View, mut show: impl FnMut(usize, f64, u32)) {
-    let length = snapshot.bounds.1 - snapshot.bounds.0;
-    let shifts = |axis: usize| -> &[f64] { if snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] } };
+    let shifts = image_shifts(snapshot, 2);
     for (number, point) in snapshot.points.iter().enumerate() {
         let (place, width) = (inside(snapshot, point.position), point.volume.sqrt());
         let reach = BLUR * width;
-        for (i, j) in shifts(0).iter().flat_map(|i| shifts(1).iter().map(move |j| (i, j))) {
-            let centre = [place.x + i * length.x, place.y + j * length.y];
+        for shift in &shifts {
+            let centre = [place.x + shift.x, place.y + shift.y];
             let (columns, rows) = view.pixels_around(centre, reach);
             for row in rows {
                 for column in columns.clone() {

@@ -1,6 +1,6 @@
 //! Profiles: means over slices of a two-dimensional scene, as used for experiments on shear bands.
 
-use crate::grid::inside;
+use crate::grid::{inside, nearest_image};
 use crate::overlap::disc_in_box;
 use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
@@ -69,14 +69,9 @@ pub fn profile(
 fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
     let mut moved: BTreeMap<u32, Vector3<f64>> = BTreeMap::new();
     for pair in snapshots.windows(2) {
-        let length = pair[1].bounds.1 - pair[1].bounds.0;
         for after in &pair[1].grains {
             let Some(before) = pair[0].grain(after.id) else { continue };
-            let mut step = after.position - before.position;
-            for axis in (0..3).filter(|&axis| pair[1].periodic[axis]) {
-                step[axis] -= (step[axis] / length[axis]).round() * length[axis];
-            }
-            *moved.entry(after.id).or_default() += step;
+            *moved.entry(after.id).or_default() += nearest_image(&pair[1], after.position - before.position);
         }
     }
     let last = snapshots.last().map_or(&[][..], |last| &last.grains);

@@ -9,7 +9,7 @@
 //! ```
 
 use crate::element::{Element, velocity_at};
-use crate::grid::Grid;
+use crate::grid::{Grid, nearest_image};
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
 
@@ -61,13 +61,8 @@ impl Tracer {
     /// Across periodic sides, the displacement of each grain is that to the image nearest to its initial position.
     #[must_use]
     pub fn deformation(&self, snapshot: &Snapshot, dimension: usize) -> Option<Matrix3<f64>> {
-        let length = snapshot.bounds.1 - snapshot.bounds.0;
         let moved = |&(id, before): &(u32, Vector3<f64>)| {
-            let mut step = snapshot.grain(id)?.position - before;
-            for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
-                step[axis] -= (step[axis] / length[axis]).round() * length[axis];
-            }
-            Some((before, before + step))
+            Some((before, before + nearest_image(snapshot, snapshot.grain(id)?.position - before)))
         };
         let pairs: Vec<(Vector3<f64>, Vector3<f64>)> = self.labelled.iter().filter_map(moved).collect();
         if pairs.len() <= dimension {
