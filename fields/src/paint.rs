@@ -115,6 +115,7 @@ impl Painting {
 mod tests {
     use super::*;
     use grainbench_harness::raster::{HIGH, LOW};
+    use grainbench_scene::scene::Grain;
     use grainbench_solver::record::{GrainState, PointState};
     use nalgebra::Vector3;
 
@@ -136,21 +137,9 @@ mod tests {
     }
 
     fn snapshot(points: Vec<PointState>) -> Snapshot {
-        let grain = GrainState {
-            id: 1,
-            material: 0,
-            radius: 0.4,
-            mass: 1.0,
-            position: Vector3::new(0.0, 0.5, 0.0),
-            velocity: Vector3::zeros(),
-            spin: Vector3::new(0.0, 0.0, 2.0),
-            angle: Some(0.3),
-            force: None,
-            torque: None,
-            plastic_strain: 0.0,
-            virial: None,
-            mean_virial: None,
-        };
+        let (position, velocity, spin) = (Vector3::new(0.0, 0.5, 0.0), Vector3::zeros(), Vector3::new(0.0, 0.0, 2.0));
+        let grain = Grain { material: 0, radius: 0.4, mass: 1.0, inertia: 0.08, position, velocity, spin };
+        let grain = GrainState { angle: Some(0.3), ..GrainState::start(1, &grain) };
         Snapshot {
             step: 0,
             time: 0.0,

@@ -81,26 +81,17 @@ fn displacements(snapshots: &[Snapshot]) -> Vec<Vector3<f64>> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainbench_scene::scene::Grain;
     use grainbench_solver::record::GrainState;
 
     fn snapshot(time: f64) -> Snapshot {
         let grain = |id: u32| {
             let x = f64::from(id) - 0.5;
-            GrainState {
-                id,
-                material: 0,
-                radius: 0.5,
-                mass: 1.0,
-                position: Vector3::new(x, (3.0 + x * time).rem_euclid(4.0), 0.0),
-                velocity: Vector3::new(0.0, x, 0.0),
-                spin: Vector3::zeros(),
-                angle: None,
-                force: None,
-                torque: None,
-                plastic_strain: 0.0,
-                virial: None,
-                mean_virial: None,
-            }
+            let (position, velocity) =
+                (Vector3::new(x, (3.0 + x * time).rem_euclid(4.0), 0.0), Vector3::new(0.0, x, 0.0));
+            let spin = Vector3::zeros();
+            let grain = Grain { material: 0, radius: 0.5, mass: 1.0, inertia: 0.125, position, velocity, spin };
+            GrainState::start(id, &grain)
         };
         Snapshot {
             step: 0,

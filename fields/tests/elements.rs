@@ -9,25 +9,13 @@ use grainbench_fields::motion::{Mover, motion, movers_between};
 use grainbench_fields::tensor;
 use grainbench_fields::tracers::{hencky, tracers};
 use grainbench_scene::dimension::Dimension;
+use grainbench_scene::scene::Grain;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
 fn grain(id: u32, position: Vector3<f64>) -> GrainState {
-    GrainState {
-        id,
-        material: 0,
-        radius: 0.5,
-        mass: 1.0,
-        position,
-        velocity: Vector3::zeros(),
-        spin: Vector3::zeros(),
-        angle: None,
-        force: None,
-        torque: None,
-        plastic_strain: 0.0,
-        virial: None,
-        mean_virial: None,
-    }
+    let (velocity, spin) = (Vector3::zeros(), Vector3::zeros());
+    GrainState::start(id, &Grain { material: 0, radius: 0.5, mass: 1.0, inertia: 0.1, position, velocity, spin })
 }
 
 fn snapshot(grains: Vec<GrainState>, high: Vector3<f64>, periodic: [bool; 3]) -> Snapshot {
