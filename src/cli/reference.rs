@@ -106,9 +106,9 @@ fn build(arguments: &Build) -> Outcome {
         let scene = reference.scene()?;
         let made = make(reference.program, &reference.id, &reference.title(), &date, &scene, &reference.run.resolution);
         let outcome = match made {
-            Ok(made) => {
-                write_files(StagedDir::new(&target)?.without_manifest(), &made.files)?;
-                let bytes: usize = made.files.iter().map(|(_, bytes)| bytes.len()).sum();
+            Ok(files) => {
+                write_files(StagedDir::new(&target)?.without_manifest(), &files)?;
+                let bytes: usize = files.iter().map(|(_, bytes)| bytes.len()).sum();
                 format!("made           {}/{} ({bytes} bytes)\n", reference.program.name(), reference.id)
             }
             Err(error @ RunError::NotAvailable { .. }) => {

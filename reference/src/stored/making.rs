@@ -23,15 +23,8 @@ const MOST_SAMPLES: usize = 100;
 /// Size from which a file of the deck is compressed (B).
 const LARGE: usize = 1 << 14;
 
-/// Files of a stored run, by name and content.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct StoredRunFiles {
-    /// Name and content of each file, with `provenance.toml` last.
-    pub files: Vec<(String, Vec<u8>)>,
-}
-
 /// Runs a scene three times: as it is, with half the time step, and with a perturbed initial state. Returns the files of
-/// the stored run.
+/// the stored run by name and content, with `provenance.toml` last.
 ///
 /// `id` is the name of the run in `reference build`. `title` describes the run, and `date` is the day (YYYY-MM-DD).
 ///
@@ -44,7 +37,7 @@ pub fn make(
     date: &str,
     scene: &Scene,
     resolution: &Resolution,
-) -> Result<StoredRunFiles, RunError> {
+) -> Result<Vec<(String, Vec<u8>)>, RunError> {
     let live = LiveProgram::find(program);
     let fail = |reason: String| RunError::Resolution { solver: program.name().to_owned(), reason };
     let stepping = Stepping::new(scene, resolution).map_err(fail)?;
@@ -83,7 +76,7 @@ pub fn make(
     };
     let text = toml::to_string(&provenance).map_err(|error| fail(error.to_string()))?;
     files.push((PROVENANCE.to_owned(), text.into_bytes()));
-    Ok(StoredRunFiles { files })
+    Ok(files)
 }
 
 /// Returns about 100 samples of a run as CSV in full precision.

@@ -4,11 +4,10 @@
 //! provenance.
 
 mod drift;
-mod error;
 mod making;
-mod provenance;
 mod scene_hash;
 
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 
 use grainbench_scene::scene::Scene;
@@ -18,18 +17,56 @@ use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::ReadError;
 use grainbench_store::artifact::{read_listed, read_toml};
+use serde::{Deserialize, Serialize};
 
 use crate::deck::{Program, Stepping};
+use crate::read::read_error;
 use crate::read::table::{Table, read_table};
 pub use drift::{Drift, drift};
-pub use error::StoredError;
-pub use making::{StoredRunFiles, compressed, csv_of, make};
-pub use provenance::Provenance;
+pub use making::{compressed, csv_of, make};
 pub use scene_hash::{is_scene_of, scene_hash, scene_hash_by_bits};
 
 const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series.csv.gz";
 const HALF_STEP_SERIES: &str = "series-half-step.csv.gz";
+
+/// Error of a stored run that is missing, incomplete or changed.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum StoredError {
+    /// A file of the run is missing, damaged or changed.
+    #[error(transparent)]
+    File(#[from] ReadError),
+    /// A series of the run is damaged.
+    #[error(transparent)]
+    Series(#[from] read_error::ReadError),
+}
+
+/// Content of `provenance.toml` of a stored run.
+#[derive(Debug, Clone, PartialEq, Eq, Deserialize, Serialize)]
+#[serde(deny_unknown_fields)]
+pub struct Provenance {
+    /// Program that made the run.
+    pub program: String,
+    /// Line in which the program prints its version.
+    pub version: String,
+    /// Day of the run (YYYY-MM-DD).
+    pub date: String,
+    /// Short description of the run.
+    pub title: String,
+    /// BLAKE3 hash of all data of the scene that affect the run. See [`scene_hash()`].
+    pub scene: String,
+    /// Last stored step up to which the run is predictable; `None` if it is predictable until the end.
+    ///
+    /// A perturbed run starts with one position changed by one unit in the last place. Up to this step, the perturbed
+    /// run differs from the stored run by at most 1e-9 of the scale of each column.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub predictable_steps: Option<u64>,
+    /// Shell commands that repeat the run in its folder, and the command that creates all files of the stored run.
+    pub commands: Vec<String>,
+    /// BLAKE3 hashes of all files of the run, by name.
+    pub blake3: BTreeMap<String, String>,
+}
 
 /// Stored run. Its files have been verified by their hashes.
 #[derive(Debug, Clone)]
