@@ -4,12 +4,10 @@
 //! LAMMPS and LIGGGHTS ([`crate::live`]) and programs with a manifest ([`crate::outside`]) share this code. They differ
 //! only in [`Launch`] and in the readers of their output.
 
-mod deadline;
 pub(crate) mod process;
 mod report;
 mod worker;
 
-pub(crate) use deadline::Deadline;
 pub(crate) use worker::Worker;
 
 use crate::deck::Stepping;
@@ -21,13 +19,14 @@ use grainbench_solver::observer::{Observer, RunOutline};
 use grainbench_solver::record::{Cost, Provenance, Record, Series};
 use grainbench_solver::reduction::reduce;
 use grainbench_solver::resolution::Resolution;
-use process::{Limits, ProcessEnd, ProcessStart, SCREEN};
+use process::{Deadline, Limits, ProcessEnd, ProcessStart, SCREEN};
+use report::is_a_time;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use tempfile::TempDir;
-use worker::Answer;
+use worker::{Answer, Times};
 
 /// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
@@ -173,10 +172,10 @@ impl ProgramMessage {
     /// Returns the message of a worker from its answer.
     fn from_answer(answer: Answer) -> Self {
         match answer {
-            Answer::Ran(times) => match times.seconds() {
-                Ok(seconds) => Self::Ran(seconds.map(|seconds| seconds.solve)),
-                Err(failure) => Self::Failed(failure),
-            },
+            Answer::Ran(Times { seconds: Some(seconds) }) if !is_a_time(seconds) => {
+                Self::Failed(Failure::Output(format!("expected seconds of zero or more, found {seconds}")))
+            }
+            Answer::Ran(Times { seconds }) => Self::Ran(seconds),
             Answer::Cannot(reason) => Self::Cannot(one_line(&reason)),
             Answer::Failed(failed) => Self::Failed(Failure::Crash(failed.words())),
         }

@@ -13,8 +13,6 @@ use std::time::{Duration, Instant};
 use grainbench_solver::failure::Failure;
 use tempfile::TempDir;
 
-use super::Deadline;
-
 /// File with the standard output of a program.
 pub(crate) const SCREEN: &str = "screen";
 /// File with the standard error of a program, if it is separate from the standard output.
@@ -64,6 +62,25 @@ pub(crate) struct ProcessEnd {
     pub(crate) code: i32,
     /// Last lines of standard error, or of standard output if there are none.
     pub(crate) last_lines: Vec<String>,
+}
+
+/// Start and duration of a time limit. Reading of the output counts too.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Deadline {
+    start: Instant,
+    limit: Duration,
+}
+
+impl Deadline {
+    /// Returns a limit that starts now.
+    pub(crate) fn after(limit: Duration) -> Self {
+        Self { start: Instant::now(), limit }
+    }
+
+    /// Returns an error if the limit has expired.
+    pub(crate) fn check(self) -> Result<(), Failure> {
+        if self.start.elapsed() >= self.limit { Err(Failure::TimeOut(self.limit.as_secs())) } else { Ok(()) }
+    }
 }
 
 /// Limits of a program run.

@@ -26,11 +26,9 @@ pub(super) struct Seconds {
     pub(super) solve: f64,
 }
 
-impl Seconds {
-    /// Returns true if the time is finite and not negative.
-    pub(super) fn is_a_time(self) -> bool {
-        self.solve.is_finite() && self.solve >= 0.0
-    }
+/// Returns true if a time (s) is finite and not negative.
+pub(super) fn is_a_time(seconds: f64) -> bool {
+    seconds.is_finite() && seconds >= 0.0
 }
 
 /// Time, position and reason of a failure. Each value can be any JSON value.
@@ -70,7 +68,7 @@ pub(super) fn read(path: &Path, name: &str) -> Result<ProgramReport, Failure> {
     let text = fs::read(path).map_err(|error| wrong("a file that can be read", error.to_string()))?;
     let report: ProgramReport =
         serde_json::from_slice(&text).map_err(|error| wrong("a report", one_line(&error.to_string())))?;
-    match report.seconds.filter(|seconds| !seconds.is_a_time()) {
+    match report.seconds.filter(|seconds| !is_a_time(seconds.solve)) {
         Some(Seconds { solve }) => Err(wrong("seconds.solve of zero or more", solve.to_string())),
         None => Ok(report),
     }

@@ -6,7 +6,7 @@
 //! files in the folder.
 
 use super::process::{self, ERRORS, Limits};
-use super::report::{FailureReport, Seconds};
+use super::report::FailureReport;
 use crate::read::read_error::{one_line, quoted};
 use grainbench_solver::failure::Failure;
 use serde::{Deserialize, Serialize};
@@ -63,18 +63,6 @@ pub(super) struct Times {
     pub(super) seconds: Option<f64>,
 }
 
-impl Times {
-    /// Returns the time in the form of a report, or an error if it is negative or not finite.
-    pub(super) fn seconds(&self) -> Result<Option<Seconds>, Failure> {
-        match self.seconds.map(|solve| Seconds { solve }) {
-            Some(seconds) if !seconds.is_a_time() => {
-                Err(Failure::Output(format!("expected seconds of zero or more, found {}", seconds.solve)))
-            }
-            seconds => Ok(seconds),
-        }
-    }
-}
-
 /// Worker process.
 #[derive(Debug)]
 pub(crate) struct Worker {
@@ -113,30 +101,27 @@ impl Worker {
 
     /// Requests a run and waits for the answer. After an error the worker must not be used again.
     pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, (Failure, Vec<String>)> {
+        let answer = self.answer(scene, out, limits);
+        answer.map_err(|failure| (failure, self.last_lines()))
+    }
+
+    fn answer(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, Failure> {
         let request = serde_json::to_string(&Request { scene, out }).unwrap_or_default();
-        let sent = writeln!(self.requests, "{request}").and_then(|()| self.requests.flush());
         let ended = || Failure::Crash("the worker ended".to_owned());
-        let answer = sent.map_err(|_| ended()).and_then(|()| {
-            loop {
-                match self.answers.recv_timeout(LOOK) {
-                    Ok(line) => break parsed(&line),
-                    Err(RecvTimeoutError::Disconnected) => break Err(ended()),
-                    Err(RecvTimeoutError::Timeout) => {
-                        if process::size(out) > limits.bytes || process::size(self.folder.path()) > limits.bytes {
-                            break Err(process::too_much(limits.bytes));
-                        }
-                        if let Err(failure) = limits.check() {
-                            break Err(failure);
-                        }
+        writeln!(self.requests, "{request}").and_then(|()| self.requests.flush()).map_err(|_| ended())?;
+        let answer = loop {
+            match self.answers.recv_timeout(LOOK) {
+                Ok(line) => break parsed(&line)?,
+                Err(RecvTimeoutError::Disconnected) => return Err(ended()),
+                Err(RecvTimeoutError::Timeout) => {
+                    if process::size(out) > limits.bytes || process::size(self.folder.path()) > limits.bytes {
+                        return Err(process::too_much(limits.bytes));
                     }
+                    limits.check()?;
                 }
             }
-        });
-        let answer = answer.and_then(|answer| {
-            let is_small = process::size(out) <= limits.bytes;
-            if is_small { Ok(answer) } else { Err(process::too_much(limits.bytes)) }
-        });
-        answer.map_err(|failure| (failure, process::last_lines(self.folder.path())))
+        };
+        if process::size(out) <= limits.bytes { Ok(answer) } else { Err(process::too_much(limits.bytes)) }
     }
 
     /// Returns the last lines of standard error.

@@ -17,8 +17,8 @@ use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
-use crate::execution::process::{Limits, on_path};
-use crate::execution::{self, Deadline, Launch, Protocol, most_bytes, output, plain_file};
+use crate::execution::process::{Deadline, Limits, on_path};
+use crate::execution::{self, Launch, Protocol, most_bytes, output, plain_file};
 use crate::grain_dump::contacts_of;
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;

@@ -23,8 +23,8 @@ pub use resolved::{DiscretizedScene, Resolved, schema};
 pub use crate::execution::CANNOT;
 
 use crate::deck::Stepping;
-use crate::execution::process::{self, ERRORS, ProcessStart, SCREEN, on_path};
-use crate::execution::{self, Deadline, Launch, Protocol, Worker, most_bytes, output, plain_file};
+use crate::execution::process::{self, Deadline, ERRORS, ProcessStart, SCREEN, on_path};
+use crate::execution::{self, Launch, Protocol, Worker, most_bytes, output, plain_file};
 use crate::observer::DumpRecord;
 use crate::outputs::{OutputError, Outputs, Sources};
 use crate::read::read_error::one_line;
