@@ -2,13 +2,12 @@
 
 use crate::read::decoding::{InputContent, decoded};
 use crate::read::format::{Beginning, FORMATS, FileContent, Format, FormatCriterion, Moments, dump};
-use crate::read::line_reader::LineReader;
+use crate::read::lines::{Lines, opened};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{header, read_table};
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Number of bytes at the beginning of a file that identify its kind.
@@ -39,10 +38,9 @@ impl Kind {
 /// Returns the kind of a file from its beginning. An empty file counts as a dump, whose reader reports the error.
 pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     let name = shown(path);
-    let opened = || File::open(path).map_err(|error| ReadError::opening(&name, error));
     let reading = |error| ReadError::reading(&name, 1, error);
     let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
-    opened()?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
+    opened(path)?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
     if bytes.starts_with(parquet::MARK) {
         return Ok(Kind::Table);
     }
@@ -56,15 +54,15 @@ pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
     if let Some(kind) = kind_of_bytes(&[]) {
         return Ok(kind);
     }
-    if let InputContent::Text(reader) = decoded(BufReader::new(opened()?)).map_err(reading)? {
+    if let InputContent::Text(reader) = decoded(opened(path)?).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
     }
     if let Some(kind) = kind_of_bytes(&unpacked) {
         return Ok(kind);
     }
-    let mut lines = LineReader::new(BufReader::new(opened()?), &name)?;
+    let mut lines = Lines::open(path)?;
     let mut has_comments = false;
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_text()? {
         if !line.text.trim().is_empty() {
             let names = header(line.text).1;
             let is_it = |format: &&&Format| match format.told_by {

@@ -1,12 +1,11 @@
 //! Data files, which `write_data` writes and `read_data` of LAMMPS and LIGGGHTS reads.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
 use crate::read::atom::Atom;
 use crate::read::data_parser::DataParser;
-use crate::read::line_reader::LineReader;
+use crate::read::lines::{Lines, opened};
 use crate::read::read_error::ReadError;
 
 /// LAMMPS data file with `atom_style sphere`, or LIGGGHTS data file with `atom_style granular`.
@@ -25,9 +24,7 @@ pub struct DataFile {
 /// # Errors
 /// If the file cannot be read or is not a data file. See [`parse_data`].
 pub fn read_data_file(path: &Path) -> Result<DataFile, ReadError> {
-    let name = path.to_string_lossy();
-    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-    parse_data(BufReader::new(file), &name)
+    parse_data(opened(path)?, &path.to_string_lossy())
 }
 
 /// Reads a data file from `reader`, plain or compressed by gzip or zstd. `name` is the name of the file in error
@@ -43,15 +40,15 @@ pub fn read_data_file(path: &Path) -> Result<DataFile, ReadError> {
 /// If the input is truncated, is not text, or has content other than described above. Other content is never skipped,
 /// because it could change the meaning of the file.
 pub fn parse_data(reader: impl BufRead, name: &str) -> Result<DataFile, ReadError> {
-    let mut lines = LineReader::new(reader, name)?;
-    let Some(title) = lines.next_line()?.map(|line| line.text.trim().to_owned()) else {
-        return Err(lines.error_at_end("a data file that begins with a title", "an empty file"));
+    let mut lines = Lines::new(reader, name)?;
+    let Some(title) = lines.next_text()?.map(|line| line.text.trim().to_owned()) else {
+        return Err(lines.error("a data file that begins with a title", "an empty file"));
     };
     let mut parser = DataParser::new();
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_text()? {
         parser.take(line)?;
     }
-    let missing = |expected, found| lines.error_at_end(expected, found);
+    let missing = |expected, found| lines.error(expected, found);
     let (bounds, atoms) = parser.finish(missing)?;
     Ok(DataFile { title, bounds, atoms })
 }

@@ -1,7 +1,7 @@
 //! Header of a data file: numbers of atoms and atom types, and the box.
 
 use crate::read::fields::Fields;
-use crate::read::line_reader::Line;
+use crate::read::lines::Line;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Keywords of the three bounds.

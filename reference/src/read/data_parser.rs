@@ -6,7 +6,7 @@ use std::collections::hash_map::Entry;
 use crate::read::atom::Atom;
 use crate::read::data_header::DataHeader;
 use crate::read::fields::Fields;
-use crate::read::line_reader::Line;
+use crate::read::lines::Line;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Section of a data file after the header.

@@ -1,20 +1,18 @@
 //! Text dumps of LAMMPS and LIGGGHTS (`dump custom`, `dump atom` and `dump local`), read one snapshot at a time.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
-use crate::read::blocks::Blocks;
 use crate::read::dump_header::DumpHeader;
 use crate::read::ids::Ids;
-use crate::read::line_reader::blocks;
+use crate::read::lines::{Lines, opened};
 use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
 /// Reader of a dump, one snapshot after the other. It needs memory for the largest snapshot only.
 pub struct DumpReader<'r> {
-    blocks: Blocks<'r>,
+    lines: Lines<'r>,
     form: RowForm,
     units: Option<String>,
     last_step: Option<u64>,
@@ -29,9 +27,7 @@ impl DumpReader<'static> {
     /// # Errors
     /// If the file cannot be opened or has an unsupported compression.
     pub fn open(path: &Path) -> Result<Self, ReadError> {
-        let name = path.to_string_lossy();
-        let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-        Self::new(BufReader::new(file), &name)
+        Self::new(opened(path)?, &path.to_string_lossy())
     }
 }
 
@@ -43,7 +39,14 @@ impl<'r> DumpReader<'r> {
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
         let form = RowForm { separator: None, not_finite: NonFiniteNumbers::default() };
         let most_rows = u64::MAX;
-        Ok(Self { blocks: blocks(reader, name)?, form, units: None, last_step: None, most_rows, ids: Ids::default() })
+        Ok(Self {
+            lines: Lines::new(reader, name)?,
+            form,
+            units: None,
+            last_step: None,
+            most_rows,
+            ids: Ids::default(),
+        })
     }
 
     /// Sets the maximum number of rows in a snapshot. By default the number is not limited.
@@ -66,23 +69,23 @@ impl<'r> DumpReader<'r> {
     /// If the file is truncated, is not text or has unknown content, if the step decreases, if a step is repeated with
     /// other numbers, or if the id of an atom is repeated. See [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let header = DumpHeader::read(&mut self.blocks).map_err(|error| self.blocks.cut_if_unended(error))?;
+        let header = DumpHeader::read(&mut self.lines).map_err(|error| self.lines.cut_if_unended(error))?;
         let Some(header) = header else {
             if self.last_step.is_none() {
-                return Err(self.error("a dump that begins with `ITEM: TIMESTEP`", "an empty file"));
+                return Err(self.lines.error("a dump that begins with `ITEM: TIMESTEP`", "an empty file"));
             }
             return Ok(false);
         };
         if let Some((units, line)) = header.units {
             if let Some(before) = self.units.as_ref().filter(|before| **before != units) {
                 let expected = format!("the units `{before}` of the earlier snapshots");
-                return Err(ReadError::at(self.blocks.name(), line, expected, quoted(&units)));
+                return Err(ReadError::at(self.lines.name(), line, expected, quoted(&units)));
             }
             self.units = Some(units);
         }
         if let Some(last) = self.last_step.filter(|last| header.step < *last) {
             let expected = format!("a step of at least {last}, the step of the previous snapshot");
-            return Err(ReadError::at(self.blocks.name(), header.step_line, expected, header.step.to_string()));
+            return Err(ReadError::at(self.lines.name(), header.step_line, expected, header.step.to_string()));
         }
         let is_repeated = self.last_step == Some(header.step) && snapshot.step == header.step;
         let before = is_repeated.then(|| snapshot.clone());
@@ -97,35 +100,34 @@ impl<'r> DumpReader<'r> {
         snapshot.units.clone_from(&self.units);
         snapshot.kind = header.kind;
         (snapshot.bounds, snapshot.tilt, snapshot.periodic) = (header.bounds, header.tilt, header.periodic);
-        snapshot.first_line = self.blocks.number() + 1;
+        snapshot.first_line = self.lines.number() + 1;
         // Memory grows with the rows that are present, not with the declared number.
         snapshot.values.clear();
         if header.rows > self.most_rows {
             let expected = format!("at most {} rows, because the scene has no more", self.most_rows);
-            return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, header.rows.to_string()));
+            return Err(self.lines.error(expected, header.rows.to_string()));
         }
         for row in 0..header.rows {
             let read = self.read_row(row, header.rows, snapshot);
-            read.map_err(|error| self.blocks.cut_if_unended(error))?;
+            read.map_err(|error| self.lines.cut_if_unended(error))?;
             if snapshot.values.len() > MOST_NUMBERS {
                 let expected = format!("at most {MOST_NUMBERS} numbers in a snapshot");
-                return Err(ReadError::at(self.blocks.name(), self.blocks.number(), expected, "more"));
+                return Err(self.lines.error(expected, "more"));
             }
         }
         if let Some(column) = snapshot.column("id").filter(|_| snapshot.kind == DumpKind::Atoms) {
-            self.ids.check(self.blocks.name(), snapshot, column)?;
+            self.ids.check(self.lines.name(), snapshot, column)?;
         }
         if let Some(before) = before {
-            snapshot.check_repeated(self.blocks.name(), &before)?;
+            snapshot.check_repeated(self.lines.name(), &before)?;
         }
         Ok(true)
     }
 
     fn read_row(&mut self, row: u64, rows: u64, snapshot: &mut DumpSnapshot) -> Result<(), ReadError> {
         let place = || format!("row {} of {rows}", row + 1);
-        let number = self.blocks.number();
-        let Some(line) = self.blocks.next_line()? else {
-            return Err(ReadError::at(self.blocks.name(), number.max(1), place(), "the end of the file").cut());
+        let Some(line) = self.lines.next_line()? else {
+            return Err(self.lines.error(place(), "the end of the file").cut());
         };
         if line.bytes.starts_with(b"ITEM:") {
             let found = quoted(line.text()?.text.trim_end());
@@ -139,10 +141,6 @@ impl<'r> DumpReader<'r> {
             return Err(error.with_column(column));
         }
         Ok(())
-    }
-
-    fn error(&self, expected: &str, found: &str) -> ReadError {
-        ReadError::at(self.blocks.name(), self.blocks.number().max(1), expected, found)
     }
 }
 

@@ -1,8 +1,7 @@
 //! Header of a snapshot in a dump.
 
-use crate::read::blocks::Blocks;
 use crate::read::fields::Fields;
-use crate::read::line_reader::Line;
+use crate::read::lines::{Line, Lines};
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpKind;
@@ -49,14 +48,13 @@ struct Bounds {
 
 impl DumpHeader {
     /// Reads the items of a header up to the item with the column names. Returns `None` at the end of the file.
-    pub(crate) fn read(blocks: &mut Blocks<'_>) -> Result<Option<Self>, ReadError> {
+    pub(crate) fn read(lines: &mut Lines<'_>) -> Result<Option<Self>, ReadError> {
         let mut parts = Parts::default();
         let mut any = false;
         loop {
-            let Some(line) = blocks.next_line()? else {
-                return if any { Err(missing(blocks, "the rest of the header")) } else { Ok(None) };
+            let Some(line) = lines.next_text()? else {
+                return if any { Err(missing(lines, "the rest of the header")) } else { Ok(None) };
             };
-            let line = line.text()?;
             let text = line.text.trim_end();
             if text.is_empty() && !any {
                 continue;
@@ -66,20 +64,20 @@ impl DumpHeader {
                 return Err(not_an_item(line, text));
             };
             match item.split_whitespace().collect::<Vec<_>>()[..] {
-                ["TIMESTEP"] => parts.read_step(blocks)?,
+                ["TIMESTEP"] => parts.read_step(lines)?,
                 ["TIME"] => {
-                    parts.time = Some(one(blocks, "the time", |fields| fields.finite("a time, a finite number"))?);
+                    parts.time = Some(one(lines, "the time", |fields| fields.finite("a time, a finite number"))?);
                 }
-                ["UNITS"] => parts.read_units(blocks)?,
+                ["UNITS"] => parts.read_units(lines)?,
                 ["NUMBER", "OF", word] => {
                     let word = word.to_owned();
                     let what = format!("a number of rows of at most {MOST_ROWS}");
-                    let rows = one(blocks, &what, |fields| fields.whole_up_to(&what, 0, MOST_ROWS))?;
+                    let rows = one(lines, &what, |fields| fields.whole_up_to(&what, 0, MOST_ROWS))?;
                     parts.rows = Some((rows, word));
                 }
                 ["BOX", "BOUNDS", ref words @ ..] => {
                     let (periodic, is_tilted) = boundaries(line, words)?;
-                    parts.read_bounds(blocks, periodic, is_tilted)?;
+                    parts.read_bounds(lines, periodic, is_tilted)?;
                 }
                 [word, ref columns @ ..] if parts.rows.as_ref().is_some_and(|(_, rows)| rows == word) => {
                     return parts.finish(line, word, columns).map(Some);
@@ -91,16 +89,15 @@ impl DumpHeader {
 }
 
 impl Parts {
-    fn read_step(&mut self, blocks: &mut Blocks<'_>) -> Result<(), ReadError> {
+    fn read_step(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
         let what = "a step, a whole number";
-        let step = one(blocks, what, |fields| fields.whole(what, 0))?;
-        self.step = Some((step, blocks.number()));
+        let step = one(lines, what, |fields| fields.whole(what, 0))?;
+        self.step = Some((step, lines.number()));
         Ok(())
     }
 
-    fn read_units(&mut self, blocks: &mut Blocks<'_>) -> Result<(), ReadError> {
-        let Some(line) = blocks.next_line()? else { return Err(missing(blocks, "the name of a unit system")) };
-        let line = line.text()?;
+    fn read_units(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
+        let Some(line) = lines.next_text()? else { return Err(missing(lines, "the name of a unit system")) };
         let word = line.text.trim();
         if word.is_empty() || word.contains(char::is_whitespace) {
             return Err(line.error("the name of a unit system", quoted(word)));
@@ -109,18 +106,18 @@ impl Parts {
         Ok(())
     }
 
-    fn read_bounds(&mut self, blocks: &mut Blocks<'_>, periodic: [bool; 3], is_tilted: bool) -> Result<(), ReadError> {
+    fn read_bounds(&mut self, lines: &mut Lines<'_>, periodic: [bool; 3], is_tilted: bool) -> Result<(), ReadError> {
         let (mut low, mut high, mut tilt) = ([0.0; 3], [0.0; 3], [0.0; 3]);
         for axis in 0..3 {
             let numbers = if is_tilted { "two numbers and a tilt" } else { "two numbers" };
             let what = format!("the bounds of the box along {}, {numbers}", ["x", "y", "z"][axis]);
-            [low[axis], high[axis], tilt[axis]] = one(blocks, &what, |fields| {
+            [low[axis], high[axis], tilt[axis]] = one(lines, &what, |fields| {
                 let tilt = |fields: &mut Fields<'_>| if is_tilted { fields.finite(&what) } else { Ok(0.0) };
                 Ok([fields.finite(&what)?, fields.finite(&what)?, tilt(fields)?])
             })?;
             if low[axis] > high[axis] {
                 let (expected, found) = ("a lower bound that is not above the upper bound", format!("{:?}", low[axis]));
-                return Err(ReadError::at(blocks.name(), blocks.number(), expected, found));
+                return Err(lines.error(expected, found));
             }
         }
         self.bounds = Some(Bounds { low, high, tilt, periodic });
@@ -199,18 +196,17 @@ fn boundaries(line: Line<'_>, words: &[&str]) -> Result<([bool; 3], bool), ReadE
 
 /// Reads the value of an item that consists of one line.
 fn one<T>(
-    blocks: &mut Blocks<'_>,
+    lines: &mut Lines<'_>,
     what: &str,
     read: impl FnOnce(&mut Fields<'_>) -> Result<T, ReadError>,
 ) -> Result<T, ReadError> {
-    let Some(line) = blocks.next_line()? else { return Err(missing(blocks, what)) };
-    let line = line.text()?;
+    let Some(line) = lines.next_text()? else { return Err(missing(lines, what)) };
     let mut fields = Fields::between_blanks(line, line.text);
     let value = read(&mut fields)?;
     fields.end(what)?;
     Ok(value)
 }
 
-fn missing(blocks: &Blocks<'_>, what: &str) -> ReadError {
-    ReadError::at(blocks.name(), blocks.number().max(1), what, "the end of the file").cut()
+fn missing(lines: &Lines<'_>, what: &str) -> ReadError {
+    lines.error(what, "the end of the file").cut()
 }

@@ -2,7 +2,7 @@
 
 use std::str::FromStr;
 
-use crate::read::line_reader::Line;
+use crate::read::lines::Line;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Reader of the fields of a line. Each error names the column (in characters) of the field.

@@ -1,10 +1,9 @@
 //! Logs that LAMMPS and LIGGGHTS print during a run.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader};
+use std::io::BufRead;
 use std::path::Path;
 
-use crate::read::line_reader::{Line, LineReader};
+use crate::read::lines::{Line, Lines, opened};
 use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::table::Table;
@@ -69,9 +68,7 @@ impl Log {
 /// # Errors
 /// If the file cannot be read or is not a log that [`parse_log`] reads.
 pub fn read_log(path: &Path) -> Result<Log, ReadError> {
-    let name = path.to_string_lossy();
-    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-    parse_log(BufReader::new(file), &name)
+    parse_log(opened(path)?, &path.to_string_lossy())
 }
 
 /// Reads a log with `thermo_style one` or `custom`. `name` is the name of the log in error messages.
@@ -82,10 +79,10 @@ pub fn read_log(path: &Path) -> Result<Log, ReadError> {
 /// If the input cannot be read or contains no run, if a step has several lines of thermodynamic output, or if a row
 /// does not have one number per column.
 pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
-    let mut lines = LineReader::new(reader, name)?;
+    let mut lines = Lines::new(reader, name)?;
     let mut log = Log::default();
     let mut expected = ExpectedLine::Text;
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_text()? {
         let words = || line.text.split_whitespace();
         if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
             log.version = Some(line.text.trim().to_owned());
@@ -138,7 +135,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     }
     if log.runs.is_empty() {
         let found = if lines.number() == 0 { "an empty file" } else { "none" };
-        return Err(lines.error_at_end("a run: a line of names such as `Step Time KinEng`, and rows", found));
+        return Err(lines.error("a run: a line of names such as `Step Time KinEng`, and rows", found));
     }
     Ok(log)
 }

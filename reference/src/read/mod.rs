@@ -3,7 +3,6 @@
 
 pub(crate) mod atom;
 mod binary;
-mod blocks;
 pub(crate) mod contacts;
 pub(crate) mod data_file;
 mod data_header;
@@ -16,7 +15,7 @@ mod fields;
 pub(crate) mod format;
 pub(crate) mod grain_table;
 pub(crate) mod ids;
-pub(crate) mod line_reader;
+pub(crate) mod lines;
 pub(crate) mod log;
 pub(crate) mod npz;
 mod number_table;

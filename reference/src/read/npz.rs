@@ -4,11 +4,11 @@
 
 use super::binary::Number;
 use super::digits::Digits;
+use super::lines::opened;
 use super::numbers::NumberColumn;
 use super::read_error::{ReadError, quoted};
 use super::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use std::collections::BTreeMap;
-use std::fs::File;
 use std::io::Read;
 use std::ops::Range;
 use std::path::Path;
@@ -241,10 +241,9 @@ fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Co
 
 /// Returns all arrays of a file by name.
 fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError> {
-    let file = File::open(path).map_err(|error| ReadError::opening(name, error))?;
     let damaged =
         |error: zip::result::ZipError| ReadError::at(name, 1, "a complete `.npz` file", quoted(&error.to_string()));
-    let mut archive = ZipArchive::new(file).map_err(damaged)?;
+    let mut archive = ZipArchive::new(opened(path)?).map_err(damaged)?;
     let mut arrays = BTreeMap::new();
     let mut left = MOST;
     for place in 0..archive.len() {

@@ -1,7 +1,7 @@
 //! Parser of rows of numbers that are separated by blanks or by another separator.
 
-use crate::read::blocks::RawLine;
 use crate::read::digits::Digits;
+use crate::read::lines::RawLine;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Column of a table of numbers.

@@ -1,10 +1,9 @@
 //! Tables of numbers with column names, as CSV or Parquet.
 
-use std::fs::File;
-use std::io::{BufRead, BufReader, Read, Seek};
+use std::io::BufRead;
 use std::path::Path;
 
-use crate::read::line_reader::blocks;
+use crate::read::lines::{Lines, opened};
 use crate::read::number_table::MOST_NUMBERS;
 pub use crate::read::number_table::Table;
 use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
@@ -17,14 +16,12 @@ use crate::read::read_error::{ReadError, quoted};
 /// If the file cannot be read or is not a table that [`parse_table`] reads.
 pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     let name = path.to_string_lossy();
-    let mut file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-    let mut mark = Vec::new();
-    let marked = (&file).take(parquet::MARK.len() as u64).read_to_end(&mut mark).and_then(|_| file.rewind());
-    marked.map_err(|error| ReadError::reading(&name, 1, error))?;
-    if mark == parquet::MARK {
-        return parquet::read(file, &name);
+    let mut file = opened(path)?;
+    let beginning = file.fill_buf().map_err(|error| ReadError::reading(&name, 1, error))?;
+    if beginning.starts_with(parquet::MARK) {
+        return parquet::read(file.into_inner(), &name);
     }
-    parse_table(BufReader::new(file), &name)
+    parse_table(file, &name)
 }
 
 /// Returns the separator in a line of column names, and the names.
@@ -44,7 +41,7 @@ pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
 /// If the input cannot be read, has no names, a repeated name or no row, or if a row has a missing or additional field,
 /// or a number that is not finite.
 pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
-    let mut lines = blocks(reader, name)?;
+    let mut lines = Lines::new(reader, name)?;
     let mut form = RowForm { separator: None, not_finite: NonFiniteNumbers::Refused };
     let mut table = Table::default();
     while let Some(line) = lines.next_line()? {
@@ -76,12 +73,11 @@ pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError>
             table.columns.push(NumberColumn::new(field));
         }
     }
-    let line = lines.number().max(1);
     if table.columns.is_empty() {
-        return Err(ReadError::at(name, line, "a line with the names of the columns", "an empty file"));
+        return Err(lines.error("a line with the names of the columns", "an empty file"));
     }
     if table.rows() == 0 {
-        return Err(ReadError::at(name, line, "at least one row below the names", "none"));
+        return Err(lines.error("at least one row below the names", "none"));
     }
     Ok(table)
 }

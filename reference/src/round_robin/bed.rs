@@ -1,10 +1,8 @@
 //! Shared initial states of the impact case: tables of spheres, namely the grains of a bed and one ball.
 
 use super::atoms::{DENSITY_M1, atoms, coordinates};
-use crate::read::line_reader::LineReader;
+use crate::read::lines::Lines;
 use crate::read::read_error::{ReadError, quoted};
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Radius of the grains of the bed and radius of the ball (m).
@@ -42,15 +40,14 @@ pub fn bed_in(folder: &Path, thousands: usize) -> Option<PathBuf> {
 pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
     let file = path.to_string_lossy();
     let count = thousands * 1000;
-    let input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
-    let mut lines = LineReader::new(input, &file)?;
-    let titles = lines.next_line()?.map_or("", |line| line.text.trim()).to_owned();
+    let mut lines = Lines::open(path)?;
+    let titles = lines.next_text()?.map_or("", |line| line.text.trim()).to_owned();
     if titles.is_empty() || titles.split_whitespace().all(|title| title.parse::<f64>().is_ok()) {
         return Err(ReadError::at(&file, 1, "a line of titles", quoted(&titles)));
     }
     let mut balls = Vec::new();
     let mut grains = Vec::new();
-    while let Some(line) = lines.next_line()? {
+    while let Some(line) = lines.next_text()? {
         if line.text.trim().is_empty() {
             continue;
         }
@@ -73,7 +70,7 @@ pub fn read_bed(path: &Path, thousands: usize) -> Result<Bed, ReadError> {
         _ => {
             let ball = if balls.is_empty() { "no ball" } else { "one ball" };
             let found = format!("{} grains and {ball} at the end of the file", grains.len());
-            Err(lines.error_at_end(format!("{count} grains and one ball"), found))
+            Err(lines.error(format!("{count} grains and one ball"), found))
         }
     }
 }

@@ -2,10 +2,8 @@
 //! centre of the drum.
 
 use super::atoms::{DENSITY_M1, atoms, coordinates};
-use crate::read::line_reader::LineReader;
+use crate::read::lines::Lines;
 use crate::read::read_error::{ReadError, quoted};
-use std::fs::File;
-use std::io::BufReader;
 use std::path::{Path, PathBuf};
 
 /// Centre of the drum in the coordinates of the file (m).
@@ -38,18 +36,17 @@ pub fn start_in(folder: &Path) -> std::io::Result<Option<PathBuf>> {
 /// If the file cannot be read or a line is not valid.
 pub fn read_start(path: &Path) -> Result<Start, ReadError> {
     let file = path.to_string_lossy();
-    let input = BufReader::new(File::open(path).map_err(|error| ReadError::opening(&file, error))?);
-    let mut lines = LineReader::new(input, &file)?;
-    let first = lines.next_line()?.map_or("", |line| line.text.trim()).to_owned();
+    let mut lines = Lines::open(path)?;
+    let first = lines.next_text()?.map_or("", |line| line.text.trim()).to_owned();
     let count = first.parse().ok().filter(|count| (1..=MOST).contains(count));
     let count =
         count.ok_or_else(|| ReadError::at(&file, 1, format!("a number of grains up to {MOST}"), quoted(&first)))?;
-    lines.next_line()?;
+    lines.next_text()?;
     let mut start = Start::default();
     for row in 0..count {
         let expected = || format!("type (0 or 1), x, y and z, for grain {} of {count}", row + 1);
         let place = row as u64 + 3;
-        let line = lines.next_line()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
+        let line = lines.next_text()?.ok_or_else(|| ReadError::at(&file, place, expected(), "the end of the file"))?;
         let mut fields = line.text.split_whitespace();
         let kind = fields.next().and_then(|kind| ["0", "1"].iter().position(|known| *known == kind));
         let numbers = coordinates(fields);

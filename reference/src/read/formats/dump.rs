@@ -2,11 +2,9 @@
 
 use crate::read::dump::DumpReader;
 use crate::read::format::{FileContent, Format, FormatCriterion, Moments};
-use crate::read::line_reader::LineReader;
+use crate::read::lines::Lines;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use std::fs::File;
-use std::io::BufReader;
 use std::path::Path;
 
 pub(crate) static FORMAT: Format = Format {
@@ -27,10 +25,10 @@ impl Moments for DumpReader<'_> {
 fn first_step(path: &Path) -> Option<u64> {
     /// Maximum number of lines up to and including the step. Units and time may precede it.
     const MOST_LINES: usize = 8;
-    let mut lines = LineReader::new(BufReader::new(File::open(path).ok()?), &path.to_string_lossy()).ok()?;
+    let mut lines = Lines::open(path).ok()?;
     let mut is_next = false;
     for _ in 0..MOST_LINES {
-        let line = lines.next_line().ok()??;
+        let line = lines.next_text().ok()??;
         if is_next {
             return line.text.trim().parse().ok();
         }

@@ -16,11 +16,11 @@ pub(crate) use hdf::{MARK, has_steps, read_moments};
 pub(crate) use points::{component, is_id};
 
 use super::decoding::{InputContent, decoded};
+use super::lines::opened;
 use super::read_error::ReadError;
 use super::snapshot::DumpSnapshot;
 use bytes::Bytes;
-use std::fs::File;
-use std::io::{BufReader, Read};
+use std::io::Read;
 use std::path::Path;
 
 /// Maximum size of a file after decompression (B).
@@ -73,8 +73,7 @@ fn parse(name: &str, bytes: &[u8]) -> Result<DumpSnapshot, ReadError> {
 /// Reads all bytes of a file and decompresses them.
 fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.to_string_lossy();
-    let file = File::open(path).map_err(|error| ReadError::opening(&name, error))?;
-    let reader = match decoded(BufReader::new(file)).map_err(|error| ReadError::reading(&name, 1, error))? {
+    let reader = match decoded(opened(path)?).map_err(|error| ReadError::reading(&name, 1, error))? {
         InputContent::Text(reader) => reader,
         InputContent::Unreadable(found) => return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found)),
     };

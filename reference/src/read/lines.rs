@@ -1,12 +1,15 @@
-//! Lines of an input as bytes. The input is read in large blocks, and lines are not copied.
+//! Lines of an input with their numbers. The input is read in large blocks, and lines are not copied.
 
-use std::io::{ErrorKind, Read};
+use std::fs::File;
+use std::io::{BufRead, BufReader, ErrorKind, Read};
+use std::path::Path;
 
+use crate::read::decoding::{InputContent, decoded};
 use crate::read::read_error::{ReadError, quoted};
 
 /// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends is refused
 /// before it fills the memory.
-pub(crate) const LONGEST_LINE: usize = 1 << 16;
+const LONGEST_LINE: usize = 1 << 16;
 
 /// Size of a read request (B).
 const BLOCK: usize = 1 << 18;
@@ -52,8 +55,8 @@ impl<'l> Line<'l> {
     }
 }
 
-/// Reader that splits an input into lines.
-pub(crate) struct Blocks<'r> {
+/// Reader of the lines of an input, which may be plain, gzip or zstd.
+pub(crate) struct Lines<'r> {
     reader: Box<dyn Read + 'r>,
     name: String,
     buffer: Vec<u8>,
@@ -67,18 +70,27 @@ pub(crate) struct Blocks<'r> {
     ended: bool,
 }
 
-impl<'r> Blocks<'r> {
-    pub(crate) fn new(reader: Box<dyn Read + 'r>, name: &str) -> Self {
-        Self {
-            reader,
-            name: name.to_owned(),
-            buffer: vec![0; BLOCK],
-            start: 0,
-            end: 0,
-            at_end: false,
-            number: 0,
-            ended: true,
-        }
+/// Opens the file at a path.
+pub(crate) fn opened(path: &Path) -> Result<BufReader<File>, ReadError> {
+    let file = File::open(path).map_err(|error| ReadError::opening(&path.to_string_lossy(), error))?;
+    Ok(BufReader::new(file))
+}
+
+impl<'r> Lines<'r> {
+    /// Opens the lines of the file at a path.
+    pub(crate) fn open(path: &Path) -> Result<Self, ReadError> {
+        Self::new(opened(path)?, &path.to_string_lossy())
+    }
+
+    pub(crate) fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
+        let reader = match decoded(reader).map_err(|error| ReadError::reading(name, 1, error))? {
+            InputContent::Text(reader) => reader,
+            InputContent::Unreadable(found) => {
+                return Err(ReadError::at(name, 1, "plain text, gzip or zstd", found));
+            }
+        };
+        let (name, buffer) = (name.to_owned(), vec![0; BLOCK]);
+        Ok(Self { reader, name, buffer, start: 0, end: 0, at_end: false, number: 0, ended: true })
     }
 
     /// Returns the name of the input for error messages.
@@ -91,12 +103,22 @@ impl<'r> Blocks<'r> {
         self.number
     }
 
+    /// Returns an error at the last returned line, or at line 1 before the first.
+    pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        ReadError::at(&self.name, self.number.max(1), expected, found)
+    }
+
     /// Returns the error, marked as a truncation if the last returned line has no line end.
     pub(crate) fn cut_if_unended(&self, error: ReadError) -> ReadError {
         if self.ended { error } else { error.cut() }
     }
 
-    /// Returns the next line, or `None` at the end of the input.
+    /// Returns the next line as text, or `None` at the end of the input. A line that is not text is an error.
+    pub(crate) fn next_text(&mut self) -> Result<Option<Line<'_>>, ReadError> {
+        self.next_line()?.map(RawLine::text).transpose()
+    }
+
+    /// Returns the next line as bytes, or `None` at the end of the input.
     pub(crate) fn next_line(&mut self) -> Result<Option<RawLine<'_>>, ReadError> {
         let mut searched = 0;
         let length = loop {
@@ -184,4 +206,46 @@ fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
 fn last_characters(text: &str) -> String {
     let skipped = text.chars().count().saturating_sub(20);
     text.chars().skip(skipped).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn fault(bytes: &[u8]) -> String {
+        let mut lines = Lines::new(bytes, "f").unwrap();
+        loop {
+            match lines.next_text() {
+                Ok(Some(_)) => {}
+                Ok(None) => return "none".to_owned(),
+                Err(error) => return error.to_string(),
+            }
+        }
+    }
+
+    #[test]
+    fn names_the_byte_that_is_no_text() {
+        assert_eq!(fault(b"fine\nab\xffcd\n"), "f:2:3: expected plain text, found the byte 0xff after `ab`");
+        assert_eq!(fault(b"\x00ELF"), "f:1:1: expected plain text, found the byte 0x00");
+        assert_eq!(fault("tab\tand é\r\n".as_bytes()), "none");
+    }
+
+    #[test]
+    fn bounds_the_line() {
+        assert_eq!(fault(&[b'x'; LONGEST_LINE]), "none");
+        assert_eq!(
+            fault(&[b'x'; LONGEST_LINE + 1]),
+            "f:1: expected a line of at most 65536 bytes, found a longer line"
+        );
+    }
+
+    #[test]
+    fn reads_a_last_line_without_end() {
+        let mut lines = Lines::new(&b"a\n\nb"[..], "f").unwrap();
+        let mut all = Vec::new();
+        while let Some(line) = lines.next_text().unwrap() {
+            all.push((line.number, line.text.to_owned()));
+        }
+        assert_eq!(all, [(1, "a".to_owned()), (2, String::new()), (3, "b".to_owned())]);
+    }
 }
