@@ -23,8 +23,7 @@ pub mod stored;
 
 pub use execution::process::{end_programs_at, has_ended_programs};
 pub use first_sample::read_start;
-pub use read::atom::Atom;
-pub use read::data_file::{DataFile, parse_data, read_data_file};
+pub use read::data_file::{Atom, DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
 pub use read::dump::DumpReader;
 pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};

@@ -72,7 +72,7 @@ impl DumpHeader {
                 ["NUMBER", "OF", word] => {
                     let word = word.to_owned();
                     let what = format!("a number of rows of at most {MOST_ROWS}");
-                    let rows = one(lines, &what, |fields| fields.whole_up_to(&what, 0, MOST_ROWS))?;
+                    let rows = one(lines, &what, |fields| fields.whole(&what, 0..=MOST_ROWS))?;
                     parts.rows = Some((rows, word));
                 }
                 ["BOX", "BOUNDS", ref words @ ..] => {
@@ -91,7 +91,7 @@ impl DumpHeader {
 impl Parts {
     fn read_step(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
         let what = "a step, a whole number";
-        let step = one(lines, what, |fields| fields.whole(what, 0))?;
+        let step = one(lines, what, |fields| fields.whole(what, 0..))?;
         self.step = Some((step, lines.number()));
         Ok(())
     }
@@ -201,7 +201,7 @@ fn one<T>(
     read: impl FnOnce(&mut Fields<'_>) -> Result<T, ReadError>,
 ) -> Result<T, ReadError> {
     let Some(line) = lines.next_text()? else { return Err(missing(lines, what)) };
-    let mut fields = Fields::between_blanks(line, line.text);
+    let mut fields = Fields::new(line, line.text);
     let value = read(&mut fields)?;
     fields.end(what)?;
     Ok(value)

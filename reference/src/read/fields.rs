@@ -1,5 +1,6 @@
 //! Fields of a line, read one after the other.
 
+use std::ops::RangeBounds;
 use std::str::FromStr;
 
 use crate::read::lines::Line;
@@ -15,23 +16,17 @@ pub(crate) struct Fields<'l> {
 
 impl<'l> Fields<'l> {
     /// Returns a reader of fields separated by blanks. `content` is the part of `line` before a comment.
-    pub(crate) fn between_blanks(line: Line<'l>, content: &'l str) -> Self {
+    pub(crate) fn new(line: Line<'l>, content: &'l str) -> Self {
         Self { line, content, offset: 0 }
     }
 
-    /// Reads a whole number not less than `smallest`.
-    pub(crate) fn whole<T: FromStr + PartialOrd>(&mut self, what: &str, smallest: T) -> Result<T, ReadError> {
-        self.parsed(what, |value| *value >= smallest)
-    }
-
-    /// Reads a whole number from `smallest` to `largest`.
-    pub(crate) fn whole_up_to<T: FromStr + PartialOrd>(
+    /// Reads a whole number within a range.
+    pub(crate) fn whole<T: FromStr + PartialOrd>(
         &mut self,
         what: &str,
-        smallest: T,
-        largest: T,
+        range: impl RangeBounds<T>,
     ) -> Result<T, ReadError> {
-        self.parsed(what, |value| *value >= smallest && *value <= largest)
+        self.parsed(what, |value| range.contains(value))
     }
 
     /// Reads a finite number.

@@ -1,12 +1,9 @@
 //! Readers for files, one per format. A reader returns the content of a file or an error. The error names the file and
 //! the position, and states the expected and the actual content.
 
-pub(crate) mod atom;
 mod binary;
 pub(crate) mod contacts;
 pub(crate) mod data_file;
-mod data_header;
-mod data_parser;
 pub(crate) mod decoding;
 pub(crate) mod digits;
 pub(crate) mod dump;
