@@ -1,6 +1,7 @@
 //! Text dumps of LAMMPS and LIGGGHTS (`dump custom`, `dump atom` and `dump local`), read one snapshot at a time.
 
 use std::io::BufRead;
+use std::mem;
 use std::path::Path;
 
 use crate::read::dump_header::DumpHeader;
@@ -70,45 +71,41 @@ impl<'r> DumpReader<'r> {
     /// other numbers, or if the id of an atom is repeated. See [`ReadError`].
     pub fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let header = DumpHeader::read(&mut self.lines).map_err(|error| self.lines.cut_if_unended(error))?;
-        let Some(header) = header else {
+        let Some(DumpHeader { snapshot: mut next, step_line, units_line, rows, .. }) = header else {
             if self.last_step.is_none() {
                 return Err(self.lines.error("a dump that begins with `ITEM: TIMESTEP`", "an empty file"));
             }
             return Ok(false);
         };
-        if let Some((units, line)) = header.units {
+        if let Some(units) = next.units.take() {
             if let Some(before) = self.units.as_ref().filter(|before| **before != units) {
                 let expected = format!("the units `{before}` of the earlier snapshots");
-                return Err(ReadError::at(self.lines.name(), line, expected, quoted(&units)));
+                return Err(ReadError::at(self.lines.name(), units_line, expected, quoted(&units)));
             }
             self.units = Some(units);
         }
-        if let Some(last) = self.last_step.filter(|last| header.step < *last) {
+        if let Some(last) = self.last_step.filter(|last| next.step < *last) {
             let expected = format!("a step of at least {last}, the step of the previous snapshot");
-            return Err(ReadError::at(self.lines.name(), header.step_line, expected, header.step.to_string()));
+            return Err(ReadError::at(self.lines.name(), step_line, expected, next.step.to_string()));
         }
-        let is_repeated = self.last_step == Some(header.step) && snapshot.step == header.step;
+        let is_repeated = self.last_step == Some(next.step) && snapshot.step == next.step;
         let before = is_repeated.then(|| snapshot.clone());
-        self.last_step = Some(header.step);
-        let same = snapshot.columns.len() == header.columns.len()
-            && snapshot.columns.iter().zip(&header.columns).all(|(old, new)| old.name == new.name);
-        if !same {
-            snapshot.columns = header.columns;
+        self.last_step = Some(next.step);
+        if snapshot.columns.iter().map(|column| &column.name).eq(next.columns.iter().map(|column| &column.name)) {
+            next.columns = mem::take(&mut snapshot.columns);
         }
-        snapshot.step = header.step;
-        snapshot.time = header.time;
-        snapshot.units.clone_from(&self.units);
-        snapshot.kind = header.kind;
-        (snapshot.bounds, snapshot.tilt, snapshot.periodic) = (header.bounds, header.tilt, header.periodic);
-        snapshot.first_line = self.lines.number() + 1;
         // Memory grows with the rows that are present, not with the declared number.
-        snapshot.values.clear();
-        if header.rows > self.most_rows {
+        next.values = mem::take(&mut snapshot.values);
+        next.values.clear();
+        next.units.clone_from(&self.units);
+        next.first_line = self.lines.number() + 1;
+        *snapshot = next;
+        if rows > self.most_rows {
             let expected = format!("at most {} rows, because the scene has no more", self.most_rows);
-            return Err(self.lines.error(expected, header.rows.to_string()));
+            return Err(self.lines.error(expected, rows.to_string()));
         }
-        for row in 0..header.rows {
-            let read = self.read_row(row, header.rows, snapshot);
+        for row in 0..rows {
+            let read = self.read_row(row, rows, snapshot);
             read.map_err(|error| self.lines.cut_if_unended(error))?;
             if snapshot.values.len() > MOST_NUMBERS {
                 let expected = format!("at most {MOST_NUMBERS} numbers in a snapshot");

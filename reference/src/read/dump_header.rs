@@ -4,52 +4,31 @@ use crate::read::fields::Fields;
 use crate::read::lines::{Line, Lines};
 use crate::read::numbers::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
-use crate::read::snapshot::DumpKind;
+use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
 /// Maximum number of rows in a snapshot. More rows would not fit in memory, and the limit prevents an overflow of line
 /// numbers.
 const MOST_ROWS: u64 = u32::MAX as u64;
 
 /// Header of one snapshot.
-pub(crate) struct DumpHeader {
-    pub(crate) step: u64,
-    /// Line number of the step.
-    pub(crate) step_line: u64,
-    pub(crate) time: Option<f64>,
-    /// Unit system and its line number.
-    pub(crate) units: Option<(String, u64)>,
-    pub(crate) kind: DumpKind,
-    pub(crate) rows: u64,
-    pub(crate) bounds: ([f64; 3], [f64; 3]),
-    /// Tilts `xy`, `xz` and `yz` of the box.
-    pub(crate) tilt: [f64; 3],
-    pub(crate) periodic: [bool; 3],
-    pub(crate) columns: Vec<NumberColumn>,
-}
-
-/// Items of a header that have been read so far.
 #[derive(Default)]
-struct Parts {
-    step: Option<(u64, u64)>,
-    time: Option<f64>,
-    units: Option<(String, u64)>,
-    /// Number of rows, and the word for a row, such as `ATOMS`.
-    rows: Option<(u64, String)>,
-    bounds: Option<Bounds>,
-}
-
-/// Box of a snapshot.
-struct Bounds {
-    low: [f64; 3],
-    high: [f64; 3],
-    tilt: [f64; 3],
-    periodic: [bool; 3],
+pub(crate) struct DumpHeader {
+    /// Snapshot without rows.
+    pub(crate) snapshot: DumpSnapshot,
+    /// Line number of the step; 0 before the step has been read.
+    pub(crate) step_line: u64,
+    /// Line number of the unit system.
+    pub(crate) units_line: u64,
+    pub(crate) rows: u64,
+    /// Word for a row, such as `ATOMS`; empty before the number of rows has been read.
+    row_word: String,
+    has_bounds: bool,
 }
 
 impl DumpHeader {
     /// Reads the items of a header up to the item with the column names. Returns `None` at the end of the file.
     pub(crate) fn read(lines: &mut Lines<'_>) -> Result<Option<Self>, ReadError> {
-        let mut parts = Parts::default();
+        let mut header = Self::default();
         let mut any = false;
         loop {
             let Some(line) = lines.next_text()? else {
@@ -64,36 +43,33 @@ impl DumpHeader {
                 return Err(not_an_item(line, text));
             };
             match item.split_whitespace().collect::<Vec<_>>()[..] {
-                ["TIMESTEP"] => parts.read_step(lines)?,
-                ["TIME"] => {
-                    parts.time = Some(one(lines, "the time", |fields| fields.finite("a time, a finite number"))?);
+                ["TIMESTEP"] => {
+                    let what = "a step, a whole number";
+                    header.snapshot.step = one(lines, what, |fields| fields.whole(what, 0..))?;
+                    header.step_line = lines.number();
                 }
-                ["UNITS"] => parts.read_units(lines)?,
+                ["TIME"] => {
+                    let time = one(lines, "the time", |fields| fields.finite("a time, a finite number"))?;
+                    header.snapshot.time = Some(time);
+                }
+                ["UNITS"] => header.read_units(lines)?,
                 ["NUMBER", "OF", word] => {
-                    let word = word.to_owned();
+                    header.row_word = word.to_owned();
                     let what = format!("a number of rows of at most {MOST_ROWS}");
-                    let rows = one(lines, &what, |fields| fields.whole(&what, 0..=MOST_ROWS))?;
-                    parts.rows = Some((rows, word));
+                    header.rows = one(lines, &what, |fields| fields.whole(&what, 0..=MOST_ROWS))?;
                 }
                 ["BOX", "BOUNDS", ref words @ ..] => {
                     let (periodic, is_tilted) = boundaries(line, words)?;
-                    parts.read_bounds(lines, periodic, is_tilted)?;
+                    header.snapshot.periodic = periodic;
+                    header.read_bounds(lines, is_tilted)?;
                 }
-                [word, ref columns @ ..] if parts.rows.as_ref().is_some_and(|(_, rows)| rows == word) => {
-                    return parts.finish(line, word, columns).map(Some);
+                [word, ref columns @ ..] if word == header.row_word => {
+                    header.finish(line, word, columns)?;
+                    return Ok(Some(header));
                 }
-                _ => return Err(parts.unknown(line, item)),
+                _ => return Err(header.unknown(line, item)),
             }
         }
-    }
-}
-
-impl Parts {
-    fn read_step(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
-        let what = "a step, a whole number";
-        let step = one(lines, what, |fields| fields.whole(what, 0..))?;
-        self.step = Some((step, lines.number()));
-        Ok(())
     }
 
     fn read_units(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
@@ -102,12 +78,12 @@ impl Parts {
         if word.is_empty() || word.contains(char::is_whitespace) {
             return Err(line.error("the name of a unit system", quoted(word)));
         }
-        self.units = Some((word.to_owned(), line.number));
+        (self.snapshot.units, self.units_line) = (Some(word.to_owned()), line.number);
         Ok(())
     }
 
-    fn read_bounds(&mut self, lines: &mut Lines<'_>, periodic: [bool; 3], is_tilted: bool) -> Result<(), ReadError> {
-        let (mut low, mut high, mut tilt) = ([0.0; 3], [0.0; 3], [0.0; 3]);
+    fn read_bounds(&mut self, lines: &mut Lines<'_>, is_tilted: bool) -> Result<(), ReadError> {
+        let DumpSnapshot { bounds: (low, high), tilt, .. } = &mut self.snapshot;
         for axis in 0..3 {
             let numbers = if is_tilted { "two numbers and a tilt" } else { "two numbers" };
             let what = format!("the bounds of the box along {}, {numbers}", ["x", "y", "z"][axis]);
@@ -116,23 +92,20 @@ impl Parts {
                 Ok([fields.finite(&what)?, fields.finite(&what)?, tilt(fields)?])
             })?;
             if low[axis] > high[axis] {
-                let (expected, found) = ("a lower bound that is not above the upper bound", format!("{:?}", low[axis]));
-                return Err(lines.error(expected, found));
+                let expected = "a lower bound that is not above the upper bound";
+                return Err(lines.error(expected, format!("{:?}", low[axis])));
             }
         }
-        self.bounds = Some(Bounds { low, high, tilt, periodic });
+        self.has_bounds = true;
         Ok(())
     }
 
-    fn finish(self, line: Line<'_>, word: &str, columns: &[&str]) -> Result<DumpHeader, ReadError> {
-        let needed = |what: &str| {
-            let expected = format!("`ITEM: {what}` before the columns");
-            line.error(expected, "none")
-        };
-        let (step, step_line) = self.step.ok_or_else(|| needed("TIMESTEP"))?;
-        let (rows, _) = self.rows.ok_or_else(|| needed("NUMBER OF ATOMS"))?;
-        let Bounds { low, high, tilt, periodic } = self.bounds.ok_or_else(|| needed("BOX BOUNDS"))?;
-        let kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
+    /// Checks that the header is complete, and adds the columns.
+    fn finish(&mut self, line: Line<'_>, word: &str, columns: &[&str]) -> Result<(), ReadError> {
+        let items = [(self.step_line > 0, "TIMESTEP"), (self.has_bounds, "BOX BOUNDS")];
+        if let Some((_, what)) = items.into_iter().find(|(is_there, _)| !is_there) {
+            return Err(line.error(format!("`ITEM: {what}` before the columns"), "none"));
+        }
         if columns.is_empty() {
             return Err(line.error(format!("names of columns after `ITEM: {word}`"), "none"));
         }
@@ -143,23 +116,14 @@ impl Parts {
                 );
             }
         }
-        let columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
-        Ok(DumpHeader {
-            step,
-            step_line,
-            time: self.time,
-            units: self.units,
-            kind,
-            rows,
-            bounds: (low, high),
-            tilt,
-            periodic,
-            columns,
-        })
+        self.snapshot.kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
+        self.snapshot.columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
+        Ok(())
     }
 
     fn unknown(&self, line: Line<'_>, item: &str) -> ReadError {
-        let columns = self.rows.as_ref().map_or_else(String::new, |(_, word)| format!(" or `{word} COLUMN…`"));
+        let word = &self.row_word;
+        let columns = if word.is_empty() { String::new() } else { format!(" or `{word} COLUMN…`") };
         let expected = format!(
             "`ITEM: ` with `TIMESTEP`, `TIME`, `UNITS`, `NUMBER OF ATOMS`, `NUMBER OF ENTRIES`, `BOX BOUNDS …`{columns}"
         );
