@@ -1,87 +1,80 @@
-//! Number types in files of VTK and NumPy.
+//! Types of binary numbers in files of VTK and NumPy.
 
 use crate::read::digits::Digits;
+use NumberKind::{Float, Signed, Unsigned};
 
-/// Number type.
+/// Kind of a binary number.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Number {
-    I8,
-    U8,
-    I16,
-    U16,
-    I32,
-    U32,
-    I64,
-    U64,
-    F32,
-    F64,
+pub(crate) enum NumberKind {
+    Signed,
+    Unsigned,
+    Float,
+}
+
+/// Type of a binary number.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Number {
+    kind: NumberKind,
+    /// Size of a number (B).
+    size: usize,
 }
 
 impl Number {
+    pub(crate) const U32: Self = Self { kind: Unsigned, size: 4 };
+    pub(crate) const U64: Self = Self { kind: Unsigned, size: 8 };
+
+    /// Returns the number type of a kind and size (B), or `None` if there is no such type.
+    pub(crate) fn new(kind: NumberKind, size: usize) -> Option<Self> {
+        let sizes: &[usize] = if kind == Float { &[4, 8] } else { &[1, 2, 4, 8] };
+        sizes.contains(&size).then_some(Self { kind, size })
+    }
+
     /// Returns the number type of a type name in a legacy VTK file.
     pub(crate) fn of_legacy(word: &str) -> Option<Self> {
-        Some(match word {
-            "char" | "vtktypechar" => Self::I8,
-            "unsigned_char" | "bit" => Self::U8,
-            "short" => Self::I16,
-            "unsigned_short" => Self::U16,
-            "int" => Self::I32,
-            "unsigned_int" => Self::U32,
-            "long" | "vtktypeint64" | "vtkIdType" => Self::I64,
-            "unsigned_long" | "vtktypeuint64" => Self::U64,
-            "float" => Self::F32,
-            "double" => Self::F64,
+        let (kind, size) = match word {
+            "char" | "vtktypechar" => (Signed, 1),
+            "unsigned_char" | "bit" => (Unsigned, 1),
+            "short" => (Signed, 2),
+            "unsigned_short" => (Unsigned, 2),
+            "int" => (Signed, 4),
+            "unsigned_int" => (Unsigned, 4),
+            "long" | "vtktypeint64" | "vtkIdType" => (Signed, 8),
+            "unsigned_long" | "vtktypeuint64" => (Unsigned, 8),
+            "float" => (Float, 4),
+            "double" => (Float, 8),
             _ => return None,
-        })
+        };
+        Self::new(kind, size)
     }
 
-    /// Returns the number type of a type name in an XML file.
+    /// Returns the number type of a type name in an XML file, such as `UInt8`.
     pub(crate) fn of_xml(word: &str) -> Option<Self> {
-        Some(match word {
-            "Int8" => Self::I8,
-            "UInt8" => Self::U8,
-            "Int16" => Self::I16,
-            "UInt16" => Self::U16,
-            "Int32" => Self::I32,
-            "UInt32" => Self::U32,
-            "Int64" => Self::I64,
-            "UInt64" => Self::U64,
-            "Float32" => Self::F32,
-            "Float64" => Self::F64,
-            _ => return None,
-        })
+        let kinds = [("Int", Signed), ("UInt", Unsigned), ("Float", Float)];
+        let (kind, bits) = kinds.into_iter().find_map(|(name, kind)| Some((kind, word.strip_prefix(name)?)))?;
+        let size = [("8", 1), ("16", 2), ("32", 4), ("64", 8)].into_iter().find(|(known, _)| *known == bits)?.1;
+        Self::new(kind, size)
     }
 
-    /// Returns the number type of a type name of NumPy, without its byte order.
+    /// Returns the number type of a type name of NumPy, such as `u1`, without its byte order.
     pub(crate) fn of_numpy(word: &str) -> Option<Self> {
-        Some(match word {
-            "i1" => Self::I8,
-            "u1" | "b1" => Self::U8,
-            "i2" => Self::I16,
-            "u2" => Self::U16,
-            "i4" => Self::I32,
-            "u4" => Self::U32,
-            "i8" => Self::I64,
-            "u8" => Self::U64,
-            "f4" => Self::F32,
-            "f8" => Self::F64,
-            _ => return None,
-        })
+        let (letter, size) = word.split_at_checked(1)?;
+        let size = [("1", 1), ("2", 2), ("4", 4), ("8", 8)].into_iter().find(|(known, _)| *known == size)?.1;
+        match (letter, size) {
+            ("i", _) => Self::new(Signed, size),
+            ("u", _) | ("b", 1) => Self::new(Unsigned, size),
+            ("f", _) => Self::new(Float, size),
+            _ => None,
+        }
     }
 
     /// Returns the size of a number (B).
     pub(crate) const fn size(self) -> usize {
-        match self {
-            Self::I8 | Self::U8 => 1,
-            Self::I16 | Self::U16 => 2,
-            Self::I32 | Self::U32 | Self::F32 => 4,
-            Self::I64 | Self::U64 | Self::F64 => 8,
-        }
+        self.size
     }
 
-    /// Returns the digits of binary numbers of this type.
-    pub(crate) fn digits(self) -> Digits {
-        if self == Self::F32 { Digits::exact().single() } else { Digits::exact() }
+    /// Returns the digits of numbers of this type from their printed digits.
+    pub(crate) fn digits(self, printed: Digits) -> Digits {
+        if (self.kind, self.size) == (Float, 4) { printed.single() } else { printed }
     }
 
     /// Decodes numbers from bytes, whose count is a multiple of the size. `is_big` is true for big-endian numbers.
@@ -92,16 +85,15 @@ impl Number {
                 wide[if is_big { chunk.len() - 1 - at } else { at }] = *byte;
             }
             let bits = u64::from_le_bytes(wide);
-            match self {
-                Self::I8 => f64::from(bits as u8 as i8),
-                Self::I16 => f64::from(bits as u16 as i16),
-                Self::I32 => f64::from(bits as u32 as i32),
-                Self::I64 => bits as i64 as f64,
-                Self::U8 | Self::U16 | Self::U32 | Self::U64 => bits as f64,
-                Self::F32 => f64::from(f32::from_bits(bits as u32)),
-                Self::F64 => f64::from_bits(bits),
+            let unused = 64 - 8 * self.size;
+            match (self.kind, self.size) {
+                // The shifts extend the sign.
+                (Signed, _) => ((bits << unused) as i64 >> unused) as f64,
+                (Unsigned, _) => bits as f64,
+                (Float, 4) => f64::from(f32::from_bits(bits as u32)),
+                (Float, _) => f64::from_bits(bits),
             }
         };
-        bytes.chunks_exact(self.size()).map(one).collect()
+        bytes.chunks_exact(self.size).map(one).collect()
     }
 }

@@ -295,7 +295,11 @@ fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
     if count.and_then(|count| count.checked_mul(number.size())) != Some(data.len()) {
         return Err((format!("numbers for the shape {shape:?}"), format!("{} bytes", data.len())));
     }
-    Ok(Some(Array { numbers: number.decode(data, kind.starts_with('>')), shape, digits: number.digits() }))
+    Ok(Some(Array {
+        numbers: number.decode(data, kind.starts_with('>')),
+        shape,
+        digits: number.digits(Digits::exact()),
+    }))
 }
 
 #[cfg(test)]

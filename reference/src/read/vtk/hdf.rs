@@ -5,7 +5,8 @@
 //! `Steps/PointOffsets[s]`, and the data of the points at `Steps/PointDataOffsets/NAME[s]`.
 
 use super::points::{Array, Points};
-use crate::read::binary::Number;
+use crate::read::binary::{Number, NumberKind};
+use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::DumpSnapshot;
 use hdf5_reader::error::Error;
@@ -204,7 +205,7 @@ impl File {
         let width =
             width.ok_or_else(|| self.fault(&expected, &format!("an array of the shape {:?}", dataset.shape())))?;
         let numbers = kind.decode(&bytes, cfg!(target_endian = "big"));
-        Ok(Array { name: name.to_owned(), components: width, numbers, digits: kind.digits() })
+        Ok(Array { name: name.to_owned(), components: width, numbers, digits: kind.digits(Digits::exact()) })
     }
 
     /// Reads an array of whole numbers that are not negative.
@@ -263,17 +264,10 @@ impl File {
 
 /// Returns the number type of an HDF5 type, or `None` if the type is not a number.
 fn number(kind: &Datatype) -> Option<Number> {
-    Some(match *kind {
-        Datatype::FixedPoint { size: 1, signed: true, .. } => Number::I8,
-        Datatype::FixedPoint { size: 1, signed: false, .. } => Number::U8,
-        Datatype::FixedPoint { size: 2, signed: true, .. } => Number::I16,
-        Datatype::FixedPoint { size: 2, signed: false, .. } => Number::U16,
-        Datatype::FixedPoint { size: 4, signed: true, .. } => Number::I32,
-        Datatype::FixedPoint { size: 4, signed: false, .. } => Number::U32,
-        Datatype::FixedPoint { size: 8, signed: true, .. } => Number::I64,
-        Datatype::FixedPoint { size: 8, signed: false, .. } => Number::U64,
-        Datatype::FloatingPoint { size: 4, .. } => Number::F32,
-        Datatype::FloatingPoint { size: 8, .. } => Number::F64,
-        _ => return None,
-    })
+    match *kind {
+        Datatype::FixedPoint { size, signed: true, .. } => Number::new(NumberKind::Signed, usize::from(size)),
+        Datatype::FixedPoint { size, signed: false, .. } => Number::new(NumberKind::Unsigned, usize::from(size)),
+        Datatype::FloatingPoint { size, .. } => Number::new(NumberKind::Float, usize::from(size)),
+        _ => None,
+    }
 }

@@ -162,11 +162,11 @@ impl<'b> Reader<'b> {
         let count = components.checked_mul(tuples).ok_or_else(|| here.error("a smaller number of values"))?;
         let (numbers, digits) = if self.is_binary {
             let size = count.checked_mul(kind.size()).ok_or_else(|| here.error("a smaller number of values"))?;
-            (kind.decode(self.bytes.take(size)?, true), kind.digits())
+            (kind.decode(self.bytes.take(size)?, true), kind.digits(Digits::exact()))
         } else {
             let mut digits = Digits::default();
             let numbers = self.bytes.printed(count, &mut digits)?;
-            (numbers, if kind == Number::F32 { digits.single() } else { digits })
+            (numbers, kind.digits(digits))
         };
         Ok(Array { name: name.to_owned(), components, numbers, digits })
     }

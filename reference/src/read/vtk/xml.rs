@@ -250,7 +250,7 @@ impl File<'_> {
                     fast_float2::parse::<f64, _>(word).map_err(|_| fault("a number", quoted(word)))
                 };
                 let numbers = text.split_ascii_whitespace().map(number).collect::<Result<_, _>>()?;
-                (numbers, if kind == Number::F32 { digits.single() } else { digits })
+                (numbers, kind.digits(digits))
             }
             "binary" | "appended" => {
                 let encoded: Vec<u8>;
@@ -268,7 +268,7 @@ impl File<'_> {
                 if bytes.len() % kind.size() != 0 {
                     return Err(fault("a whole number of values", format!("{} bytes", bytes.len())));
                 }
-                (kind.decode(&bytes, self.is_big), kind.digits())
+                (kind.decode(&bytes, self.is_big), kind.digits(Digits::exact()))
             }
             other => return Err(fault("the format `ascii`, `binary` or `appended`", quoted(other))),
         };
