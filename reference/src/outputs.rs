@@ -18,7 +18,7 @@ use crate::read::numbers::quoted_names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
-use crate::run_files::{RunFile, Snapshots, in_order, kind, shown};
+use crate::run_files::{RunFile, Snapshots, format_of, in_order, shown};
 
 pub use crate::run_files::is_of_a_run;
 
@@ -205,7 +205,7 @@ impl Outputs {
         let of_log = log.as_ref().and_then(Clock::of_log);
         outputs.log.clone_from(&log);
         if let [file] = &outputs.sources.files[..]
-            && kind(file)?.is_table()
+            && format_of(file)?.is_none()
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
@@ -605,7 +605,7 @@ fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
 /// Returns the first table among several files.
 fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
     for file in files {
-        if kind(file)?.is_table() {
+        if format_of(file)?.is_none() {
             return Ok(Some(file));
         }
     }

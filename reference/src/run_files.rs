@@ -1,88 +1,57 @@
 //! Output files of a run, read snapshot by snapshot in any format.
 
 use crate::read::decoding::{InputContent, decoded};
-use crate::read::format::{Beginning, FORMATS, FileContent, Format, FormatCriterion, Moments, dump};
+use crate::read::format::{Beginning, FORMATS, FileContent, Format, SnapshotReader, dump};
 use crate::read::lines::{Lines, opened};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::table::{header, read_table};
+use crate::read::table::read_table;
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
 /// Number of bytes at the beginning of a file that identify its kind.
 const HEAD: u64 = 512;
 
-/// Kind of a file.
-#[derive(Clone, Copy, Debug)]
-pub(crate) enum Kind {
-    Table,
-    /// Snapshots of grains in a format.
-    Grains(&'static Format),
-}
-
-impl Kind {
-    /// Returns the name of the kind for error messages.
-    pub(crate) const fn words(self) -> &'static str {
-        match self {
-            Self::Table => "a table",
-            Self::Grains(format) => format.words,
-        }
-    }
-
-    pub(crate) const fn is_table(self) -> bool {
-        matches!(self, Self::Table)
-    }
-}
-
-/// Returns the kind of a file from its beginning. An empty file counts as a dump, whose reader reports the error.
-pub(crate) fn kind(path: &Path) -> Result<Kind, ReadError> {
+/// Returns the format of a file of grains from its beginning, or `None` for a table. An empty file counts as a dump, whose
+/// reader reports the error.
+pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadError> {
     let name = shown(path);
     let reading = |error| ReadError::reading(&name, 1, error);
     let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
     opened(path)?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
     if bytes.starts_with(parquet::MARK) {
-        return Ok(Kind::Table);
+        return Ok(None);
     }
-    // `unpacked` is empty at first, so that archives and containers are identified before decompression.
-    let kind_of_bytes = |unpacked: &[u8]| {
-        let beginning = Beginning { path, bytes: &bytes, unpacked };
-        let is_it =
-            |format: &&&Format| matches!(format.told_by, FormatCriterion::Beginning(is_it) if is_it(&beginning));
-        FORMATS.iter().find(is_it).map(|format| Kind::Grains(format))
+    let find = |unpacked: &[u8], line: &str| {
+        let beginning = Beginning { path, bytes: &bytes, unpacked, line };
+        FORMATS.iter().copied().find(|format| (format.is_it)(&beginning))
     };
-    if let Some(kind) = kind_of_bytes(&[]) {
-        return Ok(kind);
+    // `unpacked` is empty at first, so that archives and containers are identified before decompression.
+    if let Some(format) = find(&[], "") {
+        return Ok(Some(format));
     }
     if let InputContent::Text(reader) = decoded(opened(path)?).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
     }
-    if let Some(kind) = kind_of_bytes(&unpacked) {
-        return Ok(kind);
+    if let Some(format) = find(&unpacked, "") {
+        return Ok(Some(format));
     }
     let mut lines = Lines::open(path)?;
     let mut has_comments = false;
     while let Some(line) = lines.next_text()? {
-        if !line.text.trim().is_empty() {
-            let names = header(line.text).1;
-            let is_it = |format: &&&Format| match format.told_by {
-                FormatCriterion::Line(begins) => line.text.starts_with(begins),
-                FormatCriterion::Names(is_it) => is_it(&names),
-                FormatCriterion::Beginning(_) => false,
-            };
-            if line.text.trim_start().starts_with('#') {
-                has_comments = true;
-                continue;
-            }
+        let text = line.text.trim();
+        if text.starts_with('#') {
+            has_comments = true;
+        } else if text.parse::<u64>().is_ok() {
             // A number alone is the first line of an .xyz file. The reader of dumps reports that this format is not
             // supported.
-            if line.text.trim().parse::<u64>().is_ok() {
-                return Ok(Kind::Grains(&dump::FORMAT));
-            }
-            return Ok(FORMATS.iter().find(is_it).map_or(Kind::Table, |format| Kind::Grains(format)));
+            return Ok(Some(&dump::FORMAT));
+        } else if !text.is_empty() {
+            return Ok(find(&unpacked, line.text));
         }
     }
-    Ok(if has_comments { Kind::Table } else { Kind::Grains(&dump::FORMAT) })
+    Ok((!has_comments).then_some(&dump::FORMAT))
 }
 
 /// Checks that a file contains output of a run: snapshots of grains, contacts of a dump, or a table of numbers. The
@@ -95,10 +64,10 @@ pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     if length == 0 {
         return Err(ReadError::at(&shown(path), 1, "grains or a table of numbers", "an empty file"));
     }
-    match kind(path)? {
-        Kind::Table => read_table(path).map(drop),
-        Kind::Grains(_) => Ok(()),
+    if format_of(path)?.is_none() {
+        read_table(path)?;
     }
+    Ok(())
 }
 
 /// Output file of a run. `moment` is `None` if the file contains several snapshots.
@@ -132,7 +101,7 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     let mut files = Vec::new();
     for path in named.iter().filter(|path| !is_box(path)) {
         // A table is opened as a dump, so that the reader of dumps reports the error.
-        let format = format(path)?;
+        let format = format_of(path)?.unwrap_or(&dump::FORMAT);
         match (format.holds)(path)? {
             FileContent::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
             FileContent::Moment => files.push(of_moment(path, None)?),
@@ -145,14 +114,6 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
     }
     files.sort_by_key(|file| file.moment.map(|moment| moment.step).or(file.begins));
     Ok(files)
-}
-
-/// Returns the format of a file of grains. For a table, returns the format of dumps.
-fn format(path: &Path) -> Result<&'static Format, ReadError> {
-    Ok(match kind(path)? {
-        Kind::Grains(format) => format,
-        Kind::Table => &dump::FORMAT,
-    })
 }
 
 /// Returns true for a file with the simulation box, which LIGGGHTS writes for each file of grains. Patterns for files of
@@ -170,12 +131,13 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let step = step.map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
-    Ok(RunFile { path: path.to_owned(), format: format(path)?, moment: Some(Moment { step, time }), begins: None })
+    let format = format_of(path)?.unwrap_or(&dump::FORMAT);
+    Ok(RunFile { path: path.to_owned(), format, moment: Some(Moment { step, time }), begins: None })
 }
 
 /// Reader of the snapshots of a file.
 pub(crate) struct Snapshots {
-    moments: Box<dyn Moments>,
+    reader: SnapshotReader,
     /// Moment and file name if the file contains one snapshot only; otherwise `None`.
     only: Option<(Moment, String)>,
     numbering: Numbering,
@@ -187,20 +149,20 @@ impl Snapshots {
     pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
         let only = file.moment.map(|moment| (moment, shown(&file.path)));
         let numbering = file.format.numbering;
-        Ok(Self { moments: (file.format.open)(&file.path, most_rows)?, only, numbering, read: 0 })
+        Ok(Self { reader: (file.format.open)(&file.path, most_rows)?, only, numbering, read: 0 })
     }
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let Some((moment, name)) = &self.only else {
-            let is_there = self.moments.read(snapshot)?;
+            let is_there = (self.reader)(snapshot)?;
             if is_there && self.numbering == Numbering::Files {
                 snapshot.numbering = Numbering::Files;
             }
             return Ok(is_there);
         };
         let mut next = DumpSnapshot::default();
-        let is_there = self.moments.read(&mut next)?;
+        let is_there = (self.reader)(&mut next)?;
         if is_there != (self.read == 0) {
             let found = if is_there { "several" } else { "none" };
             return Err(ReadError::at(name, 1, "one time per file, from a list or the file name", found));

@@ -10,7 +10,7 @@ use std::path::Path;
 
 use crate::names::Names;
 use crate::read::read_error::{ReadError, quoted};
-use crate::run_files::kind;
+use crate::run_files::format_of;
 use column::{Column, PrintedDigits};
 use frames::{Frame, Frames, Place};
 
@@ -95,12 +95,13 @@ const ONE_TIME: f64 = 1e-6;
 /// rows at a step differ.
 pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Comparison, ReadError> {
     let name = second.to_string_lossy().into_owned();
-    let kinds = [kind(first)?, kind(second)?];
-    if kinds[0].is_table() != kinds[1].is_table() {
-        let expected = format!("{}, like the other file", kinds[0].words());
-        return Err(ReadError::at(&name, 1, expected, kinds[1].words()));
+    let formats = [format_of(first)?, format_of(second)?];
+    let is_grains = formats[0].is_some();
+    if formats[1].is_some() != is_grains {
+        let [first, second] = formats.map(|format| format.map_or("a table", |format| format.words));
+        return Err(ReadError::at(&name, 1, format!("{first}, like the other file"), second));
     }
-    let open = |which: usize| Frames::open([first, second][which], !kinds[0].is_table(), which, options);
+    let open = |which: usize| Frames::open([first, second][which], is_grains, which, options);
     let Survey { columns, printed, lonely, places, cuts } = survey([open(0)?, open(1)?], options)?;
     let key = key(&places).ok_or_else(|| {
         let expected = format!("{} rows, as in the other file, or a column `step` or `time`", places[0].len());

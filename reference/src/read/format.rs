@@ -4,45 +4,35 @@ use super::read_error::ReadError;
 use super::snapshot::{DumpSnapshot, Numbering};
 use std::path::{Path, PathBuf};
 
-/// Snapshots of an open file.
-pub(crate) type OpenSnapshots = Result<Box<dyn Moments>, ReadError>;
+/// Reader of the snapshots of an open file, one after the other. It replaces its argument by the next snapshot and returns
+/// false at the end of the file.
+pub(crate) type SnapshotReader = Box<dyn FnMut(&mut DumpSnapshot) -> Result<bool, ReadError>>;
 
 /// File format.
 #[derive(Debug)]
 pub(crate) struct Format {
     /// Name of the format for error messages, such as `a dump`.
     pub(crate) words: &'static str,
-    /// Criterion that identifies a file of this format.
-    pub(crate) told_by: FormatCriterion,
+    /// Function that identifies a file of this format by its beginning.
+    pub(crate) is_it: fn(&Beginning<'_>) -> bool,
     /// Numbering of a file with one snapshot. [`Numbering::Files`] applies to files with several snapshots too.
     pub(crate) numbering: Numbering,
     /// Function that returns the kind of content of a file.
     pub(crate) holds: fn(&Path) -> Result<FileContent, ReadError>,
     /// Function that opens a file. The second argument is the maximum number of rows in a snapshot.
-    pub(crate) open: fn(&Path, u64) -> OpenSnapshots,
+    pub(crate) open: fn(&Path, u64) -> Result<SnapshotReader, ReadError>,
 }
 
-/// Criterion that identifies the format of a file.
-#[derive(Debug)]
-pub(crate) enum FormatCriterion {
-    /// Test of the first bytes and the name.
-    Beginning(fn(&Beginning<'_>) -> bool),
-    /// Text at the beginning of the first line that is neither blank nor a comment. It is tested if no format matches
-    /// the first bytes.
-    Line(&'static str),
-    /// Test of the column names in the first line that is neither blank nor a comment. It is applied if no format
-    /// matches the first bytes.
-    Names(fn(&[&str]) -> bool),
-}
-
-/// First bytes of a file.
+/// Beginning of a file.
 pub(crate) struct Beginning<'a> {
     /// Path of the file.
     pub(crate) path: &'a Path,
-    /// Bytes as stored.
+    /// First bytes as stored.
     pub(crate) bytes: &'a [u8],
-    /// Bytes after decompression; empty if the compression is not supported.
+    /// First bytes after decompression; empty if the compression is not supported.
     pub(crate) unpacked: &'a [u8],
+    /// First line that is neither blank nor a comment; empty as long as the first bytes may identify the format.
+    pub(crate) line: &'a str,
 }
 
 /// Kind of content of a file.
@@ -56,36 +46,22 @@ pub(crate) enum FileContent {
     List(Vec<(f64, PathBuf)>),
 }
 
-/// Reader of the snapshots of a file, one after the other.
-pub(crate) trait Moments {
-    /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
-    fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError>;
-}
-
-/// Reader of snapshots that are accessed by index.
-pub(crate) struct IndexedSnapshots<F> {
-    file: String,
-    of: F,
-    next: usize,
-}
-
-impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static> IndexedSnapshots<F> {
-    /// Returns a reader for a file. `read_at` returns the snapshot with an index, or `None` after the last snapshot.
-    pub(crate) fn boxed(path: &Path, read_at: F) -> Box<dyn Moments> {
-        Box::new(Self { file: path.to_string_lossy().into_owned(), of: read_at, next: 0 })
-    }
-}
-
-impl<F: Fn(usize) -> Result<Option<DumpSnapshot>, ReadError>> Moments for IndexedSnapshots<F> {
-    fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let Some(next) = (self.of)(self.next)? else { return Ok(false) };
-        if self.next > 0 && snapshot.step == next.step {
-            next.check_repeated(&self.file, snapshot)?;
+/// Returns a reader of snapshots that are accessed by index. `read_at` returns the snapshot with an index, or `None` after
+/// the last snapshot.
+pub(crate) fn indexed(
+    path: &Path,
+    read_at: impl Fn(usize) -> Result<Option<DumpSnapshot>, ReadError> + 'static,
+) -> SnapshotReader {
+    let (file, mut index) = (path.to_string_lossy().into_owned(), 0);
+    Box::new(move |snapshot: &mut DumpSnapshot| {
+        let Some(next) = read_at(index)? else { return Ok(false) };
+        if index > 0 && snapshot.step == next.step {
+            next.check_repeated(&file, snapshot)?;
         }
         *snapshot = next;
-        self.next += 1;
+        index += 1;
         Ok(true)
-    }
+    })
 }
 
 /// Checks that there are at most `most_rows` grains, the limit that follows from the scene.

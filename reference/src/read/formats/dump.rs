@@ -1,25 +1,21 @@
 //! Dumps of LAMMPS and LIGGGHTS.
 
 use crate::read::dump::DumpReader;
-use crate::read::format::{FileContent, Format, FormatCriterion, Moments};
+use crate::read::format::{FileContent, Format};
 use crate::read::lines::Lines;
-use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use std::path::Path;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a dump",
-    told_by: FormatCriterion::Line("ITEM:"),
+    is_it: |beginning| beginning.line.starts_with("ITEM:"),
     numbering: Numbering::Steps,
     holds: |path| Ok(FileContent::Course(first_step(path))),
-    open: |path, most_rows| Ok(Box::new(DumpReader::open(path)?.at_most(most_rows))),
+    open: |path, most_rows| {
+        let mut reader = DumpReader::open(path)?.at_most(most_rows);
+        Ok(Box::new(move |snapshot: &mut DumpSnapshot| reader.read(snapshot)))
+    },
 };
-
-impl Moments for DumpReader<'_> {
-    fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        DumpReader::read(self, snapshot)
-    }
-}
 
 /// Returns the first step, or `None` if it cannot be read. The reader of the dump then reports the error.
 fn first_step(path: &Path) -> Option<u64> {

@@ -1,21 +1,390 @@
-//! Arrays of NumPy.
+//! Arrays in files of NumPy (`.npz`), which are ZIP archives with one `.npy` file per array.
+//!
+//! Source: "numpy.lib.format", versions 1.0 to 3.0 of `.npy`.
 
-use crate::read::format::{FileContent, Format, FormatCriterion, IndexedSnapshots, check_grains};
-use crate::read::npz::{MARK, read_course};
-use crate::read::snapshot::Numbering;
+use crate::read::binary::Number;
+use crate::read::digits::Digits;
+use crate::read::format::{FileContent, Format, check_grains, indexed};
+use crate::read::lines::opened;
+use crate::read::numbers::NumberColumn;
+use crate::read::read_error::{ReadError, quoted};
+use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
+use std::collections::BTreeMap;
+use std::io::Read;
+use std::ops::Range;
+use std::path::Path;
+use zip::ZipArchive;
 
 pub(crate) static FORMAT: Format = Format {
     words: "NumPy arrays",
     // ZIP archives with other endings are read as text and then refused.
-    told_by: FormatCriterion::Beginning(|beginning| {
+    is_it: |beginning| {
         beginning.bytes.starts_with(MARK)
             && beginning.path.extension().is_some_and(|end| end.eq_ignore_ascii_case("npz"))
-    }),
+    },
     numbering: Numbering::Steps,
     holds: |_| Ok(FileContent::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;
-        check_grains(course.name(), course.grains(), most_rows)?;
-        Ok(IndexedSnapshots::boxed(path, move |place| Ok(course.snapshot(place))))
+        check_grains(&course.name, course.grains, most_rows)?;
+        Ok(indexed(path, move |place| Ok(course.snapshot(place))))
     },
 };
+
+/// First bytes of an `.npz` file.
+const MARK: &[u8] = b"PK\x03\x04";
+/// First bytes of an `.npy` file.
+const ARRAY: &[u8] = b"\x93NUMPY";
+/// Maximum size of all arrays together (B).
+const MOST: u64 = 1 << 30;
+
+/// Array of numbers, in which the last index varies fastest.
+#[derive(Clone, Debug, PartialEq)]
+struct Array {
+    shape: Vec<usize>,
+    numbers: Vec<f64>,
+    digits: Digits,
+}
+
+/// Grains at several moments, from one file.
+#[derive(Debug)]
+struct Course {
+    name: String,
+    /// Step of each moment. If the file has no steps, this is the index of the moment.
+    steps: Vec<u64>,
+    /// Numbering of the moments. If the file has both steps and times, the steps are those of the run. Otherwise the
+    /// numbers may count frames.
+    numbering: Numbering,
+    /// Times (s), if the file contains them.
+    times: Option<Vec<f64>>,
+    grains: usize,
+    columns: Vec<NumberColumn>,
+    /// Numbers of each column, and true if the column has different numbers for each moment.
+    numbers: Vec<(Vec<f64>, bool)>,
+    /// Contacts of all moments, if the file contains them.
+    contacts: Option<Contacts>,
+}
+
+/// Contacts of grains at several moments.
+#[derive(Debug)]
+struct Contacts {
+    columns: Vec<NumberColumn>,
+    /// Range of the rows of each moment.
+    ranges: Vec<Range<usize>>,
+    /// Numbers of each column.
+    numbers: Vec<Vec<f64>>,
+}
+
+/// Known arrays of grains: name, columns, and true if the array is required.
+///
+/// An array of vectors has the shape (moments, grains, 3). An array of numbers has the shape (moments, grains) or
+/// (grains).
+const KNOWN: [(&str, &[&str], bool); 5] = [
+    ("position", &["x", "y", "z"], true),
+    ("velocity", &["vx", "vy", "vz"], false),
+    ("spin", &["omegax", "omegay", "omegaz"], false),
+    ("id", &["id"], false),
+    ("radius", &["radius"], false),
+];
+
+/// Ending of the name of an array with the forces of a wall on the grains, as in `floor.force`.
+const OF_WALL: &str = ".force";
+/// Array with the step of each contact, in ascending order. The other arrays of contacts have the same number of rows.
+const CONTACT_STEP: &str = "contact_step";
+/// Arrays of contacts: name and columns.
+const CONTACT: [(&str, &[&str]); 2] =
+    [("contact_id", &["id1", "id2"]), ("contact_force", &["force_x", "force_y", "force_z"])];
+
+/// Reads the arrays `position`, `velocity`, `spin`, `id` and `radius` of grains, the forces of walls, the contacts between
+/// grains, and the arrays `step` and `time` of moments. At least one of `step` and `time` is required.
+///
+/// # Errors
+/// If the file cannot be read, lacks a required array, or has arrays of other shapes.
+fn read_course(path: &Path) -> Result<Course, ReadError> {
+    let name = path.to_string_lossy().into_owned();
+    let arrays = arrays(path, &name)?;
+    let fault = |expected: String, found: String| ReadError::at(&name, 1, expected, found);
+    let have = || quoted(&arrays.keys().cloned().collect::<Vec<_>>().join(" "));
+    let of_moments = |key: &str| -> Result<Option<Vec<f64>>, ReadError> {
+        match arrays.get(key) {
+            Some(array) if array.shape.len() == 1 => Ok(Some(array.numbers.clone())),
+            Some(array) => Err(fault(
+                format!("one number for each time in the array `{key}`"),
+                format!("the shape {:?}", array.shape),
+            )),
+            None => Ok(None),
+        }
+    };
+    let (steps, times) = (of_moments("step")?, of_moments("time")?);
+    let moments = steps.as_ref().or(times.as_ref()).map(Vec::len);
+    let moments = moments.ok_or_else(|| fault("an array `step` or `time`".to_owned(), have()))?;
+    if times.as_ref().is_some_and(|times| times.len() != moments) {
+        return Err(fault("as many times as steps".to_owned(), "others".to_owned()));
+    }
+    let numbering = if steps.is_some() && times.is_some() { Numbering::Steps } else { Numbering::Files };
+    let steps = match steps {
+        None => (0..moments as u64).collect(),
+        Some(steps) => {
+            let whole = |step: f64| if step >= 0.0 && step.fract() == 0.0 { Ok(step as u64) } else { Err(step) };
+            let steps: Result<Vec<u64>, f64> = steps.into_iter().map(whole).collect();
+            steps.map_err(|step| fault("whole numbers of steps, zero or more".to_owned(), step.to_string()))?
+        }
+    };
+    if let Some(at) = steps.windows(2).position(|pair| pair[1] <= pair[0]) {
+        return Err(fault(format!("a step after {}", steps[at]), steps[at + 1].to_string()));
+    }
+    let contacts = contacts(&arrays, &steps).map_err(|(expected, found)| fault(expected, found))?;
+    let (columns, numbers) = (Vec::new(), Vec::new());
+    let mut course = Course { name: name.clone(), steps, numbering, times, grains: 0, columns, numbers, contacts };
+    let known =
+        KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
+    let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| {
+        let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{key}_{axis}")).collect();
+        (key.as_str(), columns, false)
+    });
+    for (key, columns, must) in known.into_iter().chain(of_walls) {
+        let Some(array) = arrays.get(key) else {
+            if must {
+                return Err(fault(format!("an array `{key}`"), have()));
+            }
+            continue;
+        };
+        let width = columns.len();
+        let inner: &[usize] =
+            if width == 1 { &array.shape } else { array.shape.split_last().map_or(&[], |(_, rest)| rest) };
+        let is_wide = width == 1 || array.shape.last() == Some(&width);
+        let (grains, of_moments) = match *inner {
+            [all, grains] if all == moments => (grains, true),
+            [grains] if width == 1 => (grains, false),
+            _ => (0, true),
+        };
+        let expected = if must { grains } else { course.grains };
+        if !is_wide || grains != expected || (must && inner.len() != 2) {
+            let words = if width == 1 { "grains" } else { "grains, 3" };
+            let grains = if must { "grains".to_owned() } else { course.grains.to_string() };
+            let words = words.replace("grains", &grains);
+            return Err(fault(
+                format!("the shape ({moments}, {words}) of the array `{key}`"),
+                format!("{:?}", array.shape),
+            ));
+        }
+        if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
+            return Err(fault(format!("finite numbers in the array `{key}`"), wrong.to_string()));
+        }
+        course.grains = expected;
+        for (component, column) in columns.iter().enumerate() {
+            course.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
+            course.numbers.push((array.numbers.iter().skip(component).step_by(width).copied().collect(), of_moments));
+        }
+    }
+    Ok(course)
+}
+
+impl Course {
+    /// Returns the contacts of each moment, if the file contains them, then the grains of each moment, or `None` after
+    /// the last.
+    fn snapshot(&self, place: usize) -> Option<DumpSnapshot> {
+        match &self.contacts {
+            Some(contacts) if place < self.steps.len() => Some(self.entries(contacts, place)),
+            Some(_) => self.atoms(place - self.steps.len()),
+            None => self.atoms(place),
+        }
+    }
+
+    fn entries(&self, contacts: &Contacts, moment: usize) -> DumpSnapshot {
+        let row = |row: usize| contacts.numbers.iter().map(move |column| column[row]);
+        let (step, numbering, columns) = (self.steps[moment], self.numbering, contacts.columns.clone());
+        let (time, values) =
+            (self.times.as_ref().map(|times| times[moment]), contacts.ranges[moment].clone().flat_map(row).collect());
+        let kind = DumpKind::Entries;
+        DumpSnapshot { kind, step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() }
+    }
+
+    fn atoms(&self, moment: usize) -> Option<DumpSnapshot> {
+        let (grains, step) = (self.grains, *self.steps.get(moment)?);
+        let number =
+            |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
+        let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |array| number(grain, array))).collect();
+        let time = self.times.as_ref().map(|times| times[moment]);
+        let (columns, numbering) = (self.columns.clone(), self.numbering);
+        Some(DumpSnapshot { step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+    }
+}
+
+/// Returns the contacts in the arrays, if there are any. `steps` are the steps of the moments. An error consists of the
+/// expected and the actual content.
+fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Contacts>, (String, String)> {
+    let Some(step) = arrays.get(CONTACT_STEP) else { return Ok(None) };
+    let rows = step.numbers.len();
+    let mut contacts = Contacts { columns: Vec::new(), ranges: Vec::new(), numbers: Vec::new() };
+    for (key, columns) in CONTACT {
+        let expected = || format!("the shape ({rows}, {}) of the array `{key}`", columns.len());
+        let array = arrays.get(key).ok_or_else(|| (expected(), "no such array".to_owned()))?;
+        if array.shape != [rows, columns.len()] {
+            return Err((expected(), format!("{:?}", array.shape)));
+        }
+        if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
+            return Err((format!("finite numbers in the array `{key}`"), wrong.to_string()));
+        }
+        for (component, column) in columns.iter().enumerate() {
+            contacts.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
+            contacts.numbers.push(array.numbers.iter().skip(component).step_by(columns.len()).copied().collect());
+        }
+    }
+    let mut row = 0;
+    for &moment in steps {
+        let start = row;
+        while row < rows && step.numbers[row] == moment as f64 {
+            row += 1;
+        }
+        contacts.ranges.push(start..row);
+    }
+    if row < rows {
+        let expected = format!("steps of the grains in ascending order in the array `{CONTACT_STEP}`");
+        return Err((expected, format!("{} in row {}", step.numbers[row], row + 1)));
+    }
+    Ok(Some(contacts))
+}
+
+/// Returns all arrays of a file by name.
+fn arrays(path: &Path, name: &str) -> Result<BTreeMap<String, Array>, ReadError> {
+    let damaged =
+        |error: zip::result::ZipError| ReadError::at(name, 1, "a complete `.npz` file", quoted(&error.to_string()));
+    let mut archive = ZipArchive::new(opened(path)?).map_err(damaged)?;
+    let mut arrays = BTreeMap::new();
+    let mut left = MOST;
+    for place in 0..archive.len() {
+        let entry = archive.by_index(place).map_err(damaged)?;
+        let entry_name = entry.name().map_err(damaged)?.into_owned();
+        let Some(key) = entry_name.strip_suffix(".npy").map(str::to_owned) else { continue };
+        let mut bytes = Vec::new();
+        // Memory grows with the bytes that are present, not with the declared size.
+        entry.take(left + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(name, 1, error))?;
+        left = left
+            .checked_sub(bytes.len() as u64)
+            .ok_or_else(|| ReadError::at(name, 1, format!("at most {MOST} bytes of arrays"), "more"))?;
+        let array = array(&bytes).map_err(|(expected, found)| {
+            ReadError::at(name, 1, format!("{expected} in the array {}", quoted(&key)), found)
+        })?;
+        if let Some(array) = array {
+            arrays.insert(key, array);
+        }
+    }
+    Ok(arrays)
+}
+
+/// Returns an array, or `None` if its elements are not numbers. An error consists of the expected and the actual
+/// content.
+fn array(bytes: &[u8]) -> Result<Option<Array>, (String, String)> {
+    let short = || ("a complete header".to_owned(), "the end of the file".to_owned());
+    let rest = bytes.strip_prefix(ARRAY).ok_or_else(|| ("`.npy`".to_owned(), "something else".to_owned()))?;
+    let (version, rest) = rest.split_at_checked(2).ok_or_else(short)?;
+    let (length, rest) = rest.split_at_checked(if version[0] == 1 { 2 } else { 4 }).ok_or_else(short)?;
+    let length = length.iter().rev().fold(0_usize, |sum, byte| sum << 8 | usize::from(*byte));
+    let (head, data) = rest.split_at_checked(length).ok_or_else(short)?;
+    let head = String::from_utf8_lossy(head).into_owned();
+    let value = |key: &str| {
+        let (_, rest) = head.split_once(&format!("'{key}':"))?;
+        Some(rest.trim_start())
+    };
+    let kind = value("descr").and_then(|rest| rest.strip_prefix('\'')?.split_once('\'')).map(|(kind, _)| kind);
+    let (Some(kind), Some(order), Some(shape)) = (kind, value("fortran_order"), value("shape")) else {
+        return Ok(None);
+    };
+    if order.starts_with("True") {
+        return Err(("arrays in C order (last index fastest)".to_owned(), "`fortran_order`".to_owned()));
+    }
+    let shape = shape.strip_prefix('(').and_then(|rest| rest.split_once(')')).map_or("", |(shape, _)| shape);
+    let lengths = shape.split(',').map(str::trim).filter(|length| !length.is_empty()).map(str::parse);
+    let shape: Vec<usize> = lengths.collect::<Result<_, _>>().map_err(|_| ("a shape".to_owned(), quoted(shape)))?;
+    let Some(number) = Number::of_numpy(kind.trim_start_matches(['<', '>', '|', '='])) else { return Ok(None) };
+    let count = shape.iter().try_fold(1_usize, |product, length| product.checked_mul(*length));
+    if count.and_then(|count| count.checked_mul(number.size())) != Some(data.len()) {
+        return Err((format!("numbers for the shape {shape:?}"), format!("{} bytes", data.len())));
+    }
+    Ok(Some(Array {
+        numbers: number.decode(data, kind.starts_with('>')),
+        shape,
+        digits: number.digits(Digits::exact()),
+    }))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+
+    fn read(name: &str) -> Result<Course, String> {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/npz").join(name);
+        read_course(&path).map_err(|error| error.to_string().rsplit('/').next().unwrap_or_default().to_owned())
+    }
+
+    #[test]
+    fn arrays_of_numpy_are_read() {
+        for name in ["grains.npz", "grains-compressed.npz"] {
+            let course = read(name).unwrap();
+            assert_eq!(course.grains, 2);
+            let last = course.snapshot(2).unwrap();
+            assert_eq!((last.step, last.time), (25, Some(0.25)));
+            // A file with steps and times has steps of the run.
+            assert_eq!(last.numbering, Numbering::Steps);
+            assert!(course.snapshot(3).is_none());
+            let value = |column: &str, row: usize| last.row(row)[last.column(column).unwrap()];
+            assert_eq!([value("id", 0), value("id", 1)], [2.0, 1.0]);
+            assert_eq!([value("x", 0), value("z", 1)], [12.0 / 7.0, 17.0 / 7.0]);
+            assert_eq!(value("vx", 0), f64::from(-12.0_f32 / 7.0));
+            assert_eq!([value("omegaz", 0), value("omegax", 1)], [5.0, 0.0]);
+            let digits = |column: &str| last.columns[last.column(column).unwrap()].digits;
+            assert!(digits("vx").uncertainty(1.0, &last.digits()) > 1e-8, "a single number is not exact");
+            assert!(digits("x").uncertainty(1.0, &last.digits()) < 1e-15);
+        }
+    }
+
+    #[test]
+    fn contacts_and_forces_of_walls_are_read() {
+        let course = read("contacts.npz").unwrap();
+        let value =
+            |snapshot: &DumpSnapshot, row: usize, column: &str| snapshot.row(row)[snapshot.column(column).unwrap()];
+        let [first, second, third, fourth] = [0, 1, 2, 3].map(|place| course.snapshot(place).unwrap());
+        assert!(course.snapshot(4).is_none());
+        assert_eq!([&first, &second, &third, &fourth].map(|snapshot| snapshot.step), [0, 10, 0, 10]);
+        assert_eq!((first.kind, first.rows(), second.rows()), (DumpKind::Entries, 1, 2));
+        assert_eq!([value(&second, 0, "id1"), value(&second, 0, "id2")], [2.0, 1.0]);
+        assert_eq!([value(&second, 0, "force_x"), value(&second, 1, "force_z")], [3.0 / 7.0, 8.0 / 7.0]);
+        assert_eq!((third.kind, value(&fourth, 1, "x")), (DumpKind::Atoms, 1.0));
+        assert_eq!([value(&third, 0, "floor.force_y"), value(&fourth, 1, "floor.force_z")], [1.0 / 3.0, 11.0 / 3.0]);
+    }
+
+    #[test]
+    fn other_shapes_are_refused_in_words() {
+        for (file, message) in [
+            ("contacts-late", "steps of the grains in ascending order in the array `contact_step`, found 5 in row 2"),
+            ("contacts-short", "the shape (3, 3) of the array `contact_force`, found [2, 3]"),
+            ("wall-flat", "the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"),
+            ("flat", "the shape (3, grains, 3) of the array `position`, found [3, 3]"),
+            ("fortran", "arrays in C order (last index fastest) in the array `position`, found `fortran_order`"),
+        ] {
+            let file = format!("{file}.npz");
+            assert_eq!(read(&file).unwrap_err(), format!("{file}:1: expected {message}"));
+        }
+    }
+
+    #[test]
+    fn damaged_files_are_refused_or_read() {
+        let folder = tempfile::tempdir().unwrap();
+        let damaged = folder.path().join("damaged.npz");
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/npz/grains.npz");
+        let whole = fs::read(path).unwrap();
+        for cut in 0..whole.len() {
+            fs::write(&damaged, &whole[..cut]).unwrap();
+            assert!(read_course(&damaged).is_err(), "cut at {cut}");
+        }
+        for at in 0..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 1 << (at % 8);
+            fs::write(&damaged, &bytes).unwrap();
+            // Any result is allowed, but no panic.
+            let _ = read_course(&damaged);
+        }
+    }
+}

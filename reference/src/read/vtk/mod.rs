@@ -5,15 +5,9 @@
 //! XML format.
 
 mod bytes;
-mod collection;
-mod hdf;
 mod legacy;
-mod points;
+pub(crate) mod points;
 mod xml;
-
-pub(crate) use collection::read_collection;
-pub(crate) use hdf::{MARK, has_steps, read_moments};
-pub(crate) use points::{component, is_id};
 
 use super::decoding::{InputContent, decoded};
 use super::lines::opened;
@@ -71,7 +65,7 @@ fn parse(name: &str, bytes: &[u8]) -> Result<DumpSnapshot, ReadError> {
 }
 
 /// Reads all bytes of a file and decompresses them.
-fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
+pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.to_string_lossy();
     let reader = match decoded(opened(path)?).map_err(|error| ReadError::reading(&name, 1, error))? {
         InputContent::Text(reader) => reader,

@@ -7,22 +7,22 @@ use crate::read::snapshot::DumpSnapshot;
 
 /// Array with the components of all points, point by point.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Array {
-    pub(super) name: String,
-    pub(super) components: usize,
-    pub(super) numbers: Vec<f64>,
-    pub(super) digits: Digits,
+pub(crate) struct Array {
+    pub(crate) name: String,
+    pub(crate) components: usize,
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) digits: Digits,
 }
 
 /// Points with their data.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Points {
+pub(crate) struct Points {
     /// Time; `None` if the file does not contain it.
-    pub(super) time: Option<f64>,
+    pub(crate) time: Option<f64>,
     /// Positions of the points.
-    pub(super) positions: Array,
+    pub(crate) positions: Array,
     /// Data of the points.
-    pub(super) arrays: Vec<Array>,
+    pub(crate) arrays: Vec<Array>,
 }
 
 /// Names of velocities in different programs, in lower case.
@@ -69,7 +69,7 @@ impl Array {
 
 impl Points {
     /// Returns a snapshot of the points as grains. The step is 0 and must be set by the caller.
-    pub(super) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
+    pub(crate) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
         let points = self.positions.numbers.len() / 3;
         let mut columns: Vec<NumberColumn> = Vec::new();
         let mut parts: Vec<(&Array, usize)> = Vec::new();

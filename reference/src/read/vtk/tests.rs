@@ -3,6 +3,7 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
+use crate::read::format::vtk_hdf::{has_steps, read_moments};
 use std::fs;
 use std::path::PathBuf;
 
