@@ -104,9 +104,7 @@ impl<'b> Reader<'b> {
                 }
                 ["FIELD", _, count] => {
                     for _ in 0..number(count, &here)? {
-                        let Some([name, components, tuples, kind]) =
-                            self.bytes.next_words().and_then(|words| <[&str; 4]>::try_from(words).ok())
-                        else {
+                        let Some(&[name, components, tuples, kind]) = self.bytes.next_words().as_deref() else {
                             return Err(self.bytes.error("the name, components, tuples and type of an array"));
                         };
                         let here = self.bytes;
@@ -130,17 +128,13 @@ impl<'b> Reader<'b> {
 
     /// Skips the connectivity of the cells and returns the number of cells.
     fn connectivity(&mut self, count: usize, size: usize, here: &Bytes<'b>) -> Result<usize, ReadError> {
-        let Some(["OFFSETS", kind]) =
-            self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
-        else {
+        let Some(&["OFFSETS", kind]) = self.bytes.next_words().as_deref() else {
             self.array("cells", "int", 1, size, here)?;
             return Ok(count);
         };
         self.words();
         self.array("offsets", kind, 1, count, here)?;
-        let Some(["CONNECTIVITY", kind]) =
-            self.bytes.next_words().as_deref().map(|words| <[&str; 2]>::try_from(words).unwrap_or_default())
-        else {
+        let Some(&["CONNECTIVITY", kind]) = self.bytes.next_words().as_deref() else {
             return Err(self.bytes.error("`CONNECTIVITY`"));
         };
         self.words();

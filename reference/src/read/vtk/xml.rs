@@ -16,6 +16,8 @@ use std::io::Read;
 
 /// Start of the tag with appended data.
 const APPENDED: &[u8] = b"<AppendedData";
+/// Name of the tag of an array.
+const ARRAY: &[u8] = b"DataArray";
 /// Last tag of every file.
 const END: &[u8] = b"</VTKFile>";
 /// Name of the supported compression.
@@ -30,19 +32,13 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     let cut = memchr::memmem::find(all, APPENDED);
     let appended = cut.map(|cut| appended(&bytes, cut)).transpose()?;
     let xml = Bytes::new(bytes.file(), &all[..cut.unwrap_or(all.len())]);
-    let mut file = File { bytes: xml, appended, is_big: false, wide: false, compressor: None };
-    file.points()
+    let (compressor, array, positions, arrays, time) = (None, None, None, Vec::new(), None);
+    let (is_big, wide, pieces) = (false, false, 0);
+    File { bytes: xml, appended, is_big, wide, compressor, array, pieces, positions, arrays, time }.points()
 }
 
-/// Appended data after the XML part.
-#[derive(Clone, Copy)]
-struct AppendedData<'b> {
-    /// Bytes after the underscore that begins the data.
-    data: &'b [u8],
-    is_text: bool,
-}
-
-fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<AppendedData<'b>, ReadError> {
+/// Returns the appended data after the XML part: the bytes after the underscore that begins the data.
+fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<Stream<'b>, ReadError> {
     let all = &bytes.all()[cut..];
     let fault = |expected: &str, found: &str| bytes.error_at(cut, expected, found);
     let head = memchr::memchr(b'>', all).ok_or_else(|| fault("`<AppendedData …>`", "the end of the file"))?;
@@ -50,83 +46,82 @@ fn appended<'b>(bytes: &Bytes<'b>, cut: usize) -> Result<AppendedData<'b>, ReadE
     let start = memchr::memchr(b'_', &all[head..]).ok_or_else(|| fault("`_` before the data", "none"))?;
     let end = memchr::memmem::rfind(all, b"</AppendedData>");
     let end = end.ok_or_else(|| bytes.error_at(usize::MAX, "`</AppendedData>`", "the end of the file"))?;
-    Ok(AppendedData { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
+    Ok(Stream { data: all.get(head + start + 1..end).unwrap_or_default(), is_text })
 }
 
-/// Attributes of an array from its tag.
-struct ArrayTag {
+/// Attributes and text of the tag of an array.
+struct DataArray {
     name: String,
-    kind: Option<Number>,
-    kind_word: String,
+    kind: String,
     components: usize,
     format: String,
     offset: usize,
     at: usize,
+    text: String,
 }
 
 struct File<'b> {
     bytes: Bytes<'b>,
-    appended: Option<AppendedData<'b>>,
+    appended: Option<Stream<'b>>,
     is_big: bool,
     /// True if lengths are stored in eight bytes, false for four bytes.
     wide: bool,
     compressor: Option<String>,
+    /// Array whose tag is open.
+    array: Option<DataArray>,
+    /// Number of pieces that have begun.
+    pieces: usize,
+    positions: Option<Array>,
+    arrays: Vec<Array>,
+    time: Option<f64>,
 }
 
 impl File<'_> {
-    fn points(&mut self) -> Result<Points, ReadError> {
-        let all = self.bytes.all();
-        let mut reader = Reader::from_reader(all);
+    fn points(mut self) -> Result<Points, ReadError> {
+        let mut reader = Reader::from_reader(self.bytes.all());
         let mut path: Vec<Vec<u8>> = Vec::new();
-        let mut array: Option<(ArrayTag, String)> = None;
-        let (mut positions, mut arrays, mut time): (Option<Array>, Vec<Array>, Option<f64>) = (None, Vec::new(), None);
-        let mut pieces = 0_usize;
         loop {
             let at = reader.buffer_position() as usize;
             let event =
                 reader.read_event().map_err(|error| self.bytes.error_at(at, "XML", quoted(&error.to_string())))?;
+            let is_in_array = path.last().is_some_and(|name| name == ARRAY);
             match event {
                 Event::Start(tag) => {
-                    self.open(&tag, &mut array, at)?;
-                    pieces += usize::from(tag.name().as_ref() == b"Piece");
+                    self.open(&tag, at)?;
+                    self.pieces += usize::from(tag.name().as_ref() == b"Piece");
                     path.push(tag.name().as_ref().to_vec());
                 }
                 Event::Empty(tag) => {
-                    self.open(&tag, &mut array, at)?;
-                    if tag.name().as_ref() == b"DataArray" {
-                        let parent = path.last().cloned().unwrap_or_default();
-                        self.close(&parent, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                    self.open(&tag, at)?;
+                    if tag.name().as_ref() == ARRAY {
+                        self.close(path.last())?;
                     }
                 }
-                Event::Text(text) if path.last().is_some_and(|name| name == b"DataArray") => {
-                    if let Some((_, numbers)) = &mut array {
-                        numbers.push_str(&String::from_utf8_lossy(&text));
-                    }
-                }
-                Event::CData(text) if path.last().is_some_and(|name| name == b"DataArray") => {
-                    if let Some((_, numbers)) = &mut array {
-                        numbers.push_str(&String::from_utf8_lossy(&text));
-                    }
-                }
+                Event::Text(text) if is_in_array => self.add(&String::from_utf8_lossy(&text)),
+                Event::CData(text) if is_in_array => self.add(&String::from_utf8_lossy(&text)),
                 Event::GeneralRef(reference) => {
                     let text = self.resolved(&reference, at)?;
-                    if let Some((_, numbers)) = &mut array {
-                        numbers.push_str(&text);
-                    }
+                    self.add(&text);
                 }
                 Event::End(_) => {
-                    let name = path.pop().unwrap_or_default();
-                    if name == b"DataArray" {
-                        let parent = path.last().cloned().unwrap_or_default();
-                        self.close(&parent, pieces, array.take(), &mut positions, &mut arrays, &mut time)?;
+                    path.pop();
+                    if is_in_array {
+                        self.close(path.last())?;
                     }
                 }
                 Event::Eof => break,
                 _ => {}
             }
         }
-        let positions = positions.ok_or_else(|| self.bytes.error_at(0, "an array in `<Points>`", "none"))?;
-        Ok(Points { time, positions, arrays })
+        let positions = self.positions.ok_or_else(|| self.bytes.error_at(0, "an array in `<Points>`", "none"))?;
+        Ok(Points { time: self.time, positions, arrays: self.arrays })
+    }
+
+    /// Adds text to the array whose tag is open.
+    fn add(&mut self, text: &str) {
+        if let Some(array) = &mut self.array {
+            array.text.push_str(text);
+        }
     }
 
     /// Returns the text of a reference such as `&#32;` or `&amp;`. Entities that a file defines are not supported.
@@ -139,12 +134,7 @@ impl File<'_> {
     }
 
     /// Reads the attributes of a tag.
-    fn open(
-        &mut self,
-        tag: &BytesStart<'_>,
-        array: &mut Option<(ArrayTag, String)>,
-        at: usize,
-    ) -> Result<(), ReadError> {
+    fn open(&mut self, tag: &BytesStart<'_>, at: usize) -> Result<(), ReadError> {
         let value = |key: &str| {
             tag.try_get_attribute(key).ok().flatten().map(|found| String::from_utf8_lossy(&found.value).into_owned())
         };
@@ -152,71 +142,58 @@ impl File<'_> {
             b"VTKFile" => {
                 let kind = value("type").unwrap_or_default();
                 if !["PolyData", "UnstructuredGrid"].contains(&kind.as_str()) {
-                    return Err(self.bytes.error_at(
-                        at,
-                        "a file of the type `PolyData` or `UnstructuredGrid`",
-                        quoted(&kind),
-                    ));
+                    let expected = "a file of the type `PolyData` or `UnstructuredGrid`";
+                    return Err(self.bytes.error_at(at, expected, quoted(&kind)));
                 }
                 self.is_big = value("byte_order").is_some_and(|order| order == "BigEndian");
                 self.wide = value("header_type").is_some_and(|header| header == "UInt64");
                 self.compressor = value("compressor");
             }
-            b"DataArray" => {
+            ARRAY => {
                 let count = |key: &str, usual: usize| match value(key) {
                     None => Ok(usual),
                     Some(text) => text
                         .parse()
                         .map_err(|_| self.bytes.error_at(at, format!("a whole number in `{key}`"), quoted(&text))),
                 };
-                let kind_word = value("type").unwrap_or_default();
-                let announced = ArrayTag {
+                self.array = Some(DataArray {
                     name: value("Name").unwrap_or_default(),
-                    kind: Number::of_xml(&kind_word),
-                    kind_word,
+                    kind: value("type").unwrap_or_default(),
                     components: count("NumberOfComponents", 1)?,
                     format: value("format").unwrap_or_else(|| "ascii".to_owned()),
                     offset: count("offset", 0)?,
                     at,
-                };
-                *array = Some((announced, String::new()));
+                    text: String::new(),
+                });
             }
             _ => {}
         }
         Ok(())
     }
 
-    /// Reads an array at the end of its tag if it contains positions, data of points, or the time. Numbers of a further
-    /// piece of the file are appended to the array of the same name.
-    fn close(
-        &self,
-        parent: &[u8],
-        pieces: usize,
-        array: Option<(ArrayTag, String)>,
-        positions: &mut Option<Array>,
-        arrays: &mut Vec<Array>,
-        time: &mut Option<f64>,
-    ) -> Result<(), ReadError> {
-        let Some((announced, text)) = array else { return Ok(()) };
-        let is_time = parent == b"FieldData" && pieces == 0 && announced.name.eq_ignore_ascii_case("TimeValue");
-        if !(parent == b"Points" || parent == b"PointData" || is_time) {
+    /// Reads the array whose tag ends if it contains positions, data of points, or the time. Numbers of a further piece of
+    /// the file are appended to the array of the same name.
+    fn close(&mut self, parent: Option<&Vec<u8>>) -> Result<(), ReadError> {
+        let Some(array) = self.array.take() else { return Ok(()) };
+        let is_in = |name: &[u8]| parent.is_some_and(|parent| parent == name);
+        let is_time = is_in(b"FieldData") && self.pieces == 0 && array.name.eq_ignore_ascii_case("TimeValue");
+        if !(is_in(b"Points") || is_in(b"PointData") || is_time) {
             return Ok(());
         }
-        let (at, name) = (announced.at, announced.name.clone());
-        let read = self.numbers(&announced, &text)?;
-        let components = if parent == b"Points" { 3 } else { announced.components };
+        let read = self.numbers(&array)?;
+        let components = if is_in(b"Points") { 3 } else { array.components };
         if components == 0 || read.numbers.len() % components != 0 {
-            let expected = format!("a whole number of points of {components} numbers in {}", quoted(&name));
-            return Err(self.bytes.error_at(at, expected, read.numbers.len().to_string()));
+            let expected = format!("a whole number of points of {components} numbers in {}", quoted(&array.name));
+            return Err(self.bytes.error_at(array.at, expected, read.numbers.len().to_string()));
         }
         let read = Array { components, ..read };
-        let known = if parent == b"Points" {
-            positions.as_mut()
+        let known = if is_in(b"Points") {
+            self.positions.as_mut()
         } else if is_time {
-            *time = read.numbers.first().copied();
+            self.time = read.numbers.first().copied();
             return Ok(());
         } else {
-            arrays.iter_mut().find(|known| known.name == name)
+            self.arrays.iter_mut().find(|known| known.name == array.name)
         };
         match known {
             Some(known) if known.components == components => {
@@ -224,25 +201,22 @@ impl File<'_> {
                 known.digits = known.digits.with(&read.digits);
             }
             Some(_) => {
-                return Err(self.bytes.error_at(
-                    at,
-                    "as many components as in the piece before",
-                    components.to_string(),
-                ));
+                let expected = "as many components as in the piece before";
+                return Err(self.bytes.error_at(array.at, expected, components.to_string()));
             }
-            None if parent == b"Points" => *positions = Some(read),
-            None => arrays.push(read),
+            None if is_in(b"Points") => self.positions = Some(read),
+            None => self.arrays.push(read),
         }
         Ok(())
     }
 
-    fn numbers(&self, announced: &ArrayTag, text: &str) -> Result<Array, ReadError> {
-        let ArrayTag { name, components, at, .. } = announced;
+    fn numbers(&self, array: &DataArray) -> Result<Array, ReadError> {
+        let DataArray { name, components, at, text, .. } = array;
         let fault = |expected: &str, found: String| {
             self.bytes.error_at(*at, format!("{expected} in the array {}", quoted(name)), found)
         };
-        let kind = announced.kind.ok_or_else(|| fault("a type of numbers", quoted(&announced.kind_word)))?;
-        let (numbers, digits) = match announced.format.as_str() {
+        let kind = Number::of_xml(&array.kind).ok_or_else(|| fault("a type of numbers", quoted(&array.kind)))?;
+        let (numbers, digits) = match array.format.as_str() {
             "ascii" => {
                 let mut digits = Digits::default();
                 let number = |word: &str| {
@@ -254,15 +228,15 @@ impl File<'_> {
             }
             "binary" | "appended" => {
                 let encoded: Vec<u8>;
-                let stream = if announced.format == "binary" {
+                let stream = if array.format == "binary" {
                     encoded = text.bytes().filter(|byte| !byte.is_ascii_whitespace()).collect();
                     Stream { data: &encoded, is_text: true }
                 } else {
                     let appended = self.appended.ok_or_else(|| fault("`<AppendedData>`", "none".to_owned()))?;
-                    let data = appended.data.get(announced.offset..);
+                    let data = appended.data.get(array.offset..);
                     let data =
-                        data.ok_or_else(|| fault("an offset inside the appended data", announced.offset.to_string()))?;
-                    Stream { data, is_text: appended.is_text }
+                        data.ok_or_else(|| fault("an offset inside the appended data", array.offset.to_string()))?;
+                    Stream { data, ..appended }
                 };
                 let bytes = self.unpacked(stream).map_err(|what| fault("complete encoded data", what))?;
                 if bytes.len() % kind.size() != 0 {
@@ -283,7 +257,7 @@ impl File<'_> {
             kind.decode(bytes, self.is_big).iter().map(|length| *length as usize).collect()
         };
         let Some(compressor) = &self.compressor else {
-            let whole = stream.clone_at_start().take(size)?;
+            let whole = stream.ahead(size)?;
             let length = lengths(&whole)[0];
             return if stream.is_apart(size) {
                 stream.take(size)?;
@@ -296,7 +270,7 @@ impl File<'_> {
         if compressor != ZLIB {
             return Err(format!("a compression by {}; only {ZLIB} is supported", quoted(compressor)));
         }
-        let blocks = lengths(&stream.clone_at_start().take(size)?)[0];
+        let blocks = lengths(&stream.ahead(size)?)[0];
         let head = blocks
             .checked_add(3)
             .and_then(|words| words.checked_mul(size))
@@ -330,8 +304,9 @@ struct Stream<'s> {
 }
 
 impl Stream<'_> {
-    const fn clone_at_start(&self) -> Self {
-        *self
+    /// Returns the next `count` bytes. The reading position does not change.
+    fn ahead(mut self, count: usize) -> Result<Vec<u8>, String> {
+        self.take(count)
     }
 
     /// Returns true if the first `count` bytes are encoded separately from the following bytes. In base-64 text,
