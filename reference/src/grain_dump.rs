@@ -11,7 +11,7 @@ use crate::names::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
 use crate::read::ids::Ids;
-use crate::read::numbers::quoted_names;
+use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 

@@ -13,7 +13,7 @@ use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
 use crate::read::ids::Ids;
-use crate::read::numbers::quoted_names;
+use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 

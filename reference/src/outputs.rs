@@ -14,7 +14,7 @@ use crate::observer::{DumpObserver, DumpRecord};
 use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
 use crate::read::log::{Log, read_log};
-use crate::read::numbers::quoted_names;
+use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};

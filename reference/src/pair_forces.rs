@@ -8,7 +8,7 @@ use nalgebra::Vector3;
 
 use crate::names::Names;
 use crate::read::digits::Digits;
-use crate::read::numbers::quoted_names;
+use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 

@@ -168,7 +168,7 @@ impl Frames {
             }
             FrameSource::Table { rows, table, step, time } => {
                 let Some(row) = rows.next() else { return Ok(None) };
-                let numbers = table.rows_from(row, 1).to_vec();
+                let numbers = table.row(row).to_vec();
                 let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
                 let step = step.map(|at| value(at) as u64);
                 let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
@@ -253,21 +253,22 @@ impl Frames {
 
     /// Returns the printed digits of a column. The result is final after all frames have been read.
     pub(super) fn printed(&self, name: &str) -> PrintedDigits {
-        let (columns, of_file) = match &self.from {
+        let table: &Table = match &self.from {
             FrameSource::Grains { snapshot, .. } => {
-                let of_file = snapshot.digits();
                 let axis = AXES.iter().position(|axis| *axis == name);
                 if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
                     let digits = snapshot.columns[coordinate.column].digits;
                     let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
+                    let of_file = snapshot.digits();
                     return PrintedDigits { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
                 }
-                (&snapshot.columns, of_file)
+                snapshot
             }
-            FrameSource::Table { table, .. } => (&table.columns, table.digits()),
+            FrameSource::Table { table, .. } => table,
         };
-        let name = self.names.in_file(name);
-        let column = columns.iter().find(|column| column.name == name);
-        column.map_or(PrintedDigits::default(), |column| PrintedDigits { digits: column.digits, of_file, scale: None })
+        table.column(self.names.in_file(name)).map_or(PrintedDigits::default(), |column| {
+            let (digits, of_file) = (table.columns[column].digits, table.digits());
+            PrintedDigits { digits, of_file, scale: None }
+        })
     }
 }

@@ -2,7 +2,7 @@
 
 use crate::deck::Stepping;
 use crate::observer::{DumpObserver, DumpRecord, Names};
-use crate::read::numbers::quoted_names;
+use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 use crate::read::table::{Table, read_table};
@@ -33,13 +33,8 @@ pub(super) fn observe(
             let expected = format!("a step after {before}");
             return Err(ReadError::at(name, row as u64 + 2, expected, step.to_string()));
         }
-        let snapshot = DumpSnapshot {
-            step,
-            columns: table.columns.clone(),
-            first_line: row as u64 + 2,
-            values: table.rows_from(row, rows).to_vec(),
-            ..DumpSnapshot::default()
-        };
+        let snapshot =
+            DumpSnapshot { step, table: table.part(row, rows), first_line: row as u64 + 2, ..DumpSnapshot::default() };
         observer.take(name, &snapshot, names, step as f64 * time_step, None)?;
         (row, last) = (row + rows, Some(step));
     }

@@ -92,11 +92,11 @@ impl<'r> DumpReader<'r> {
         let before = is_repeated.then(|| snapshot.clone());
         self.last_step = Some(next.step);
         if snapshot.columns.iter().map(|column| &column.name).eq(next.columns.iter().map(|column| &column.name)) {
-            next.columns = mem::take(&mut snapshot.columns);
+            next.table.columns = mem::take(&mut snapshot.table.columns);
         }
         // Memory grows with the rows that are present, not with the declared number.
-        next.values = mem::take(&mut snapshot.values);
-        next.values.clear();
+        next.table.values = mem::take(&mut snapshot.table.values);
+        next.table.values.clear();
         next.units.clone_from(&self.units);
         next.first_line = self.lines.number() + 1;
         *snapshot = next;
@@ -107,7 +107,7 @@ impl<'r> DumpReader<'r> {
         for row in 0..rows {
             let read = self.read_row(row, rows, snapshot);
             read.map_err(|error| self.lines.cut_if_unended(error))?;
-            if snapshot.values.len() > MOST_NUMBERS {
+            if snapshot.table.values.len() > MOST_NUMBERS {
                 let expected = format!("at most {MOST_NUMBERS} numbers in a snapshot");
                 return Err(self.lines.error(expected, "more"));
             }
@@ -130,7 +130,7 @@ impl<'r> DumpReader<'r> {
             let found = quoted(line.text()?.text.trim_end());
             return Err(ReadError::at(line.file, line.number, place(), found));
         }
-        self.form.read(line, &mut snapshot.columns, &mut snapshot.values)?;
+        self.form.read(line, &mut snapshot.table)?;
         if !line.ended {
             let expected = format!("the end of {}", place());
             let column = line.text()?.text.chars().count() + 1;

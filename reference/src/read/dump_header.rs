@@ -2,7 +2,7 @@
 
 use crate::read::fields::Fields;
 use crate::read::lines::{Line, Lines};
-use crate::read::numbers::NumberColumn;
+use crate::read::number_table::NumberColumn;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 
@@ -117,7 +117,7 @@ impl DumpHeader {
             }
         }
         self.snapshot.kind = if word == "ATOMS" { DumpKind::Atoms } else { DumpKind::Entries };
-        self.snapshot.columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
+        self.snapshot.table.columns = columns.iter().map(|name| NumberColumn::new(name)).collect();
         Ok(())
     }
 

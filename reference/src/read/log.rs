@@ -1,12 +1,13 @@
 //! Logs that LAMMPS and LIGGGHTS print during a run.
 
 use std::io::BufRead;
+use std::mem;
 use std::path::Path;
 
 use crate::read::lines::{Line, Lines, opened};
-use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
+use crate::read::number_table::{NumberColumn, Table};
+use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::read_error::{ReadError, quoted};
-use crate::read::table::Table;
 
 /// Output of one `run` command in a log.
 #[derive(Debug, Clone, PartialEq)]
@@ -87,24 +88,23 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
         if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
             log.version = Some(line.text.trim().to_owned());
         }
-        if let ExpectedLine::Rows(columns, values) = &mut expected {
+        if let ExpectedLine::Rows(thermo) = &mut expected {
             match words().next() {
                 Some("Loop") => {
                     let end = Some(loop_time(line)?);
-                    let thermo = Table::new(std::mem::take(columns), std::mem::take(values));
-                    log.runs.push(LoggedRun { thermo, time_step: log.time_step, end });
+                    log.runs.push(LoggedRun { thermo: mem::take(thermo), time_step: log.time_step, end });
                     expected = ExpectedLine::Text;
                 }
                 // Blank lines are skipped in this case, and warnings in the next one.
                 None => {}
                 Some(word) if word.starts_with(char::is_alphabetic) && word.parse::<f64>().is_err() => {}
-                Some(_) => ROW.read(line.raw(), columns, values)?,
+                Some(_) => ROW.read(line.raw(), thermo)?,
             }
             continue;
         }
         if expected == ExpectedLine::Names || words().next() == Some("Step") {
             if let Some(columns) = columns_of(line) {
-                expected = ExpectedLine::Rows(columns, Vec::new());
+                expected = ExpectedLine::Rows(Table::new(columns, Vec::new()));
                 continue;
             }
             if line.text.starts_with("---") {
@@ -130,8 +130,8 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
             _ => ExpectedLine::Text,
         };
     }
-    if let ExpectedLine::Rows(columns, values) = expected {
-        log.runs.push(LoggedRun { thermo: Table::new(columns, values), time_step: log.time_step, end: None });
+    if let ExpectedLine::Rows(thermo) = expected {
+        log.runs.push(LoggedRun { thermo, time_step: log.time_step, end: None });
     }
     if log.runs.is_empty() {
         let found = if lines.number() == 0 { "an empty file" } else { "none" };
@@ -150,8 +150,8 @@ enum ExpectedLine {
     Text,
     /// Names of the columns.
     Names,
-    /// Rows of these columns.
-    Rows(Vec<NumberColumn>, Vec<f64>),
+    /// Rows of this table.
+    Rows(Table),
 }
 
 /// Returns the columns if a line consists of column names: distinct words that are not numbers, including `Step`.

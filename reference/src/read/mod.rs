@@ -13,7 +13,7 @@ pub(crate) mod format;
 pub(crate) mod ids;
 pub(crate) mod lines;
 pub(crate) mod log;
-mod number_table;
+pub(crate) mod number_table;
 pub(crate) mod numbers;
 pub(crate) mod parquet;
 pub(crate) mod read_error;

@@ -1,33 +1,8 @@
 //! Parser of rows of numbers that are separated by blanks or by another separator.
 
-use crate::read::digits::Digits;
 use crate::read::lines::RawLine;
+use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
-
-/// Column of a table of numbers.
-#[derive(Debug, Clone, PartialEq, Eq)]
-pub struct NumberColumn {
-    /// Name in the file.
-    pub name: String,
-    /// Printed digits of the numbers read so far.
-    pub digits: Digits,
-    /// True for a column of words, such as `element`, whose numbers are NaN.
-    pub is_text: bool,
-}
-
-impl NumberColumn {
-    /// Returns a column without digits so far. The columns `element` and `typelabel` contain words.
-    pub(crate) fn new(name: &str) -> Self {
-        let is_text = matches!(name, "element" | "typelabel");
-        Self { name: name.to_owned(), digits: Digits::default(), is_text }
-    }
-}
-
-/// Returns the names of columns as quoted text for error messages.
-pub(crate) fn quoted_names(columns: &[NumberColumn]) -> String {
-    let names: Vec<&str> = columns.iter().map(|column| column.name.as_str()).collect();
-    quoted(&names.join(" "))
-}
 
 /// Treatment of NaN and infinity.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
@@ -59,13 +34,9 @@ impl RowForm {
         at
     }
 
-    /// Appends the numbers of a line, one for each column, to `values`.
-    pub(crate) fn read(
-        self,
-        line: RawLine<'_>,
-        columns: &mut [NumberColumn],
-        values: &mut Vec<f64>,
-    ) -> Result<(), ReadError> {
+    /// Appends the numbers of a line to a table, one for each column.
+    pub(crate) fn read(self, line: RawLine<'_>, table: &mut Table) -> Result<(), ReadError> {
+        let Table { columns, values } = table;
         let bytes = line.bytes;
         let mut at = 0;
         for (place, column) in columns.iter_mut().enumerate() {

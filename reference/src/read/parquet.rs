@@ -1,8 +1,7 @@
 //! Tables of numbers in Parquet files, uncompressed or compressed by Snappy.
 
 use super::digits::Digits;
-use super::number_table::{MOST_NUMBERS, Table};
-use super::numbers::NumberColumn;
+use super::number_table::{MOST_NUMBERS, NumberColumn, Table};
 use super::read_error::{ReadError, quoted};
 use parquet::errors::ParquetError;
 use parquet::file::reader::{FileReader, SerializedFileReader};

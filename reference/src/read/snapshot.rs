@@ -1,7 +1,8 @@
 //! Snapshot of a dump.
 
-use crate::read::digits::Digits;
-use crate::read::numbers::NumberColumn;
+use std::ops::Deref;
+
+use crate::read::number_table::Table;
 use crate::read::read_error::ReadError;
 
 /// Content of the rows in a dump.
@@ -26,7 +27,7 @@ pub enum Numbering {
     Frames,
 }
 
-/// Snapshot of a dump, in the units of its file.
+/// Snapshot of a dump: a table of grains or entries at one moment, in the units of its file.
 #[derive(Debug, Clone, PartialEq, Default)]
 pub struct DumpSnapshot {
     /// Step, or another number by which snapshots are ordered.
@@ -45,39 +46,21 @@ pub struct DumpSnapshot {
     pub tilt: [f64; 3],
     /// True for each periodic axis.
     pub periodic: [bool; 3],
-    /// Columns in the order of the file.
-    pub columns: Vec<NumberColumn>,
+    /// Columns and rows.
+    pub(crate) table: Table,
     /// Line number of the first row, counted from 1.
     pub first_line: u64,
-    /// Numbers, row by row.
-    pub(crate) values: Vec<f64>,
+}
+
+impl Deref for DumpSnapshot {
+    type Target = Table;
+
+    fn deref(&self) -> &Table {
+        &self.table
+    }
 }
 
 impl DumpSnapshot {
-    /// Returns the number of rows.
-    #[must_use]
-    pub fn rows(&self) -> usize {
-        self.values.len().checked_div(self.columns.len()).unwrap_or(0)
-    }
-
-    /// Returns the index of a column.
-    #[must_use]
-    pub fn column(&self, name: &str) -> Option<usize> {
-        self.columns.iter().position(|column| column.name == name)
-    }
-
-    /// Returns the numbers of a row, one for each column.
-    #[must_use]
-    pub fn row(&self, row: usize) -> &[f64] {
-        let width = self.columns.len();
-        self.values.get(row * width..(row + 1) * width).unwrap_or_default()
-    }
-
-    /// Returns the numbers of a column, from top to bottom.
-    pub fn values(&self, column: usize) -> impl Iterator<Item = f64> {
-        self.values.iter().skip(column).step_by(self.columns.len().max(1)).copied()
-    }
-
     /// Returns the conversion from the columns `x`, `xu`, `xs` or `xsu` to the coordinate along an axis (0, 1, 2: x, y,
     /// z), or `None` if there is no such column.
     #[must_use]
@@ -139,7 +122,7 @@ impl DumpSnapshot {
             return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
         }
         let orders = [other, self].map(|snapshot| snapshot.rows_by(snapshot.column("id")));
-        let of_files = [other, self].map(Self::digits);
+        let of_files = [other, self].map(|snapshot| snapshot.digits());
         for (at, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_text) {
             let Some(before) = other.column(&column.name) else { continue };
             let digits = [other.columns[before].digits, column.digits];
@@ -161,12 +144,6 @@ impl DumpSnapshot {
         let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
         let expected = format!("{expected} as in the earlier frame of step {}", self.step);
         Err(ReadError::at(file, self.first_line + row as u64, expected, found))
-    }
-
-    /// Returns the combined digits of all columns of numbers.
-    #[must_use]
-    pub fn digits(&self) -> Digits {
-        Digits::all(self.columns.iter().filter(|column| !column.is_text).map(|column| &column.digits))
     }
 }
 

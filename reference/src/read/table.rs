@@ -4,9 +4,9 @@ use std::io::BufRead;
 use std::path::Path;
 
 use crate::read::lines::{Lines, opened};
-use crate::read::number_table::MOST_NUMBERS;
 pub use crate::read::number_table::Table;
-use crate::read::numbers::{NonFiniteNumbers, NumberColumn, RowForm};
+use crate::read::number_table::{MOST_NUMBERS, NumberColumn};
+use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
@@ -55,7 +55,7 @@ pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError>
                 let line = line.text()?;
                 return Err(line.error(format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
             }
-            form.read(line, &mut table.columns, &mut table.values)?;
+            form.read(line, &mut table)?;
             continue;
         }
         let line = line.text()?;

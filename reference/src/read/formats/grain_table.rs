@@ -2,7 +2,6 @@
 //! step or time form a snapshot. Columns have the names used in dumps or in ParaView.
 
 use crate::read::format::{FileContent, Format, check_grains, indexed};
-use crate::read::numbers::NumberColumn;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, header, read_table};
@@ -88,16 +87,16 @@ impl Keys {
 /// If the file cannot be read, has two columns of the same meaning, or if a step, frame number or time decreases.
 fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
     let name = path.to_string_lossy();
-    let table = read_table(path)?;
+    let mut table = read_table(path)?;
     let keys = Keys::from_table(&table);
-    let columns = columns(&name, &table)?;
+    rename_columns(&name, &mut table)?;
     let mut moments: Vec<Moment> = Vec::new();
     let mut row = 0;
     while row < table.rows() {
-        let key = keys.of_row(table.rows_from(row, 1));
-        let rows = (row..table.rows()).take_while(|&other| keys.of_row(table.rows_from(other, 1)) == key).count();
+        let key = keys.of_row(table.row(row));
+        let rows = (row..table.rows()).take_while(|&other| keys.of_row(table.row(other)) == key).count();
         let line = row as u64 + 2;
-        let before = row.checked_sub(1).map(|last| keys.of_row(table.rows_from(last, 1)));
+        let before = row.checked_sub(1).map(|last| keys.of_row(table.row(last)));
         if let Some([number, time]) = before.filter(|before| goes_back(*before, key)) {
             let expected = format!("a time after {:?}", time.or(number).unwrap_or_default());
             return Err(ReadError::at(&name, line, expected, format!("{:?}", key[1].or(key[0]).unwrap_or_default())));
@@ -115,9 +114,8 @@ fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
                 step,
                 numbering: if keys.step.is_some() { Numbering::Steps } else { Numbering::Frames },
                 time: key[1],
-                columns: columns.clone(),
+                table: table.part(row, rows),
                 first_line: line,
-                values: table.rows_from(row, rows).to_vec(),
                 ..DumpSnapshot::default()
             },
         });
@@ -130,16 +128,15 @@ fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
     before.into_iter().zip(key).any(|pair| matches!(pair, (Some(before), Some(now)) if now < before))
 }
 
-/// Returns the columns of a table, renamed as in dumps.
-fn columns(file: &str, table: &Table) -> Result<Vec<NumberColumn>, ReadError> {
-    let mut columns: Vec<NumberColumn> = Vec::new();
-    for column in &table.columns {
-        let name = column_name(&column.name);
-        if columns.iter().any(|other| other.name == name) {
+/// Renames the columns of a table as in dumps.
+fn rename_columns(file: &str, table: &mut Table) -> Result<(), ReadError> {
+    for at in 0..table.columns.len() {
+        let name = column_name(&table.columns[at].name);
+        if table.columns[..at].iter().any(|other| other.name == name) {
             let expected = format!("one column for `{name}`");
-            return Err(ReadError::at(file, 1, expected, format!("`{}` as a second column", column.name)));
+            return Err(ReadError::at(file, 1, expected, format!("`{}` as a second column", table.columns[at].name)));
         }
-        columns.push(NumberColumn { name, ..column.clone() });
+        table.columns[at].name = name;
     }
-    Ok(columns)
+    Ok(())
 }

@@ -6,7 +6,7 @@ use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::lines::opened;
-use crate::read::numbers::NumberColumn;
+use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use std::collections::BTreeMap;
@@ -184,30 +184,23 @@ impl Course {
     /// Returns the contacts of each moment, if the file contains them, then the grains of each moment, or `None` after
     /// the last.
     fn snapshot(&self, place: usize) -> Option<DumpSnapshot> {
-        match &self.contacts {
-            Some(contacts) if place < self.steps.len() => Some(self.entries(contacts, place)),
-            Some(_) => self.atoms(place - self.steps.len()),
-            None => self.atoms(place),
-        }
-    }
-
-    fn entries(&self, contacts: &Contacts, moment: usize) -> DumpSnapshot {
-        let row = |row: usize| contacts.numbers.iter().map(move |column| column[row]);
-        let (step, numbering, columns) = (self.steps[moment], self.numbering, contacts.columns.clone());
-        let (time, values) =
-            (self.times.as_ref().map(|times| times[moment]), contacts.ranges[moment].clone().flat_map(row).collect());
-        let kind = DumpKind::Entries;
-        DumpSnapshot { kind, step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() }
-    }
-
-    fn atoms(&self, moment: usize) -> Option<DumpSnapshot> {
+        let (contacts, moment) = match &self.contacts {
+            Some(contacts) if place < self.steps.len() => (Some(contacts), place),
+            Some(_) => (None, place - self.steps.len()),
+            None => (None, place),
+        };
         let (grains, step) = (self.grains, *self.steps.get(moment)?);
-        let number =
-            |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
-        let values = (0..grains).flat_map(|grain| self.numbers.iter().map(move |array| number(grain, array))).collect();
-        let time = self.times.as_ref().map(|times| times[moment]);
-        let (columns, numbering) = (self.columns.clone(), self.numbering);
-        Some(DumpSnapshot { step, numbering, time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+        let (kind, table) = if let Some(Contacts { columns, ranges, numbers }) = contacts {
+            let row = |row: usize| numbers.iter().map(move |column| column[row]);
+            (DumpKind::Entries, Table::new(columns.clone(), ranges[moment].clone().flat_map(row).collect()))
+        } else {
+            let number =
+                |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
+            let row = |grain: usize| self.numbers.iter().map(move |array| number(grain, array));
+            (DumpKind::Atoms, Table::new(self.columns.clone(), (0..grains).flat_map(row).collect()))
+        };
+        let (time, numbering) = (self.times.as_ref().map(|times| times[moment]), self.numbering);
+        Some(DumpSnapshot { kind, step, numbering, time, table, first_line: 1, ..DumpSnapshot::default() })
     }
 }
 

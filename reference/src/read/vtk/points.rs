@@ -1,7 +1,7 @@
 //! Points with their data from VTK files, and their conversion to a snapshot of grains.
 
 use crate::read::digits::Digits;
-use crate::read::numbers::NumberColumn;
+use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::DumpSnapshot;
 
@@ -73,12 +73,9 @@ impl Points {
         let points = self.positions.numbers.len() / 3;
         let mut columns: Vec<NumberColumn> = Vec::new();
         let mut parts: Vec<(&Array, usize)> = Vec::new();
-        for array in [&self.positions].into_iter().chain(&self.arrays) {
-            let names = if std::ptr::eq(array, &raw const self.positions) {
-                AXES.map(str::to_owned).to_vec()
-            } else {
-                array.columns()
-            };
+        let positions = (&self.positions, AXES.map(str::to_owned).to_vec());
+        let others = self.arrays.iter().map(|array| (array, array.columns()));
+        for (array, names) in [positions].into_iter().chain(others) {
             if array.numbers.len() != points * array.components {
                 let expected = format!("{points} of {} numbers in the array {}", array.components, quoted(&array.name));
                 return Err(ReadError::at(file, 1, expected, array.numbers.len().to_string()));
@@ -101,6 +98,7 @@ impl Points {
             parts.iter().map(move |(array, component)| array.numbers[point * array.components + component])
         };
         let values = (0..points).flat_map(row).collect();
-        Ok(DumpSnapshot { time: self.time, columns, first_line: 1, values, ..DumpSnapshot::default() })
+        let table = Table::new(columns, values);
+        Ok(DumpSnapshot { time: self.time, table, first_line: 1, ..DumpSnapshot::default() })
     }
 }
