@@ -5,6 +5,7 @@ use std::path::Path;
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Scene;
 
+use crate::grain_columns::GrainColumns;
 use crate::observer::Names;
 use crate::outputs::OutputError;
 use crate::read::ids::Ids;
@@ -28,20 +29,18 @@ pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&
             return Err(none());
         }
     }
-    let column = |ours: &str| snapshot.column(names.in_file(ours));
-    let id = column("id");
-    if let Some(id) = id {
+    let columns = GrainColumns::find(&snapshot, names);
+    if let Some(id) = columns.id {
         Ids::default().check(&name, &snapshot, id)?;
     }
     if snapshot.rows() != scene.grains.len() {
         let expected = format!("{} grains, the number in the scene", scene.grains.len());
         return Err(ReadError::at(&name, snapshot.first_line, expected, snapshot.rows().to_string()).into());
     }
-    let order = snapshot.rows_by(id);
+    let order = snapshot.rows_by(columns.id);
     let (flat, shape) = (scene.dimension == Dimension::Two, scene.grain_shape);
     let axes = scene.dimension.count();
     let mut read = Vec::new();
-    let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));
     let positive = |ours: &str, at: usize, scale: f64, row: usize| {
         let value = scale * snapshot.row(row)[at];
         if value.is_finite() && value > 0.0 {
@@ -50,7 +49,7 @@ pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&
         let line = snapshot.first_line + row as u64;
         Err(ReadError::at(&name, line, format!("a positive {ours}"), format!("{value:?}")))
     };
-    if let Some((at, scale)) = radius {
+    if let Some((at, scale)) = columns.radius {
         read.push("radii");
         for (grain, &row) in scene.grains.iter_mut().zip(&order) {
             let density = grain.mass / shape.mass(grain.radius, 1.0);
@@ -59,28 +58,27 @@ pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&
             grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
         }
     }
-    if let Some(at) = column("mass") {
+    if let Some(at) = columns.mass {
         read.push("masses");
         for (grain, &row) in scene.grains.iter_mut().zip(&order) {
             grain.mass = positive("mass", at, 1.0, row)?;
             grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
         }
     }
-    let positions = [0, 1, 2].map(|axis| names.coordinate(&snapshot, axis));
-    if positions[..axes].iter().all(Option::is_some) {
+    let positions = &columns.position[..axes];
+    if positions.iter().all(Option::is_some) {
         read.push("positions");
         for (grain, &row) in scene.grains.iter_mut().zip(&order) {
-            for (axis, at) in positions[..axes].iter().enumerate() {
+            for (axis, at) in positions.iter().enumerate() {
                 grain.position[axis] = at.map_or(0.0, |at| at.value(snapshot.row(row)));
             }
         }
     }
-    for (words, ours) in [("velocities", ["vx", "vy", "vz"]), ("spins", ["omegax", "omegay", "omegaz"])] {
+    for (words, columns) in [("velocities", columns.velocity), ("spins", columns.spin)] {
         let range = match (flat, words) {
             (true, "spins") => 2..3,
             _ => 0..axes,
         };
-        let columns = ours.map(column);
         if !columns[range.clone()].iter().all(Option::is_some) {
             continue;
         }

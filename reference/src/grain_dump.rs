@@ -7,6 +7,7 @@ use grainbench_scene::dimension::GrainShape;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
+use crate::grain_columns::GrainColumns;
 use crate::names::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
@@ -44,16 +45,11 @@ pub struct GrainDump {
     entries: DumpSnapshot,
 }
 
-/// Indices of columns in a dump.
+/// Indices of columns in a dump, with the required ones.
 struct Columns {
     id: usize,
-    kind: Option<usize>,
     position: [Coordinate; 3],
-    velocity: Option<[Option<usize>; 3]>,
-    /// Index of the column of radii or diameters, and factor from its values to radii.
-    radius: Option<(usize, f64)>,
-    mass: Option<usize>,
-    density: Option<usize>,
+    found: GrainColumns,
 }
 
 impl GrainDump {
@@ -158,27 +154,18 @@ impl GrainDump {
 
     fn columns(&self) -> Result<Columns, ReadError> {
         let Self { rows, beside, file, .. } = self;
-        let column = |name: &str| rows.column(beside.names.in_file(name));
+        let found = GrainColumns::find(rows, &beside.names);
         let missing = |what: &str| Self::missing(file, rows, what);
         let coordinate = |axis: usize| {
             let name = ["x", "y", "z"][axis];
-            let found = beside.names.coordinate(rows, axis);
-            found.ok_or_else(|| missing(&format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")))
+            found.position[axis]
+                .ok_or_else(|| missing(&format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")))
         };
-        let radius = column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5)));
-        if radius.is_none() && beside.radius.is_none() {
+        if found.radius.is_none() && beside.radius.is_none() {
             return Err(missing("a column `radius` or `diameter`, or the option `--radius`"));
         }
-        let velocity = ["vx", "vy", "vz"].map(column);
-        Ok(Columns {
-            id: column("id").ok_or_else(|| missing("a column `id`"))?,
-            kind: column("type"),
-            position: [coordinate(0)?, coordinate(1)?, coordinate(2)?],
-            velocity: (velocity[0].is_some() && velocity[1].is_some()).then_some(velocity),
-            radius,
-            mass: column("mass"),
-            density: column("density"),
-        })
+        let id = found.id.ok_or_else(|| missing("a column `id`"))?;
+        Ok(Columns { id, position: [coordinate(0)?, coordinate(1)?, coordinate(2)?], found })
     }
 
     fn grain(&self, row: usize, columns: &Columns) -> Result<GrainState, ReadError> {
@@ -190,24 +177,25 @@ impl GrainDump {
         if !(1.0..=f64::from(u32::MAX)).contains(&id) {
             return fault("an id from 1 to 4294967295", id);
         }
-        let radius =
-            columns.radius.map_or_else(|| self.beside.radius.unwrap_or(f64::NAN), |(at, factor)| factor * numbers[at]);
+        let GrainColumns { kind, radius, mass, density, velocity, .. } = &columns.found;
+        let radius = radius.map_or_else(|| self.beside.radius.unwrap_or(f64::NAN), |(at, factor)| factor * numbers[at]);
         if !(radius > 0.0 && radius.is_finite()) {
             return fault("a radius above zero", radius);
         }
         let shape = if self.beside.plane { GrainShape::Disc } else { GrainShape::Sphere };
-        let density = columns.density.map(|at| numbers[at]).or(self.beside.density);
-        let mass = columns.mass.map(|at| numbers[at]).or_else(|| density.map(|density| shape.mass(radius, density)));
+        let density = density.map(|at| numbers[at]).or(self.beside.density);
+        let mass = mass.map(|at| numbers[at]).or_else(|| density.map(|density| shape.mass(radius, density)));
         let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.value(numbers)));
         if self.beside.plane {
             position.z = 0.0;
         }
-        let velocity = columns
-            .velocity
-            .map_or(Vector3::repeat(f64::NAN), |axes| Vector3::from(axes.map(|at| at.map_or(0.0, |at| numbers[at]))));
+        let velocity = match velocity {
+            [Some(_), Some(_), _] => Vector3::from(velocity.map(|at| at.map_or(0.0, |at| numbers[at]))),
+            _ => Vector3::repeat(f64::NAN),
+        };
         Ok(GrainState {
             id: id as u32,
-            material: columns.kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
+            material: kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
             radius,
             // Values that the file does not contain are NaN.
             mass: mass.unwrap_or(f64::NAN),

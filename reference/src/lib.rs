@@ -9,6 +9,7 @@ pub mod data;
 pub mod deck;
 mod execution;
 mod first_sample;
+mod grain_columns;
 pub mod grain_dump;
 pub mod live;
 pub mod names;

@@ -8,6 +8,7 @@ use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
 use crate::deck::Stepping;
+use crate::grain_columns::GrainColumns;
 pub use crate::names::Names;
 use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
@@ -64,18 +65,30 @@ struct KnownQuantities {
     walls: Vec<bool>,
 }
 
-/// Indices of the columns of a snapshot.
-struct Columns {
-    id: Option<usize>,
-    position: [Option<Coordinate>; 3],
-    velocity: [Option<usize>; 3],
-    spin: [Option<usize>; 3],
-    angle: Option<usize>,
-    /// Index of the column of radii or diameters, and factor from its values to radii.
-    radius: Option<(usize, f64)>,
-    mass: Option<usize>,
+/// Snapshot of a file, with its columns and digits.
+struct Frame<'f> {
+    file: &'f str,
+    snapshot: &'f DumpSnapshot,
+    columns: GrainColumns,
     /// Indices of the columns of each wall's force on the grains.
     walls: Vec<[Option<usize>; 3]>,
+    /// Printed digits of each column in the whole file. Without them, printed numbers count as exact.
+    digits: Option<&'f [Digits]>,
+    /// Combined digits of all columns.
+    of_file: Digits,
+}
+
+impl Frame<'_> {
+    /// Returns the uncertainty of a printed number in a column.
+    fn uncertainty(&self, column: usize, printed: f64) -> f64 {
+        let digits = self.digits.and_then(|digits| digits.get(column));
+        digits.map_or(0.0, |digits| digits.uncertainty(printed, &self.of_file))
+    }
+
+    /// Returns an error at a row.
+    fn error(&self, row: usize, expected: String, found: String) -> ReadError {
+        ReadError::at(self.file, self.snapshot.first_line + row as u64, expected, found)
+    }
 }
 
 /// Relative rounding error of a radius or mass that a program computes from another quantity.
@@ -138,40 +151,37 @@ impl<'s> DumpObserver<'s> {
         time: f64,
         digits: Option<&[Digits]>,
     ) -> Result<(), ReadError> {
-        let columns = self.columns(file, snapshot, names)?;
+        let frame = self.frame(file, snapshot, names, digits)?;
+        let (columns, axes) = (&frame.columns, self.scene.dimension.count());
         let flat = self.scene.dimension == Dimension::Two;
         let all = |axes: &[Option<usize>]| axes.iter().all(Option::is_some);
-        self.known.velocity &= all(&columns.velocity[..self.scene.dimension.count()]);
+        self.known.velocity &= all(&columns.velocity[..axes]);
         self.known.spin &= if flat { columns.spin[2].is_some() } else { all(&columns.spin) };
         self.known.angle &= columns.angle.is_some();
-        for (known, wall) in self.known.walls.iter_mut().zip(&columns.walls) {
-            *known &= all(&wall[..self.scene.dimension.count()]);
+        for (known, wall) in self.known.walls.iter_mut().zip(&frame.walls) {
+            *known &= all(&wall[..axes]);
         }
-        let order = self.order(file, snapshot, &columns)?;
+        let order = self.order(&frame)?;
         if self.known.pairs && !self.pairs.has(snapshot.step) {
             let expected = format!("a dump with the contacts of step {}", snapshot.step);
-            return Err(ReadError::at(file, snapshot.first_line, expected, "only grains"));
+            return Err(frame.error(0, expected, "only grains".to_owned()));
         }
         if flat {
-            self.check_plane(file, snapshot, &columns, &order, digits)?;
+            self.check_plane(&frame, &order)?;
         }
-        if let Some(digits) = digits {
-            self.check_grains(file, snapshot, &columns, &order, digits)?;
+        if digits.is_some() {
+            self.check_grains(&frame, &order)?;
         }
         let past = self.due.partition_point(|&due| due <= snapshot.step);
         let keep = past > 0 || self.last.is_none();
         self.due = &self.due[past..];
-        let of_file = digits.map(Digits::all);
         let shifts = if digits.is_some() { &[Shift::None, Shift::Along, Shift::Outwards][..] } else { &[Shift::None] };
         for (&shift, recorder) in shifts.iter().zip(&mut self.recorders) {
             let value = |row: &[f64], column: Option<usize>, scale: f64| -> f64 {
-                let Some(value) = column.and_then(|column| row.get(column)).copied() else { return 0.0 };
-                let unknown = match (digits, &of_file, column) {
-                    (Some(digits), Some(of_file), Some(column)) => {
-                        digits.get(column).map_or(0.0, |digits| digits.uncertainty(value, of_file)) * scale
-                    }
-                    _ => 0.0,
+                let Some((column, value)) = column.and_then(|column| Some((column, *row.get(column)?))) else {
+                    return 0.0;
                 };
+                let unknown = frame.uncertainty(column, value) * scale;
                 match shift {
                     Shift::None => 0.0,
                     Shift::Along => unknown,
@@ -206,8 +216,8 @@ impl<'s> DumpObserver<'s> {
             let id = |grain: usize| columns.id.map_or(1, |id| snapshot.row(order[grain].1)[id] as u64);
             let of_wall = |wall: usize, grain: usize| {
                 let row = snapshot.row(order[grain].1);
-                let at = columns.walls[wall];
-                all(&at[..self.scene.dimension.count()]).then(|| PairForce {
+                let at = frame.walls[wall];
+                all(&at[..axes]).then(|| PairForce {
                     force: Vector3::from(at.map(|at| at.and_then(|at| row.get(at)).copied().unwrap_or(0.0))),
                     open: at.iter().map(|&at| value(row, at, 1.0).abs()).sum(),
                 })
@@ -240,78 +250,64 @@ impl<'s> DumpObserver<'s> {
     }
 
     /// Finds the columns of a snapshot. The id and the positions are required.
-    fn columns(&self, file: &str, snapshot: &DumpSnapshot, names: &Names) -> Result<Columns, ReadError> {
+    fn frame<'f>(
+        &self,
+        file: &'f str,
+        snapshot: &'f DumpSnapshot,
+        names: &Names,
+        digits: Option<&'f [Digits]>,
+    ) -> Result<Frame<'f>, ReadError> {
         let missing = |what: &str| {
             let line = snapshot.first_line.saturating_sub(1);
             ReadError::at(file, line, format!("a column {what}"), quoted_names(&snapshot.columns))
         };
-        let column = |name: &str| snapshot.column(names.in_file(name));
-        let id = column("id");
-        if id.is_none() && self.scene.grains.len() > 1 {
+        let columns = GrainColumns::find(snapshot, names);
+        if columns.id.is_none() && self.scene.grains.len() > 1 {
             return Err(missing("`id`, because there are several grains"));
         }
-        let mut position = [None; 3];
-        for axis in 0..3 {
+        let needed = &columns.position[..self.scene.dimension.count()];
+        if let Some(axis) = needed.iter().position(Option::is_none) {
             let name = ["x", "y", "z"][axis];
-            position[axis] = names.coordinate(snapshot, axis);
-            if position[axis].is_none() && axis < self.scene.dimension.count() {
-                let theirs = names.in_file(name);
-                return Err(missing(&format!("`{theirs}`, `{name}u`, `{name}s` or `{name}su`")));
-            }
+            return Err(missing(&format!("`{}`, `{name}u`, `{name}s` or `{name}su`", names.in_file(name))));
         }
-        let vector = |names: [&str; 3]| names.map(column);
         let of_deck = |name: &str| {
             let mut theirs = self.names_of_decks.0.iter().filter(|(ours, _)| ours == name);
             theirs.find_map(|(_, theirs)| snapshot.column(theirs))
         };
-        let force = |name: String| column(&name).or_else(|| of_deck(&name).filter(|_| names.in_file(&name) == name));
+        let force = |name: String| {
+            let theirs = names.in_file(&name);
+            snapshot.column(theirs).or_else(|| of_deck(&name).filter(|_| theirs == name))
+        };
         let of_wall = |name: &str| ["x", "y", "z"].map(|axis| force(format!("{name}.force_{axis}")));
-        Ok(Columns {
-            id,
-            position,
-            velocity: vector(["vx", "vy", "vz"]),
-            spin: vector(["omegax", "omegay", "omegaz"]),
-            angle: column("angle"),
-            radius: column("radius").map(|at| (at, 1.0)).or_else(|| column("diameter").map(|at| (at, 0.5))),
-            mass: column("mass"),
-            walls: self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect(),
-        })
+        let walls = self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect();
+        let of_file = Digits::all(digits.unwrap_or_default());
+        Ok(Frame { file, snapshot, columns, walls, digits, of_file })
     }
 
     /// Checks that the grains of a two-dimensional scene stay in its plane: the coordinate z is constant, and the
     /// velocity along z and the spins about x and y are zero.
-    fn check_plane(
-        &mut self,
-        file: &str,
-        snapshot: &DumpSnapshot,
-        columns: &Columns,
-        order: &[(usize, usize)],
-        digits: Option<&[Digits]>,
-    ) -> Result<(), ReadError> {
-        let of_file = Digits::all(digits.unwrap_or_default());
-        let open = |column: usize, value: f64| {
-            digits.and_then(|digits| digits.get(column)).map_or(0.0, |digits| digits.uncertainty(value, &of_file))
-        };
+    fn check_plane(&mut self, frame: &Frame<'_>, order: &[(usize, usize)]) -> Result<(), ReadError> {
+        let GrainColumns { position, velocity, spin, .. } = &frame.columns;
         let period = self.scene.critical_time_step();
         for &(place, row) in order {
-            let (numbers, radius) = (snapshot.row(row), self.scene.grains[place].radius);
+            let (numbers, radius) = (frame.snapshot.row(row), self.scene.grains[place].radius);
             let wrong = |column: usize, expected: f64, found: f64| {
-                let (line, name) = (snapshot.first_line + row as u64, &snapshot.columns[column].name);
+                let name = &frame.snapshot.columns[column].name;
                 let expected = format!("grain {} in the plane of the scene, with `{name}` = {expected:?}", place + 1);
-                Err(ReadError::at(file, line, expected, format!("{found:?}")))
+                Err(frame.error(row, expected, format!("{found:?}")))
             };
-            if let Some(at) = columns.position[2] {
+            if let Some(at) = position[2] {
                 let height = *self.heights.entry(place).or_insert(at.value(numbers));
-                let printed: f64 = at.parts().map(|(column, scale)| open(column, numbers[column]) * scale.abs()).sum();
+                let open = |(column, scale): (usize, f64)| frame.uncertainty(column, numbers[column]) * scale.abs();
+                let printed: f64 = at.parts().map(open).sum();
                 if (at.value(numbers) - height).abs() > 2.0 * printed + COMPUTED * radius {
                     return wrong(at.column, height, at.value(numbers));
                 }
             }
-            let speed = columns.velocity.iter().flatten().map(|&at| numbers[at].abs()).fold(radius / period, f64::max);
-            let [along, about_x, about_y] = [columns.velocity[2], columns.spin[0], columns.spin[1]];
-            for (column, scale) in [(along, speed), (about_x, speed / radius), (about_y, speed / radius)] {
+            let speed = velocity.iter().flatten().map(|&at| numbers[at].abs()).fold(radius / period, f64::max);
+            for (column, scale) in [(velocity[2], speed), (spin[0], speed / radius), (spin[1], speed / radius)] {
                 let Some(at) = column else { continue };
-                if numbers[at].abs() > open(at, numbers[at]) + COMPUTED * scale {
+                if numbers[at].abs() > frame.uncertainty(at, numbers[at]) + COMPUTED * scale {
                     return wrong(at, 0.0, numbers[at]);
                 }
             }
@@ -320,36 +316,21 @@ impl<'s> DumpObserver<'s> {
     }
 
     /// Checks that radii and masses of the grains equal those of the scene within the uncertainty of their digits.
-    fn check_grains(
-        &self,
-        file: &str,
-        snapshot: &DumpSnapshot,
-        columns: &Columns,
-        order: &[(usize, usize)],
-        digits: &[Digits],
-    ) -> Result<(), ReadError> {
-        let of_file = Digits::all(digits);
+    fn check_grains(&self, frame: &Frame<'_>, order: &[(usize, usize)]) -> Result<(), ReadError> {
+        let GrainColumns { radius, mass, .. } = frame.columns;
         for &(place, row) in order {
             let grain = &self.scene.grains[place];
-            let known = [
-                ("radius", "m", columns.radius, grain.radius),
-                ("mass", "kg", columns.mass.map(|at| (at, 1.0)), grain.mass),
-            ];
+            let known = [("radius", "m", radius, grain.radius), ("mass", "kg", mass.map(|at| (at, 1.0)), grain.mass)];
             for (name, unit, column, expected) in known {
                 let Some((at, factor)) = column else { continue };
-                let Some(&printed) = snapshot.row(row).get(at) else { continue };
-                let open = digits.get(at).map_or(0.0, |digits| digits.uncertainty(printed, &of_file));
+                let Some(&printed) = frame.snapshot.row(row).get(at) else { continue };
+                let open = frame.uncertainty(at, printed);
                 if (factor * printed - expected).abs() <= factor * open + COMPUTED * expected {
                     continue;
                 }
-                let (line, column) = (snapshot.first_line + row as u64, &snapshot.columns[at].name);
+                let column = &frame.snapshot.columns[at].name;
                 let expected = format!("the {name} of grain {} as in the scene, {expected:?} {unit}", place + 1);
-                return Err(ReadError::at(
-                    file,
-                    line,
-                    expected,
-                    format!("{:?} {unit} in `{column}`", factor * printed),
-                ));
+                return Err(frame.error(row, expected, format!("{:?} {unit} in `{column}`", factor * printed)));
             }
         }
         Ok(())
@@ -357,20 +338,20 @@ impl<'s> DumpObserver<'s> {
 
     /// Returns the index in the scene and the row of each grain in a snapshot. Rows sorted by id are in the order of
     /// the scene. If grains were removed, the id is the index in the scene, counted from 1.
-    fn order(&self, file: &str, snapshot: &DumpSnapshot, columns: &Columns) -> Result<Vec<(usize, usize)>, ReadError> {
+    fn order(&self, frame: &Frame<'_>) -> Result<Vec<(usize, usize)>, ReadError> {
+        let Frame { file, snapshot, columns: GrainColumns { id, .. }, .. } = *frame;
         let (rows, grains) = (snapshot.rows(), self.scene.grains.len());
-        let wrong = |expected: String, found: String| Err(ReadError::at(file, snapshot.first_line, expected, found));
         let may_leave = self.scene.stays.removal.is_some() && rows < grains;
         if rows != grains && !may_leave {
             let expected = format!("{grains} grains, the number in the scene, at step {}", snapshot.step);
             let hint = if rows < grains { " (a scene that grains may leave has `removal`)" } else { "" };
-            return wrong(expected, format!("{rows}{hint}"));
+            return Err(frame.error(0, expected, format!("{rows}{hint}")));
         }
-        if let Some(id) = columns.id {
+        if let Some(id) = id {
             Ids::default().check(file, snapshot, id)?;
         }
-        let order = snapshot.rows_by(columns.id).into_iter();
-        let Some(id) = columns.id.filter(|_| may_leave) else { return Ok(order.enumerate().collect()) };
+        let order = snapshot.rows_by(id).into_iter();
+        let Some(id) = id.filter(|_| may_leave) else { return Ok(order.enumerate().collect()) };
         let id = |row: usize| snapshot.row(row)[id];
         let mut there: Vec<(usize, usize)> = Vec::with_capacity(rows);
         for row in order {
@@ -379,7 +360,7 @@ impl<'s> DumpObserver<'s> {
                 Some(place) => there.push((place, row)),
                 None => {
                     let expected = format!("each id from 1 to {grains} at most once at step {}", snapshot.step);
-                    return wrong(expected, format!("{}", id(row)));
+                    return Err(frame.error(0, expected, format!("{}", id(row))));
                 }
             }
         }
