@@ -22,7 +22,7 @@ pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&
     let name = shown(file);
     let none = || OutputError::NoGrains(name.clone());
     let files = in_order(&[file.to_owned()])?;
-    let mut reader = Snapshots::open(files.first().ok_or_else(none)?, u64::MAX)?;
+    let mut reader = Snapshots::open(files.first().ok_or_else(none)?, u64::MAX, false)?;
     let mut snapshot = DumpSnapshot::default();
     while snapshot.kind != DumpKind::Atoms || snapshot.columns.is_empty() {
         if !reader.read(&mut snapshot)? {

@@ -131,7 +131,7 @@ pub fn steps_in_words([shortest, longest]: [f64; 2]) -> String {
 }
 
 /// Sample that counts as time 0 if times are counted from the first sample.
-#[derive(Debug, Clone, Copy, PartialEq)]
+#[derive(Debug, Clone, Copy, PartialEq, Default)]
 pub struct Origin {
     /// Step or frame number.
     pub step: u64,
@@ -140,7 +140,7 @@ pub struct Origin {
 }
 
 /// Outputs of a run with their properties.
-#[derive(Debug, Clone)]
+#[derive(Debug, Clone, Default)]
 pub struct Outputs {
     sources: Sources,
     /// Dumps and files of one moment, sorted by step.
@@ -188,22 +188,8 @@ impl Outputs {
         if let (Some(log), Some(path)) = (&log, &sources.log) {
             log.units.as_deref().map_or(Ok(()), |units| check_units(path, units, &["si", "lj"]))?;
         }
-        let mut outputs = Self {
-            files: Vec::new(),
-            digits: Vec::new(),
-            contact_digits: Vec::new(),
-            table: None,
-            log: None,
-            clock: None,
-            ends: [0; 2],
-            origin: Origin { step: 0, time: None },
-            cuts: Vec::new(),
-            significant: 0,
-            ids: Vec::new(),
-            sources,
-        };
         let of_log = log.as_ref().and_then(Clock::of_log);
-        outputs.log.clone_from(&log);
+        let mut outputs = Self { sources, log, ..Self::default() };
         if let [file] = &outputs.sources.files[..]
             && format_of(file)?.is_none()
         {
@@ -219,8 +205,10 @@ impl Outputs {
             outputs.set_clock(of_log, from_table)?;
             return Ok(outputs);
         }
-        if let Some(table) = first_table(&outputs.sources.files)? {
-            return Err(OutputError::MixedFiles(shown(table)));
+        for file in &outputs.sources.files {
+            if format_of(file)?.is_none() {
+                return Err(OutputError::MixedFiles(shown(file)));
+            }
         }
         outputs.files = in_order(&outputs.sources.files)?;
         let mut survey = Survey::default();
@@ -229,7 +217,7 @@ impl Outputs {
             outputs.digits.push(digits);
         }
         share(&mut outputs.digits, outputs.files.iter().all(RunFile::is_of_a_moment));
-        if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &log, &outputs.sources.log)
+        if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {
             let (of_dump, of_log) = (of_dump.clone(), of_log.clone());
@@ -247,24 +235,18 @@ impl Outputs {
     /// Reads a file to the end. Adds the properties of its snapshots to `survey`, adds the digits of its contacts, and
     /// returns the digits of the columns of its last snapshot.
     fn look(&mut self, file: &RunFile, survey: &mut Survey) -> Result<Vec<Digits>, OutputError> {
-        let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX))?;
+        let mut reader = Snapshots::open(file, self.sources.most_rows.unwrap_or(u64::MAX), self.sources.partial)?;
         let (mut snapshot, mut of_contacts) = (DumpSnapshot::default(), Vec::new());
         let digits = |snapshot: &DumpSnapshot| snapshot.columns.iter().map(|column| column.digits).collect();
-        loop {
-            match reader.read(&mut snapshot) {
-                Ok(true) => {}
-                Ok(false) => break,
-                Err(error) if error.is_cut() && self.sources.partial => {
-                    self.cuts.push(error.to_string());
-                    break;
-                }
-                Err(error) => return Err(error.into()),
-            }
+        while reader.read(&mut snapshot)? {
             if snapshot.kind == DumpKind::Entries {
                 of_contacts = digits(&snapshot);
             } else {
                 if self.ids.is_empty() {
-                    self.ids = ids(&snapshot, &self.sources.names);
+                    let column = snapshot.column(self.sources.names.in_file("id"));
+                    let ids = column.into_iter().flat_map(|column| snapshot.values(column));
+                    self.ids = ids.map(|id| id as u64).collect();
+                    self.ids.sort_unstable();
                 }
                 survey.first.get_or_insert(Origin { step: snapshot.step, time: self.told_time(&snapshot) });
             }
@@ -283,6 +265,7 @@ impl Outputs {
                 survey.units = Some(units.clone());
             }
         }
+        self.cuts.extend(reader.cut);
         self.significant = self.significant.max(snapshot.digits().significant());
         self.contact_digits.push(of_contacts);
         Ok(digits(&snapshot))
@@ -376,10 +359,10 @@ impl Outputs {
         let mut before = DumpSnapshot::default();
         for (file, digits) in self.files.iter().zip(&self.digits) {
             let name = shown(&file.path);
-            let mut reader = Snapshots::open(file, u64::MAX)?;
+            let mut reader = Snapshots::open(file, u64::MAX, self.sources.partial)?;
             let mut snapshot = DumpSnapshot::default();
             let mut number = None;
-            while self.next(&mut reader, &mut snapshot)? {
+            while reader.read(&mut snapshot)? {
                 if snapshot.kind == DumpKind::Entries {
                     continue;
                 }
@@ -443,15 +426,6 @@ impl Outputs {
         }
     }
 
-    /// Reads the next snapshot. Returns false at the end of the file, or where it is truncated if truncation is
-    /// allowed.
-    fn next(&self, reader: &mut Snapshots, snapshot: &mut DumpSnapshot) -> Result<bool, OutputError> {
-        match reader.read(snapshot) {
-            Err(error) if error.is_cut() && self.sources.partial => Ok(false),
-            read => Ok(read?),
-        }
-    }
-
     /// Returns the time of a snapshot (s), if the file contains it or it follows from the frame interval.
     fn told_time(&self, snapshot: &DumpSnapshot) -> Option<f64> {
         let of_frames = || {
@@ -485,9 +459,9 @@ impl Outputs {
     fn contacts(&self, scene: &Scene) -> Result<PairForces, OutputError> {
         let mut pairs = PairForces::new(scene, &self.ids);
         for (file, digits) in self.files.iter().zip(&self.contact_digits) {
-            let mut reader = Snapshots::open(file, u64::MAX)?;
+            let mut reader = Snapshots::open(file, u64::MAX, self.sources.partial)?;
             let mut snapshot = DumpSnapshot::default();
-            while pairs.is_asked() && self.next(&mut reader, &mut snapshot)? {
+            while pairs.is_asked() && reader.read(&mut snapshot)? {
                 if snapshot.kind != DumpKind::Entries {
                     break;
                 }
@@ -590,26 +564,6 @@ fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
     }
     let all = rest.iter().fold(first.clone(), |all, of_file| all.iter().zip(of_file).map(|(a, b)| a.with(b)).collect());
     digits.fill(all);
-}
-
-/// Returns the ids of the grains in a snapshot, sorted.
-fn ids(snapshot: &DumpSnapshot, names: &Names) -> Vec<u64> {
-    let mut ids: Vec<u64> = match snapshot.column(names.in_file("id")) {
-        Some(column) => snapshot.values(column).map(|id| id as u64).collect(),
-        None => Vec::new(),
-    };
-    ids.sort_unstable();
-    ids
-}
-
-/// Returns the first table among several files.
-fn first_table(files: &[PathBuf]) -> Result<Option<&PathBuf>, ReadError> {
-    for file in files {
-        if format_of(file)?.is_none() {
-            return Ok(Some(file));
-        }
-    }
-    Ok(None)
 }
 
 /// Returns an error unless `accepted` contains the units.

@@ -142,18 +142,34 @@ pub(crate) struct Snapshots {
     only: Option<(Moment, String)>,
     numbering: Numbering,
     read: usize,
+    /// True if the complete frames of a truncated file are read.
+    partial: bool,
+    /// Error at the position where the file is truncated, if this is allowed.
+    pub(crate) cut: Option<String>,
 }
 
 impl Snapshots {
-    /// Opens a file whose snapshots must have at most `most_rows` rows.
-    pub(crate) fn open(file: &RunFile, most_rows: u64) -> Result<Self, ReadError> {
+    /// Opens a file whose snapshots must have at most `most_rows` rows. If `partial` is true, a truncated file ends after
+    /// its last complete frame.
+    pub(crate) fn open(file: &RunFile, most_rows: u64, partial: bool) -> Result<Self, ReadError> {
         let only = file.moment.map(|moment| (moment, shown(&file.path)));
         let numbering = file.format.numbering;
-        Ok(Self { reader: (file.format.open)(&file.path, most_rows)?, only, numbering, read: 0 })
+        let reader = (file.format.open)(&file.path, most_rows)?;
+        Ok(Self { reader, only, numbering, read: 0, partial, cut: None })
     }
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        match self.next(snapshot) {
+            Err(error) if error.is_cut() && self.partial => {
+                self.cut = Some(error.to_string());
+                Ok(false)
+            }
+            read => read,
+        }
+    }
+
+    fn next(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let Some((moment, name)) = &self.only else {
             let is_there = (self.reader)(snapshot)?;
             if is_there && self.numbering == Numbering::Files {

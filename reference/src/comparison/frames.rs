@@ -196,29 +196,23 @@ impl Frames {
                 None => match files.next() {
                     Some(file) => {
                         *is_new = true;
-                        reader.insert(Snapshots::open(&file, u64::MAX)?)
+                        reader.insert(Snapshots::open(&file, u64::MAX, self.partial)?)
                     }
                     None => return Ok(false),
                 },
             };
             let before = (*is_new).then(|| snapshot.clone());
-            match open.read(snapshot) {
-                Ok(true) => {
-                    *is_new = false;
-                    if let Some(before) =
-                        before.filter(|previous| !previous.columns.is_empty() && previous.step == snapshot.step)
-                    {
-                        snapshot.check_repeated(&self.file, &before)?;
-                    }
-                    return Ok(true);
-                }
-                Ok(false) => *reader = None,
-                Err(error) if error.is_cut() && self.partial => {
-                    self.cut = Some(error.to_string());
-                    *reader = None;
-                }
-                Err(error) => return Err(error),
+            if !open.read(snapshot)? {
+                self.cut = open.cut.take().or(self.cut.take());
+                *reader = None;
+                continue;
             }
+            *is_new = false;
+            let is_same_step = |before: &DumpSnapshot| !before.columns.is_empty() && before.step == snapshot.step;
+            if let Some(before) = before.filter(is_same_step) {
+                snapshot.check_repeated(&self.file, &before)?;
+            }
+            return Ok(true);
         }
     }
 
