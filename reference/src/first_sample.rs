@@ -8,7 +8,6 @@ use grainbench_scene::scene::Scene;
 use crate::grain_columns::GrainColumns;
 use crate::observer::Names;
 use crate::outputs::OutputError;
-use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
 use crate::run_files::{Snapshots, in_order, shown};
@@ -31,7 +30,7 @@ pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&
     }
     let columns = GrainColumns::find(&snapshot, names);
     if let Some(id) = columns.id {
-        Ids::default().check(&name, &snapshot, id)?;
+        snapshot.check_ids(&name, id)?;
     }
     if snapshot.rows() != scene.grains.len() {
         let expected = format!("{} grains, the number in the scene", scene.grains.len());

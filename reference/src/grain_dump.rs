@@ -11,7 +11,6 @@ use crate::grain_columns::GrainColumns;
 use crate::names::Names;
 use crate::pair_forces::PairColumns;
 use crate::read::dump::DumpReader;
-use crate::read::ids::Ids;
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
@@ -39,7 +38,6 @@ pub struct GrainDump {
     contacts: Option<(DumpReader<'static>, String)>,
     file: String,
     beside: DumpOptions,
-    ids: Ids,
     cut: Option<String>,
     rows: DumpSnapshot,
     entries: DumpSnapshot,
@@ -65,7 +63,6 @@ impl GrainDump {
             contacts: contacts.map(named).transpose()?,
             file: path.to_string_lossy().into_owned(),
             beside,
-            ids: Ids::default(),
             cut: None,
             rows: DumpSnapshot::default(),
             entries: DumpSnapshot::default(),
@@ -93,7 +90,7 @@ impl GrainDump {
         }
         self.check_units()?;
         let columns = self.columns()?;
-        self.ids.check(&self.file, &self.rows, columns.id)?;
+        self.rows.check_ids(&self.file, columns.id)?;
         let mut grains: Vec<GrainState> =
             (0..self.rows.rows()).map(|row| self.grain(row, &columns)).collect::<Result<_, _>>()?;
         grains.sort_by_key(|grain| grain.id);

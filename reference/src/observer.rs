@@ -13,7 +13,6 @@ pub use crate::names::Names;
 use crate::pair_forces::{PairForce, PairForces};
 use crate::read::contacts::{Forces, contacts};
 use crate::read::digits::Digits;
-use crate::read::ids::Ids;
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
@@ -348,7 +347,7 @@ impl<'s> DumpObserver<'s> {
             return Err(frame.error(0, expected, format!("{rows}{hint}")));
         }
         if let Some(id) = id {
-            Ids::default().check(file, snapshot, id)?;
+            snapshot.check_ids(file, id)?;
         }
         let order = snapshot.rows_by(id).into_iter();
         let Some(id) = id.filter(|_| may_leave) else { return Ok(order.enumerate().collect()) };

@@ -6,7 +6,6 @@ use std::vec;
 use super::Options;
 use super::column::PrintedDigits;
 use crate::names::Names;
-use crate::read::ids::Ids;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
@@ -45,7 +44,6 @@ pub(super) struct Frames {
     /// Names of the selected columns in the first file.
     wanted: Vec<String>,
     number: u64,
-    ids: Ids,
     /// Position and numbers of the last frame. For snapshots of grains the numbers are empty.
     last: Option<(Place, Vec<f64>)>,
     partial: bool,
@@ -84,8 +82,8 @@ impl Frames {
             FrameSource::Table { step, time, rows: rows.into_iter(), table }
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
-        let (wanted, ids, partial) = (Vec::new(), Ids::default(), options.partial);
-        Ok(Self { file, time_step, names, wanted, number: 0, ids, last: None, partial, cut: None, from })
+        let (wanted, partial) = (Vec::new(), options.partial);
+        Ok(Self { file, time_step, names, wanted, number: 0, last: None, partial, cut: None, from })
     }
 
     /// Selects the columns of the following frames by their names in the first file.
@@ -180,7 +178,7 @@ impl Frames {
         }
         let FrameSource::Grains { snapshot, .. } = &self.from else { return Ok(None) };
         if let Some(id) = snapshot.column(self.names.in_file("id")) {
-            self.ids.check(&self.file, snapshot, id)?;
+            snapshot.check_ids(&self.file, id)?;
         }
         // A snapshot that repeats a step has already been compared with the previous one by its reader.
         Ok(Some((self.of_snapshot(snapshot, number), Vec::new())))

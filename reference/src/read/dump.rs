@@ -5,7 +5,6 @@ use std::mem;
 use std::path::Path;
 
 use crate::read::dump_header::DumpHeader;
-use crate::read::ids::Ids;
 use crate::read::lines::{Lines, opened};
 use crate::read::numbers::{NonFiniteNumbers, RowForm};
 use crate::read::read_error::{ReadError, quoted};
@@ -19,7 +18,6 @@ pub struct DumpReader<'r> {
     last_step: Option<u64>,
     /// Maximum number of rows in a snapshot.
     most_rows: u64,
-    ids: Ids,
 }
 
 impl DumpReader<'static> {
@@ -40,14 +38,7 @@ impl<'r> DumpReader<'r> {
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
         let form = RowForm { separator: None, not_finite: NonFiniteNumbers::default() };
         let most_rows = u64::MAX;
-        Ok(Self {
-            lines: Lines::new(reader, name)?,
-            form,
-            units: None,
-            last_step: None,
-            most_rows,
-            ids: Ids::default(),
-        })
+        Ok(Self { lines: Lines::new(reader, name)?, form, units: None, last_step: None, most_rows })
     }
 
     /// Sets the maximum number of rows in a snapshot. By default the number is not limited.
@@ -113,7 +104,7 @@ impl<'r> DumpReader<'r> {
             }
         }
         if let Some(column) = snapshot.column("id").filter(|_| snapshot.kind == DumpKind::Atoms) {
-            self.ids.check(self.lines.name(), snapshot, column)?;
+            snapshot.check_ids(self.lines.name(), column)?;
         }
         if let Some(before) = before {
             snapshot.check_repeated(self.lines.name(), &before)?;

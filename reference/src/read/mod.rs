@@ -10,7 +10,6 @@ pub(crate) mod dump;
 mod dump_header;
 mod fields;
 pub(crate) mod format;
-pub(crate) mod ids;
 pub(crate) mod lines;
 pub(crate) mod log;
 pub(crate) mod number_table;

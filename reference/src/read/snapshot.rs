@@ -5,6 +5,9 @@ use std::ops::Deref;
 use crate::read::number_table::Table;
 use crate::read::read_error::ReadError;
 
+/// Largest id (2⁵³). Up to this number, an f64 represents every whole number.
+const LARGEST_ID: f64 = 9_007_199_254_740_992.0;
+
 /// Content of the rows in a dump.
 #[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
 pub enum DumpKind {
@@ -111,6 +114,27 @@ impl DumpSnapshot {
             order.sort_by(|&a, &b| self.row(a)[column].total_cmp(&self.row(b)[column]));
         }
         order
+    }
+
+    /// Checks that a column of ids has no negative, fractional or repeated number.
+    pub(crate) fn check_ids(&self, file: &str, column: usize) -> Result<(), ReadError> {
+        let fault = |row: usize, expected: String, found: String| {
+            Err(ReadError::at(file, self.first_line + row as u64, expected, found))
+        };
+        let is_id = |value: f64| (0.0..=LARGEST_ID).contains(&value) && value.fract() == 0.0;
+        if let Some((row, value)) = self.values(column).enumerate().find(|(_, value)| !is_id(*value)) {
+            let expected = format!("a whole number of 0 or more in the column `{}`", self.columns[column].name);
+            return fault(row, expected, value.to_string());
+        }
+        if self.values(column).is_sorted_by(|before, next| before < next) {
+            return Ok(());
+        }
+        let mut ids: Vec<(u64, usize)> = self.values(column).map(|id| id as u64).zip(0..).collect();
+        ids.sort_unstable();
+        match ids.windows(2).find(|pair| pair[0].0 == pair[1].0) {
+            Some(pair) => fault(pair[1].1, "each id only once per snapshot".to_owned(), format!("{} again", pair[1].0)),
+            None => Ok(()),
+        }
     }
 
     /// Finds the first number that differs from another snapshot by more than the uncertainty of printed digits.
