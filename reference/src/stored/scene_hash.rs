@@ -85,7 +85,7 @@ fn hash_of(scene: &Scene, stepping: &Stepping, grains: &str, of_springs: impl Fn
 /// takes a hundredth of the time of writing the text.
 ///
 /// All variants and negative controls that start from the same list share its text.
-struct ListCache(Mutex<Vec<(blake3::Hash, Lines)>>);
+type ListCache = Mutex<Vec<(blake3::Hash, Lines)>>;
 
 /// Text of a list. The first thread that needs the text writes it, and other threads wait.
 type Lines = Arc<OnceLock<Arc<str>>>;
@@ -95,35 +95,34 @@ const LARGE: usize = 1000;
 /// Maximum number of cached lists.
 const FEW: usize = 6;
 
-static GRAINS: ListCache = ListCache::new();
-static SPRINGS: ListCache = ListCache::new();
+static GRAINS: ListCache = Mutex::new(Vec::new());
+static SPRINGS: ListCache = Mutex::new(Vec::new());
 
-impl ListCache {
-    const fn new() -> Self {
-        Self(Mutex::new(Vec::new()))
+/// Returns the text of a list with `members` entries and the given bits. If the text is not in the cache, `write` creates
+/// it.
+fn cached(
+    cache: &ListCache,
+    members: usize,
+    bits: impl FnOnce() -> Vec<u8>,
+    write: impl FnOnce() -> String,
+) -> Arc<str> {
+    if members < LARGE {
+        return write().into();
     }
+    let lines = lines(cache, blake3::hash(&bits()));
+    Arc::clone(lines.get_or_init(|| write().into()))
+}
 
-    /// Returns the text of a list with `members` entries and the given bits. If the text is not in the cache, `write`
-    /// creates it.
-    fn text(&self, members: usize, bits: impl FnOnce() -> Vec<u8>, write: impl FnOnce() -> String) -> Arc<str> {
-        if members < LARGE {
-            return write().into();
-        }
-        let lines = self.lines(blake3::hash(&bits()));
-        Arc::clone(lines.get_or_init(|| write().into()))
+/// Returns the cache entry of a list, whose text may not have been written yet.
+fn lines(cache: &ListCache, key: blake3::Hash) -> Lines {
+    let mut known = cache.lock().unwrap_or_else(PoisonError::into_inner);
+    if let Some((_, lines)) = known.iter().find(|(other, _)| *other == key) {
+        return Arc::clone(lines);
     }
-
-    /// Returns the cache entry of a list, whose text may not have been written yet.
-    fn lines(&self, key: blake3::Hash) -> Lines {
-        let mut known = self.0.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some((_, lines)) = known.iter().find(|(other, _)| *other == key) {
-            return Arc::clone(lines);
-        }
-        let lines = Lines::default();
-        known.truncate(FEW - 1);
-        known.insert(0, (key, Arc::clone(&lines)));
-        lines
-    }
+    let lines = Lines::default();
+    known.truncate(FEW - 1);
+    known.insert(0, (key, Arc::clone(&lines)));
+    lines
 }
 
 /// Estimated maximum length of the line of a grain (B).
@@ -150,10 +149,9 @@ fn lines_of(grains: &Grains) -> Arc<str> {
         }
         text.0
     };
-    GRAINS.text(grains.len(), || grains.bits(), write)
+    cached(&GRAINS, grains.len(), || grains.bits(), write)
 }
 
-/// Returns the text of springs.
 fn text_of(springs: &Springs) -> Arc<str> {
     let write = || {
         let Springs { layout, pairs, walls } = springs;
@@ -166,23 +164,19 @@ fn text_of(springs: &Springs) -> Arc<str> {
         let _ = writeln!(text.0, "], walls: {walls:?} }}");
         text.0
     };
-    SPRINGS.text(springs.pairs.len(), || springs.bits(), write)
+    cached(&SPRINGS, springs.pairs.len(), || springs.bits(), write)
 }
 
 /// Text of numbers in the format of their debug output. The standard builders of nested lists take twice as long.
 struct Numbers(String);
 
 impl Numbers {
-    fn one(&mut self, before: &str, number: f64) {
-        self.0.push_str(before);
-        let _ = write!(self.0, "{number:?}");
-    }
-
     fn list(&mut self, before: &str, numbers: &[f64]) {
         self.0.push_str(before);
         self.0.push('[');
         for (place, number) in numbers.iter().enumerate() {
-            self.one(if place == 0 { "" } else { ", " }, *number);
+            self.0.push_str(if place == 0 { "" } else { ", " });
+            let _ = write!(self.0, "{number:?}");
         }
         self.0.push(']');
     }
