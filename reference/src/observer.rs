@@ -11,7 +11,7 @@ use crate::deck::Stepping;
 use crate::grain_columns::GrainColumns;
 pub use crate::names::Names;
 use crate::pair_forces::{PairForce, PairForces};
-use crate::read::contacts::{Forces, contacts};
+use crate::read::contacts::contacts;
 use crate::read::digits::Digits;
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
@@ -84,7 +84,6 @@ impl Frame<'_> {
         digits.map_or(0.0, |digits| digits.uncertainty(printed, &self.of_file))
     }
 
-    /// Returns an error at a row.
     fn error(&self, row: usize, expected: String, found: String) -> ReadError {
         ReadError::at(self.file, self.snapshot.first_line + row as u64, expected, found)
     }
@@ -221,10 +220,13 @@ impl<'s> DumpObserver<'s> {
                     open: at.iter().map(|&at| value(row, at, 1.0).abs()).sum(),
                 })
             };
-            let of_pair = |a: usize, b: usize| self.pairs.on(snapshot.step, id(a), id(b));
-            let forces = Forces { of_pair: &of_pair, of_wall: &of_wall };
+            let force = |target: ProbeTarget| match target {
+                ProbeTarget::Pair(a, b) => self.pairs.on(snapshot.step, id(a), id(b)),
+                ProbeTarget::GrainWall(grain, wall) => of_wall(wall, grain),
+                _ => None,
+            };
             let times = if matches!(shift, Shift::None) { 0.0 } else { 1.0 };
-            let contacts_seen = contacts(self.scene, time, snapshot.step, &seen.grains, &forces, times);
+            let contacts_seen = contacts(self.scene, time, snapshot.step, &seen.grains, force, times);
             for (number, wall) in seen.walls.iter_mut().enumerate() {
                 let on_grains = (0..order.len()).map(|grain| of_wall(number, grain));
                 // The uncertainties of all digits are added to each component.

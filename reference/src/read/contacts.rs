@@ -7,42 +7,35 @@ use nalgebra::Vector3;
 
 use crate::pair_forces::PairForce;
 
-/// Functions that return the force on a grain. `of_pair(a, b)` is the force of grain b on grain a, and `of_wall(wall,
-/// grain)` is the force of a wall on a grain, by indices. The result is `None` if the force is unknown.
-pub(crate) struct Forces<'f> {
-    pub(crate) of_pair: &'f dyn Fn(usize, usize) -> Option<PairForce>,
-    pub(crate) of_wall: &'f dyn Fn(usize, usize) -> Option<PairForce>,
-}
-
-/// Returns the contacts that the probes request, if they exist. Unknown forces are NaN. Normal force and magnitude of
-/// the shear force are increased by `shift` times the uncertainty due to printed digits.
+/// Returns the contacts that the probes request, if they exist. `force` returns the force on the grain, or on the first
+/// grain, of a contact; `None` if the force is unknown, which counts as NaN. Normal force and magnitude of the shear force
+/// are increased by `shift` times the uncertainty due to printed digits.
 pub(crate) fn contacts(
     scene: &Scene,
     time: f64,
     step: u64,
     grains: &[GrainState],
-    forces: &Forces<'_>,
+    force: impl Fn(ProbeTarget) -> Option<PairForce>,
     shift: f64,
 ) -> Vec<ContactState> {
     let time_step = if step == 0 { 0.0 } else { time / step as f64 };
     let mut found = Vec::new();
     for probe in &scene.probes {
-        let (grain, partner, (normal, distance), reach, force) = match probe.target {
+        let (grain, partner, (normal, distance), reach) = match probe.target {
             ProbeTarget::Pair(a, b) => {
                 let reach = scene.grains[a].radius + scene.grains[b].radius;
                 let between = nearest_image(scene, grains[b].position - grains[a].position);
-                (a, Partner::Grain(b as u32 + 1), direction(between), reach, (forces.of_pair)(a, b))
+                (a, Partner::Grain(b as u32 + 1), direction(between), reach)
             }
             ProbeTarget::GrainWall(grain, wall) => {
                 let at = grains[grain].position;
                 let (shape, motion) = (&scene.walls[wall].shape, &scene.walls[wall].motion);
                 let shape = shape.moved(motion, &motion.displacement(time, time_step));
-                let to_wall = to_wall(at, &shape);
-                (grain, Partner::Wall(wall as u16), to_wall, scene.grains[grain].radius, (forces.of_wall)(wall, grain))
+                (grain, Partner::Wall(wall as u16), to_wall(at, &shape), scene.grains[grain].radius)
             }
             _ => continue,
         };
-        let overlap = reach - distance;
+        let (overlap, force) = (reach - distance, force(probe.target));
         // A force other than zero proves a contact, even if the computed overlap is not positive because few digits are
         // printed.
         let pushed = force.is_some_and(|known| known.force != Vector3::zeros());
