@@ -41,8 +41,8 @@ pub(super) struct Frames {
     pub(super) file: String,
     time_step: Option<f64>,
     names: Names,
-    /// Names of the selected columns in the first file.
-    wanted: Vec<String>,
+    /// Names in the first file of the columns that the following frames contain.
+    pub(super) wanted: Vec<String>,
     number: u64,
     /// Position and numbers of the last frame. For snapshots of grains the numbers are empty.
     last: Option<(Place, Vec<f64>)>,
@@ -84,11 +84,6 @@ impl Frames {
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
         let (wanted, partial) = (Vec::new(), options.partial);
         Ok(Self { file, time_step, names, wanted, number: 0, last: None, partial, cut: None, from })
-    }
-
-    /// Selects the columns of the following frames by their names in the first file.
-    pub(super) fn want(&mut self, columns: &[String]) {
-        columns.clone_into(&mut self.wanted);
     }
 
     /// Returns the columns of the file by their names in the first file. Coordinates come first. Ids and text columns of

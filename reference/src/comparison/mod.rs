@@ -108,24 +108,33 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
         ReadError::at(&name, 1, expected, places[1].len().to_string())
     })?;
     let mut files = [open(0)?, open(1)?];
-    files.iter_mut().for_each(|frames| frames.want(&columns));
-    let columns: Vec<Column> = columns.iter().zip(printed).map(|(name, printed)| Column::new(name, printed)).collect();
-    let mut walk = Walk { key, columns, bends: Vec::new(), compared: 0, interpolated: 0, last: f64::NAN };
-    walk.go(&mut files)?;
-    if walk.compared == 0 {
+    files.iter_mut().for_each(|frames| frames.wanted.clone_from(&columns));
+    let columns = columns.iter().zip(printed).map(|(name, printed)| Column::new(name, printed));
+    let mut columns: Vec<Column> = columns.collect();
+    let ends = [0, 1].map(|which: usize| {
+        [places[which].first(), places[which].last()].map(|place| place.map_or(f64::NAN, |place| key.value(place)))
+    });
+    let interval = |which: usize| (ends[which][1] - ends[which][0]) / (places[which].len().max(2) - 1) as f64;
+    let mut found = Comparison {
+        differences: Vec::new(),
+        lonely,
+        cuts,
+        key,
+        compared: 0,
+        interpolated: 0,
+        samples: [places[0].len() as u64, places[1].len() as u64],
+        last: ends.map(|[_, last]| last),
+        last_compared: f64::NAN,
+        interval: interval(0).max(interval(1)),
+    };
+    let bends = walk(&mut files, &mut columns, &mut found)?;
+    if found.compared == 0 {
         return Err(ReadError::at(&name, 1, format!("a {} that the other file also has", key.word()), "none"));
     }
-    let ends = [0, 1].map(|which: usize| places[which].last().map_or(f64::NAN, |place| key.value(place)));
-    let interval = |which: usize| {
-        let first = places[which].first().map_or(f64::NAN, |place| key.value(place));
-        (ends[which] - first) / (places[which].len().max(2) - 1) as f64
-    };
-    let interval = interval(0).max(interval(1));
-    let samples = [places[0].len() as u64, places[1].len() as u64];
-    let (compared, interpolated, last_compared) = (walk.compared, walk.interpolated, walk.last);
-    let differences = walk.finish();
-    let last = ends;
-    Ok(Comparison { differences, lonely, cuts, key, compared, interpolated, samples, last, last_compared, interval })
+    // The error of linear interpolation between two samples is 1/8 of the second difference.
+    let error = |bend: f64| if found.interpolated > 0 { bend / 8.0 } else { 0.0 };
+    found.differences = columns.into_iter().zip(bends).map(|(column, bend)| column.finish(error(bend))).collect();
+    Ok(found)
 }
 
 /// Columns and samples of both files.
@@ -210,88 +219,71 @@ fn is_one(one: f64, two: f64) -> bool {
     (one - two).abs() <= ONE_TIME * one.abs().max(two.abs())
 }
 
-/// Simultaneous pass through two outputs.
-struct Walk {
-    key: Key,
-    columns: Vec<Column>,
-    /// Largest second difference of each column in the second output. The interpolation error is 1/8 of it.
-    bends: Vec<f64>,
-    compared: u64,
-    interpolated: u64,
-    last: f64,
-}
-
-impl Walk {
-    fn go(&mut self, [first, second]: &mut [Frames; 2]) -> Result<(), ReadError> {
-        self.bends = vec![0.0; self.columns.len()];
-        let mut recent: Vec<Frame> = Vec::new();
-        let mut ahead = second.next()?;
-        while let Some(frame) = first.next()? {
-            let at = self.key.value(&frame.place);
-            let key = self.key;
-            let is_there = |other: f64| if key == Key::Time { is_one(other, at) } else { other == at };
-            // Frames of the second output before this time are kept, because later samples may lie between them and the
-            // next frame.
-            while let Some(next) = ahead.take() {
-                let other = self.key.value(&next.place);
-                if other >= at || is_there(other) {
-                    ahead = Some(next);
-                    break;
-                }
-                self.bend(&mut recent, next);
-                ahead = second.next()?;
+/// Passes through both outputs at once. Adds the samples to `columns` and counts them in `found`. Returns the largest second
+/// difference of each column in the second output.
+fn walk(
+    [first, second]: &mut [Frames; 2],
+    columns: &mut [Column],
+    found: &mut Comparison,
+) -> Result<Vec<f64>, ReadError> {
+    let key = found.key;
+    let mut bends = vec![0.0; columns.len()];
+    let mut recent: Vec<Frame> = Vec::new();
+    let mut ahead = second.next()?;
+    while let Some(frame) = first.next()? {
+        let at = key.value(&frame.place);
+        let is_there = |other: f64| if key == Key::Time { is_one(other, at) } else { other == at };
+        // Frames of the second output before this time are kept, because later samples may lie between them and the
+        // next frame.
+        while let Some(next) = ahead.take() {
+            let other = key.value(&next.place);
+            if other >= at || is_there(other) {
+                ahead = Some(next);
+                break;
             }
-            match (recent.last(), &ahead) {
-                (_, Some(next)) if is_there(self.key.value(&next.place)) => {
-                    matched(&frame, next, &second.file, self.key)?;
-                    self.take(at, &frame, &next.values);
-                }
-                (Some(before), Some(next)) if self.key == Key::Time => {
-                    matched(&frame, next, &second.file, self.key)?;
-                    matched(&frame, before, &second.file, self.key)?;
-                    let [low, high] = [before, next].map(|sample| self.key.value(&sample.place));
-                    let values = between(before, next, (at - low) / (high - low));
-                    self.interpolated += 1;
-                    self.take(at, &frame, &values);
-                }
-                _ => {}
-            }
-        }
-        while let Some(next) = ahead {
-            self.bend(&mut recent, next);
+            bend(&mut bends, &mut recent, next);
             ahead = second.next()?;
         }
-        Ok(())
-    }
-
-    fn take(&mut self, at: f64, frame: &Frame, others: &[Vec<f64>]) {
-        for ((column, values), others) in self.columns.iter_mut().zip(&frame.values).zip(others) {
-            column.take(at, [values, others]);
-        }
-        self.compared += 1;
-        self.last = at;
-    }
-
-    /// Stores a frame of the second output and updates the largest second differences of the columns.
-    fn bend(&mut self, recent: &mut Vec<Frame>, next: Frame) {
-        if let [first, second] = &recent[..] {
-            for (at, bend) in self.bends.iter_mut().enumerate() {
-                let rows = first.values[at].iter().zip(&second.values[at]).zip(&next.values[at]);
-                let largest = rows.map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
-                *bend = bend.max(largest);
+        let mut take = |others: &[Vec<f64>]| {
+            for ((column, values), others) in columns.iter_mut().zip(&frame.values).zip(others) {
+                column.take(at, [values, others]);
             }
-            recent.remove(0);
+            found.compared += 1;
+            found.last_compared = at;
+        };
+        match (recent.last(), &ahead) {
+            (_, Some(next)) if is_there(key.value(&next.place)) => {
+                matched(&frame, next, &second.file, key)?;
+                take(&next.values);
+            }
+            (Some(before), Some(next)) if key == Key::Time => {
+                matched(&frame, next, &second.file, key)?;
+                matched(&frame, before, &second.file, key)?;
+                let [low, high] = [before, next].map(|sample| key.value(&sample.place));
+                take(&between(before, next, (at - low) / (high - low)));
+                found.interpolated += 1;
+            }
+            _ => {}
         }
-        recent.push(next);
     }
+    while let Some(next) = ahead {
+        bend(&mut bends, &mut recent, next);
+        ahead = second.next()?;
+    }
+    Ok(bends)
+}
 
-    /// Returns the differences with their uncertainties. If values were interpolated, 1/8 of the largest second
-    /// difference is added to the uncertainty. This is the error of linear interpolation between two samples.
-    fn finish(self) -> Vec<Difference> {
-        let interpolated = self.interpolated > 0;
-        let with_bends = self.columns.into_iter().zip(self.bends);
-        with_bends.map(|(column, bend)| column.finish(if interpolated { bend / 8.0 } else { 0.0 })).collect()
+/// Stores a frame of the second output and updates the largest second differences of the columns. Two frames are stored.
+fn bend(bends: &mut [f64], recent: &mut Vec<Frame>, next: Frame) {
+    if let [first, second] = &recent[..] {
+        for (at, bend) in bends.iter_mut().enumerate() {
+            let rows = first.values[at].iter().zip(&second.values[at]).zip(&next.values[at]);
+            let largest = rows.map(|((a, b), c)| (a - 2.0 * b + c).abs()).fold(0.0, f64::max);
+            *bend = bend.max(largest);
+        }
+        recent.remove(0);
     }
+    recent.push(next);
 }
 
 /// Interpolates linearly between two frames. `share` is 0 at the first and 1 at the second frame.
