@@ -23,25 +23,19 @@ pub struct Column {
     pub of: fn(&Element, &Grains) -> Option<f64>,
 }
 
-/// Closure that returns a component of the velocity.
-macro_rules! velocity {
-    ($axis:literal) => {
-        |element, _| Some(element.motion.velocity?[$axis])
-    };
+/// Returns a component of the velocity.
+fn velocity<const AXIS: usize>(element: &Element, _: &Grains) -> Option<f64> {
+    Some(element.motion.velocity?[AXIS])
 }
 
-/// Closure that returns a component of the velocity gradient.
-macro_rules! gradient {
-    ($row:literal, $column:literal) => {
-        |element, _| Some(element.motion.gradient?[($row, $column)])
-    };
+/// Returns a component of the velocity gradient.
+fn gradient<const ROW: usize, const COLUMN: usize>(element: &Element, _: &Grains) -> Option<f64> {
+    Some(element.motion.gradient?[(ROW, COLUMN)])
 }
 
-/// Closure that returns a component of the symmetric part of the stress.
-macro_rules! stress {
-    ($row:literal, $column:literal) => {
-        |element, _| element.stress.map(|stress| 0.5 * (stress[($row, $column)] + stress[($column, $row)]))
-    };
+/// Returns a component of the symmetric part of the stress.
+fn stress<const ROW: usize, const COLUMN: usize>(element: &Element, _: &Grains) -> Option<f64> {
+    element.stress.map(|stress| 0.5 * (stress[(ROW, COLUMN)] + stress[(COLUMN, ROW)]))
 }
 
 const fn column(
@@ -75,23 +69,23 @@ pub const COLUMNS: [Column; 30] = [
     column("turn_in_plane", "turn from T to D in the plane", "deg", |element, grains| {
         element.coaxiality(grains.plane)?.in_plane
     }),
-    column("velocity_x", "mean velocity along x", "m/s", velocity!(0)),
-    column("velocity_y", "mean velocity along y", "m/s", velocity!(1)),
-    column("velocity_z", "mean velocity along z", "m/s", velocity!(2)),
-    column("stress_xx", "stress T_xx", "Pa", stress!(0, 0)),
-    column("stress_yy", "stress T_yy", "Pa", stress!(1, 1)),
-    column("stress_zz", "stress T_zz", "Pa", stress!(2, 2)),
-    column("stress_xy", "stress T_xy, symmetric part", "Pa", stress!(0, 1)),
-    column("stress_yz", "stress T_yz, symmetric part", "Pa", stress!(1, 2)),
-    column("stress_xz", "stress T_xz, symmetric part", "Pa", stress!(0, 2)),
-    column("gradient_xx", "∂v_x/∂x", "1/s", gradient!(0, 0)),
-    column("gradient_xy", "∂v_x/∂y", "1/s", gradient!(0, 1)),
-    column("gradient_xz", "∂v_x/∂z", "1/s", gradient!(0, 2)),
-    column("gradient_yx", "∂v_y/∂x", "1/s", gradient!(1, 0)),
-    column("gradient_yy", "∂v_y/∂y", "1/s", gradient!(1, 1)),
-    column("gradient_yz", "∂v_y/∂z", "1/s", gradient!(1, 2)),
-    column("gradient_zx", "∂v_z/∂x", "1/s", gradient!(2, 0)),
-    column("gradient_zy", "∂v_z/∂y", "1/s", gradient!(2, 1)),
-    column("gradient_zz", "∂v_z/∂z", "1/s", gradient!(2, 2)),
+    column("velocity_x", "mean velocity along x", "m/s", velocity::<0>),
+    column("velocity_y", "mean velocity along y", "m/s", velocity::<1>),
+    column("velocity_z", "mean velocity along z", "m/s", velocity::<2>),
+    column("stress_xx", "stress T_xx", "Pa", stress::<0, 0>),
+    column("stress_yy", "stress T_yy", "Pa", stress::<1, 1>),
+    column("stress_zz", "stress T_zz", "Pa", stress::<2, 2>),
+    column("stress_xy", "stress T_xy, symmetric part", "Pa", stress::<0, 1>),
+    column("stress_yz", "stress T_yz, symmetric part", "Pa", stress::<1, 2>),
+    column("stress_xz", "stress T_xz, symmetric part", "Pa", stress::<0, 2>),
+    column("gradient_xx", "∂v_x/∂x", "1/s", gradient::<0, 0>),
+    column("gradient_xy", "∂v_x/∂y", "1/s", gradient::<0, 1>),
+    column("gradient_xz", "∂v_x/∂z", "1/s", gradient::<0, 2>),
+    column("gradient_yx", "∂v_y/∂x", "1/s", gradient::<1, 0>),
+    column("gradient_yy", "∂v_y/∂y", "1/s", gradient::<1, 1>),
+    column("gradient_yz", "∂v_y/∂z", "1/s", gradient::<1, 2>),
+    column("gradient_zx", "∂v_z/∂x", "1/s", gradient::<2, 0>),
+    column("gradient_zy", "∂v_z/∂y", "1/s", gradient::<2, 1>),
+    column("gradient_zz", "∂v_z/∂z", "1/s", gradient::<2, 2>),
     column("members", "grains or points whose centre is there", "1", |element, _| Some(element.motion.members as f64)),
 ];
