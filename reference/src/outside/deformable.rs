@@ -3,7 +3,6 @@
 use grainbench_scene::body::{Block, BlockShape, Hold};
 use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_scene::scene::{BodyName, ProbeTarget, Scene};
-use nalgebra::Vector3;
 use schemars::JsonSchema;
 use serde::Serialize;
 
@@ -113,11 +112,6 @@ pub struct BodyProbe {
     pub at: Option<[f64; 3]>,
 }
 
-/// Returns the components of a vector.
-pub(super) fn vector(vector: &Vector3<f64>) -> [f64; 3] {
-    [vector.x, vector.y, vector.z]
-}
-
 /// Returns the materials of a scene for which elastic moduli are given.
 pub(super) fn materials(scene: &Scene) -> Vec<Material> {
     let named = scene.materials.iter().zip(&scene.deformable);
@@ -145,14 +139,12 @@ pub(super) fn bodies(scene: &Scene) -> Vec<Body> {
         material: scene.materials[usize::from(body.material)].clone(),
         density: body.density,
         shape: match body.shape {
-            BlockShape::Box { low, high } => BodyShape::Box { low: vector(&low), high: vector(&high) },
-            BlockShape::Annulus { centre, inner, outer } => {
-                BodyShape::Annulus { centre: vector(&centre), inner, outer }
-            }
+            BlockShape::Box { low, high } => BodyShape::Box { low: low.into(), high: high.into() },
+            BlockShape::Annulus { centre, inner, outer } => BodyShape::Annulus { centre: centre.into(), inner, outer },
         },
-        velocity: vector(&body.velocity),
-        spin: vector(&body.spin),
-        stretch: vector(&body.stretch),
+        velocity: body.velocity.into(),
+        spin: body.spin.into(),
+        stretch: body.stretch.into(),
         sides: body.sides.map(|sides| sides.map(word)),
         wave: body.wave.map(|wave| Wave { amplitude: wave.amplitude, wave_number: wave.wave_number }),
     };
@@ -164,7 +156,7 @@ pub(super) fn settle(scene: &Scene) -> Option<Settle> {
     scene.start.settle.map(|settle| Settle {
         duration: settle.duration,
         damping: settle.damping,
-        gravity: vector(&settle.gravity),
+        gravity: settle.gravity.into(),
     })
 }
 
@@ -177,7 +169,7 @@ pub(super) fn probes(scene: &Scene) -> Vec<BodyProbe> {
     let probe = |probe: &grainbench_scene::scene::Probe| {
         let (body, at) = match probe.target {
             ProbeTarget::Body(at) => (BodyName::Body(at), None),
-            ProbeTarget::Point(at) => (scene.spots[at].body, Some(vector(&scene.spots[at].at))),
+            ProbeTarget::Point(at) => (scene.spots[at].body, Some(scene.spots[at].at.into())),
             _ => return None,
         };
         Some(BodyProbe { name: probe.name.clone(), of: name(body), at })

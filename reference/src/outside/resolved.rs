@@ -1,6 +1,6 @@
 //! Scene for external programs. All values are explicit and in SI units, so that no other source is needed.
 
-use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle, vector};
+use super::deformable::{self, Body, BodyProbe, Grid, Material, Settle};
 use super::manifest::SceneFormat;
 use crate::deck::Stepping;
 use grainbench_scene::contact_law::{ContactLaw, Springs};
@@ -269,11 +269,11 @@ impl Resolved {
                 sample_every: stepping.interval,
                 critical_time_step: critical.is_finite().then_some(critical),
             },
-            gravity: vector(&scene.gravity),
+            gravity: scene.gravity.into(),
             global_damping: scene.global_damping,
             domain: scene.domain.as_ref().map(|domain| Domain {
-                low: vector(&domain.low),
-                high: vector(&domain.high),
+                low: domain.low.into(),
+                high: domain.high.into(),
                 periodic: domain.periodic,
             }),
             materials: scene.materials.clone(),
@@ -286,9 +286,9 @@ impl Resolved {
                     radius: grain.radius,
                     mass: grain.mass,
                     inertia: grain.inertia,
-                    position: vector(&grain.position),
-                    velocity: vector(&grain.velocity),
-                    spin: vector(&grain.spin),
+                    position: grain.position.into(),
+                    velocity: grain.velocity.into(),
+                    spin: grain.spin.into(),
                 })
                 .collect(),
             walls: scene.walls.iter().map(|wall| resolved_wall(wall, material(wall.material), stepping)).collect(),
@@ -298,7 +298,7 @@ impl Resolved {
                 .map(|driven| Driven {
                     name: driven.name.clone(),
                     grains: driven.grains.iter().map(|grain| grain + 1).collect(),
-                    velocity: vector(&driven.velocity),
+                    velocity: driven.velocity.into(),
                 })
                 .collect(),
             grid: *grid,
@@ -370,8 +370,8 @@ fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> Resolved
     let phase = |phase: &grainbench_scene::motion::Phase| {
         let stop = phase.stop.seconds(stepping.time_step);
         Phase {
-            velocity: vector(&phase.velocity),
-            spin: vector(&phase.spin),
+            velocity: phase.velocity.into(),
+            spin: phase.spin.into(),
             start: phase.start.seconds(stepping.time_step),
             stop: stop.is_finite().then_some(stop),
         }
@@ -380,17 +380,17 @@ fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> Resolved
         name: wall.name.clone(),
         material,
         shape: match wall.shape {
-            WallShape::Plane { point, normal } => Shape::Plane { point: vector(&point), normal: vector(&normal) },
-            WallShape::Segment { ends } => Shape::Segment(ends.map(|end| vector(&end))),
+            WallShape::Plane { point, normal } => Shape::Plane { point: point.into(), normal: normal.into() },
+            WallShape::Segment { ends } => Shape::Segment(ends.map(Into::into)),
             WallShape::Rectangle { corner, edges } => {
-                Shape::Rectangle { corner: vector(&corner), edges: edges.map(|edge| vector(&edge)) }
+                Shape::Rectangle { corner: corner.into(), edges: edges.map(Into::into) }
             }
-            WallShape::Round { axis, radii } => Shape::Round { axis: axis.map(|end| vector(&end)), radii },
+            WallShape::Round { axis, radii } => Shape::Round { axis: axis.map(Into::into), radii },
             WallShape::Mesh(ref mesh) => {
-                Shape::Mesh(mesh.triangles().map(|triangle| triangle.map(|corner| vector(&corner))).collect())
+                Shape::Mesh(mesh.triangles().map(|triangle| triangle.map(Into::into)).collect())
             }
         },
-        centre: vector(&wall.motion.centre),
+        centre: wall.motion.centre.into(),
         motion: wall.motion.phases.iter().map(phase).collect(),
     }
 }
