@@ -3,6 +3,7 @@
 use crate::read::format::{FileContent, Format};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::Numbering;
+use crate::read::vtk::bytes::Bytes;
 use crate::read::vtk::{self, Kind};
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
@@ -25,13 +26,13 @@ pub(crate) static FORMAT: Format = Format {
 /// exist or is outside the folder of the collection.
 fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
     let name = path.to_string_lossy();
-    let bytes = vtk::whole(path)?;
+    let all = vtk::whole(path)?;
+    let bytes = Bytes::new(&name, &all);
     let folder = path.parent().unwrap_or(Path::new(""));
-    let mut reader = Reader::from_reader(&bytes[..]);
+    let mut reader = Reader::from_reader(&all[..]);
     let mut files = Vec::new();
-    let line = |at: u64| memchr::memchr_iter(b'\n', &bytes[..(at as usize).min(bytes.len())]).count() as u64 + 1;
     loop {
-        let at = reader.buffer_position();
+        let at = reader.buffer_position() as usize;
         match reader.read_event() {
             Ok(Event::Start(tag) | Event::Empty(tag)) if tag.name().as_ref() == b"DataSet" => {
                 let value = |key: &str| {
@@ -39,35 +40,25 @@ fn read_collection(path: &Path) -> Result<Vec<(f64, PathBuf)>, ReadError> {
                     found.normalized_value(quick_xml::XmlVersion::Implicit1_0).ok().map(|value| value.into_owned())
                 };
                 let time = value("timestep").unwrap_or_default();
-                let time = time
-                    .parse::<f64>()
-                    .ok()
-                    .filter(|time| time.is_finite())
-                    .ok_or_else(|| ReadError::at(&name, line(at), "a time in `timestep`", quoted(&time)))?;
+                let seconds = time.parse::<f64>().ok().filter(|seconds| seconds.is_finite());
+                let seconds = seconds.ok_or_else(|| bytes.error_at(at, "a time in `timestep`", quoted(&time)))?;
                 let file = value("file").filter(|file| !file.is_empty());
-                let file = file.ok_or_else(|| ReadError::at(&name, line(at), "a name in `file`", "none"))?;
+                let file = file.ok_or_else(|| bytes.error_at(at, "a name in `file`", "none"))?;
                 let is_inside = |part: Component<'_>| matches!(part, Component::Normal(_) | Component::CurDir);
                 if !Path::new(&file).components().all(is_inside) {
                     let expected = "a path inside the folder of the collection in `file`";
-                    return Err(ReadError::at(&name, line(at), expected, quoted(&file)));
+                    return Err(bytes.error_at(at, expected, quoted(&file)));
                 }
                 let path = folder.join(&file);
                 if !path.exists() {
-                    return Err(ReadError::at(
-                        &name,
-                        line(at),
-                        "the name of a file that exists in `file`",
-                        quoted(&file),
-                    ));
+                    return Err(bytes.error_at(at, "the name of a file that exists in `file`", quoted(&file)));
                 }
-                files.push((time, path));
+                files.push((seconds, path));
             }
             Ok(Event::Eof) => break,
             Ok(_) => {}
-            Err(error) => {
-                return Err(ReadError::at(&name, line(at), "a VTK collection", quoted(&error.to_string())));
-            }
+            Err(error) => return Err(bytes.error_at(at, "a VTK collection", quoted(&error.to_string()))),
         }
     }
-    if files.is_empty() { Err(ReadError::at(&name, 1, "at least one file", "none")) } else { Ok(files) }
+    if files.is_empty() { Err(bytes.error_at(0, "at least one file", "none")) } else { Ok(files) }
 }

@@ -15,6 +15,7 @@ use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
 use hdf5_reader::{Dataset, Hdf5File, OpenOptions};
 use std::cell::Cell;
+use std::fmt::Display;
 use std::fs;
 use std::path::Path;
 
@@ -101,7 +102,7 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
                 let rows = array.numbers.len() / array.components;
                 if rows != points {
                     let expected = format!("{points} points in the array {}", quoted(&array.name));
-                    return Err(file.fault(&expected, &rows.to_string()));
+                    return Err(file.fault(&expected, rows));
                 }
             }
             vec![Moment { time: file.time()?, points, position: 0, of: vec![0; arrays.len()] }]
@@ -142,38 +143,39 @@ impl Moments {
 impl File {
     fn open(path: &Path) -> Result<Self, ReadError> {
         let name = path.to_string_lossy().into_owned();
-        let fault = |expected: &str, found: &str| ReadError::at(&name, 1, expected, one_line(found));
+        let fault =
+            |expected: &str, found: &dyn Display| ReadError::at(&name, 1, expected, one_line(&found.to_string()));
         let length = fs::metadata(path).map_err(|error| ReadError::opening(&name, error))?.len();
         if length > MOST as u64 {
-            return Err(fault(&format!("at most {MOST} bytes"), "more"));
+            return Err(fault(&format!("at most {MOST} bytes"), &"more"));
         }
         // Links to other files are not followed, because the user has not named these files.
         let options = OpenOptions { max_read_bytes: MOST, max_chunk_bytes: MOST, ..OpenOptions::default() };
         let bytes = fs::read(path).map_err(|error| ReadError::opening(&name, error))?;
         let file = Hdf5File::from_vec_with_options(bytes, options);
-        let file = file.map_err(|error| fault("an HDF5 file", &error.to_string()))?;
+        let file = file.map_err(|error| fault("an HDF5 file", &error))?;
         let whole = file.superblock().eof_address;
         if length < whole {
-            return Err(fault(&format!("{whole} bytes, as the file states"), &length.to_string()));
+            return Err(fault(&format!("{whole} bytes, as the file states"), &length));
         }
         let root = file.group(ROOT);
-        let root = root.map_err(|error| fault("an HDF5 file with the group `VTKHDF`", &error.to_string()))?;
+        let root = root.map_err(|error| fault("an HDF5 file with the group `VTKHDF`", &error))?;
         let kind = root.attribute("Type").and_then(|kind| kind.read_string());
-        let kind = kind.map_err(|error| fault("the attribute `Type` of `VTKHDF`", &error.to_string()))?;
+        let kind = kind.map_err(|error| fault("the attribute `Type` of `VTKHDF`", &error))?;
         if !KINDS.contains(&kind.trim_end_matches('\0').trim()) {
             return Err(fault(&format!("points: {}", KINDS.join(" or ")), &quoted(&kind)));
         }
         Ok(Self { name, root, left: Cell::new(MOST) })
     }
 
-    fn fault(&self, expected: &str, found: &str) -> ReadError {
-        ReadError::at(&self.name, 1, expected, one_line(found))
+    fn fault(&self, expected: &str, found: impl Display) -> ReadError {
+        ReadError::at(&self.name, 1, expected, one_line(&found.to_string()))
     }
 
     /// Returns the names of the subgroups and the arrays of a group.
     fn members(&self, group: &Group) -> Result<(Vec<String>, Vec<String>), ReadError> {
         let members = group.member_names();
-        members.map_err(|error| self.fault(&format!("the content of `{}`", group.name()), &error.to_string()))
+        members.map_err(|error| self.fault(&format!("the content of `{}`", group.name()), error))
     }
 
     /// Returns a subgroup, or `None` if there is none of this name. A damaged subgroup is an error.
@@ -181,7 +183,7 @@ impl File {
         if !self.members(parent)?.0.iter().any(|member| member == name) {
             return Ok(None);
         }
-        parent.group(name).map(Some).map_err(|error| self.fault(&format!("the group `{name}`"), &error.to_string()))
+        parent.group(name).map(Some).map_err(|error| self.fault(&format!("the group `{name}`"), error))
     }
 
     /// Returns true if a group has an array of this name.
@@ -197,7 +199,7 @@ impl File {
             let length = dataset.raw_byte_len()?;
             Ok((dataset, length))
         };
-        let read_error = |error: Error| self.fault(&expected, &error.to_string());
+        let read_error = |error: Error| self.fault(&expected, error);
         let (dataset, length) = read().map_err(read_error)?;
         let left = self.left.get().checked_sub(length);
         self.left.set(left.ok_or_else(|| self.fault(&format!("at most {MOST} bytes in all arrays"), "more"))?);
@@ -221,7 +223,7 @@ impl File {
         let is_whole = |number: &f64| *number >= 0.0 && number.fract() == 0.0 && *number <= MOST as f64;
         let numbers = self.array(group, name, Some(1))?.numbers;
         match numbers.iter().find(|number| !is_whole(number)) {
-            Some(other) => Err(self.fault(&format!("whole numbers in `{name}`"), &other.to_string())),
+            Some(other) => Err(self.fault(&format!("whole numbers in `{name}`"), other)),
             None => Ok(numbers.into_iter().map(|number| number as usize).collect()),
         }
     }
@@ -242,7 +244,7 @@ impl File {
             if list.len() == times.len() {
                 return Ok(list);
             }
-            Err(self.fault(&format!("{} numbers in `{name}`, one for each step", times.len()), &list.len().to_string()))
+            Err(self.fault(&format!("{} numbers in `{name}`, one for each step", times.len()), list.len()))
         };
         // If the array `NumberOfParts` is missing, each moment has one part.
         let parts = "NumberOfParts";

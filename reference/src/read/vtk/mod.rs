@@ -4,7 +4,7 @@
 //! Source: "VTK File Formats" of the VTK documentation, up to version 5.1 of the legacy format and version 2.2 of the
 //! XML format.
 
-mod bytes;
+pub(crate) mod bytes;
 mod legacy;
 pub(crate) mod points;
 mod xml;

@@ -19,9 +19,7 @@ pub(crate) struct Array {
 pub(crate) struct Points {
     /// Time; `None` if the file does not contain it.
     pub(crate) time: Option<f64>,
-    /// Positions of the points.
     pub(crate) positions: Array,
-    /// Data of the points.
     pub(crate) arrays: Vec<Array>,
 }
 
