@@ -105,13 +105,14 @@ fn of_run(run: &LoggedRun, from: u64) -> Option<Vec<Part>> {
         .map(|(steps, times)| steps.into_iter().zip(times).map(|(step, time)| (step as u64, time)).collect());
     let timed = samples.as_deref().and_then(Clock::of_samples).map(|clock| clock.0);
     let last_dt = || column("Dt").and_then(|steps| steps.last().copied()).filter(is_step);
-    match (run.time_step.filter(is_step), timed) {
+    match timed {
         // Only the column `Time` shows changes of the time step during a run.
-        (_, Some(timed)) if timed.len() > 1 => Some(timed),
-        (Some(time_step), _) => Some(vec![Part { from, time_step }]),
-        (None, timed) => last_dt().map(|time_step| vec![Part { from, time_step }]).or_else(|| {
-            timed.map(|timed| vec![Part { from, time_step: timed.first().map_or(f64::NAN, |part| part.time_step) }])
-        }),
+        Some(timed) if timed.len() > 1 => Some(timed),
+        timed => {
+            let of_times = || Some(timed?.first()?.time_step);
+            let time_step = run.time_step.filter(is_step).or_else(last_dt).or_else(of_times)?;
+            Some(vec![Part { from, time_step }])
+        }
     }
 }
 

@@ -56,10 +56,9 @@ impl GrainDump {
     /// # Errors
     /// If a file cannot be opened.
     pub fn open(path: &Path, contacts: Option<&Path>, beside: DumpOptions) -> Result<Self, ReadError> {
-        let open = |path: &Path| DumpReader::open(path);
-        let named = |path: &Path| Ok((open(path)?, path.to_string_lossy().into_owned()));
+        let named = |path: &Path| Ok((DumpReader::open(path)?, path.to_string_lossy().into_owned()));
         Ok(Self {
-            grains: open(path)?,
+            grains: DumpReader::open(path)?,
             contacts: contacts.map(named).transpose()?,
             file: path.to_string_lossy().into_owned(),
             beside,
@@ -88,7 +87,9 @@ impl GrainDump {
             let expected = "a dump of grains with `ITEM: ATOMS` (a dump of contacts is a separate file)";
             return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
         }
-        self.check_units()?;
+        if let Some(other) = self.rows.units.as_deref().filter(|units| !["si", "lj"].contains(units)) {
+            return Err(ReadError::at(&self.file, 1, "the units `si` or `lj`", quoted(other)));
+        }
         let columns = self.columns()?;
         self.rows.check_ids(&self.file, columns.id)?;
         let mut grains: Vec<GrainState> =
@@ -123,14 +124,6 @@ impl GrainDump {
         self.cut.as_deref()
     }
 
-    /// Checks that the units of the file are SI or dimensionless.
-    fn check_units(&self) -> Result<(), ReadError> {
-        match self.rows.units.as_deref() {
-            None | Some("si" | "lj") => Ok(()),
-            Some(other) => Err(ReadError::at(&self.file, 1, "the units `si` or `lj`", quoted(other))),
-        }
-    }
-
     /// Returns true for each periodic axis. Axes coupled by a tilt count as not periodic, because their images are not
     /// shifted by one box length along one axis.
     fn periodic(&self) -> Result<[bool; 3], ReadError> {
@@ -145,14 +138,11 @@ impl GrainDump {
         Ok([x && !tilted[0], y && !tilted[1], z && !tilted[2]])
     }
 
-    fn missing(file: &str, snapshot: &DumpSnapshot, what: &str) -> ReadError {
-        ReadError::at(file, snapshot.first_line.saturating_sub(1), what, quoted_names(&snapshot.columns))
-    }
-
     fn columns(&self) -> Result<Columns, ReadError> {
         let Self { rows, beside, file, .. } = self;
         let found = GrainColumns::find(rows, &beside.names);
-        let missing = |what: &str| Self::missing(file, rows, what);
+        let missing =
+            |what: &str| ReadError::at(file, rows.first_line.saturating_sub(1), what, quoted_names(&rows.columns));
         let coordinate = |axis: usize| {
             let name = ["x", "y", "z"][axis];
             found.position[axis]

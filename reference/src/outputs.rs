@@ -195,11 +195,14 @@ impl Outputs {
         {
             let table = read_table(file)?;
             outputs.significant = table.digits().significant();
-            let from_table = table_step(&table, &outputs.sources.names).map(Clock::constant);
-            outputs.ends = steps_of(&table, &outputs.sources.names);
-            let time = time_column(&table, &outputs.sources.names).and_then(|at| table.values(at).next());
+            let names = &outputs.sources.names;
+            let times = ends(&table, time_column(&table, names));
+            let steps = ends(&table, table.column(names.in_file("step")));
+            let time_step = times.zip(steps).map(|(times, steps)| (times[1] - times[0]) / (steps[1] - steps[0]));
+            let from_table = time_step.filter(|step| step.is_finite() && *step > 0.0).map(Clock::constant);
+            outputs.ends = steps.unwrap_or_default().map(|step| step as u64);
             if outputs.sources.from_first {
-                outputs.origin = Origin { step: outputs.ends[0], time };
+                outputs.origin = Origin { step: outputs.ends[0], time: times.map(|times| times[0]) };
             }
             outputs.table = Some(table);
             outputs.set_clock(of_log, from_table)?;
@@ -538,21 +541,10 @@ fn time_column(table: &Table, names: &Names) -> Option<usize> {
     ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.in_file(name)))
 }
 
-/// Returns the mean time step (s) of a table with steps and times, or `None` if one is missing.
-fn table_step(table: &Table, names: &Names) -> Option<f64> {
-    let ends = |column: usize| {
-        let mut values = table.values(column);
-        values.next().map(|first| values.last().unwrap_or(first) - first)
-    };
-    let length = ends(time_column(table, names)?)? / ends(table.column(names.in_file("step"))?)?;
-    (length.is_finite() && length > 0.0).then_some(length)
-}
-
-/// Returns the first and the last step of a table.
-fn steps_of(table: &Table, names: &Names) -> [u64; 2] {
-    let step =
-        table.column(names.in_file("step")).map(|at| table.values(at).map(|step| step as u64).collect::<Vec<_>>());
-    step.and_then(|steps| Some([*steps.first()?, *steps.last()?])).unwrap_or_default()
+/// Returns the first and the last number of a column, if the table has this column and a row.
+fn ends(table: &Table, column: Option<usize>) -> Option<[f64; 2]> {
+    let column = column?;
+    Some([table.values(column).next()?, table.values(column).last()?])
 }
 
 /// If each file has one moment, replaces the digits of all files by their combination, because their columns have the

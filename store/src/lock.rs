@@ -84,7 +84,9 @@ fn busy(path: &Path) -> io::Error {
 /// Removes an abandoned lock. Returns false if another process holds the lock, so that the caller must wait.
 fn remove_abandoned(path: &Path, after: Duration) -> bool {
     let Ok(text) = fs::read_to_string(path) else { return !path.exists() };
-    if !is_abandoned(path, &text, after) {
+    // The age decides if the process cannot be checked.
+    let has_ended = owner_in(&text).and_then(|(process, host)| machine::has_ended(process, host));
+    if !has_ended.unwrap_or_else(|| age(path).is_some_and(|age| age > after)) {
         return false;
     }
     // Another process may meanwhile have replaced the abandoned lock by its own lock, which is then moved back.
@@ -96,11 +98,6 @@ fn remove_abandoned(path: &Path, after: Duration) -> bool {
         let _ = fs::hard_link(&taken, path);
     }
     true
-}
-
-fn is_abandoned(path: &Path, text: &str, after: Duration) -> bool {
-    let has_ended = owner_in(text).and_then(|(process, host)| machine::has_ended(process, host));
-    has_ended.unwrap_or_else(|| age(path).is_some_and(|age| age > after))
 }
 
 /// Returns the age of a file by the clock of its file system, or `None` if the file does not exist.

@@ -46,12 +46,8 @@ impl FailureReport {
         let text = |value: &Option<Value>| {
             value.as_ref().map_or_else(|| "unknown".to_owned(), |value| one_line(&value.to_string()))
         };
-        format!(
-            "the program reports: time {}, place {}, cause {}",
-            text(&self.when),
-            text(&self.place),
-            text(&self.why)
-        )
+        let [when, place, why] = [&self.when, &self.place, &self.why].map(text);
+        format!("the program reports: time {when}, place {place}, cause {why}")
     }
 }
 

@@ -97,13 +97,6 @@ impl LiveProgram {
         let missing = |reason: &String| RunError::NotAvailable { solver: self.name(), reason: reason.clone() };
         self.executable.as_deref().map_err(missing)
     }
-
-    fn deck(&self, scene: &Scene, resolution: &Resolution) -> Result<Deck, RunError> {
-        write_deck(scene, resolution, self.program).map_err(|error| match error {
-            DeckError::Unsupported { reason, .. } => RunError::Unsupported { solver: self.name(), reason },
-            DeckError::Resolution(reason) => RunError::Resolution { solver: self.name(), reason },
-        })
-    }
 }
 
 impl Solver for LiveProgram {
@@ -116,7 +109,10 @@ impl Solver for LiveProgram {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        let deck = self.deck(scene, resolution)?;
+        let deck = write_deck(scene, resolution, self.program).map_err(|error| match error {
+            DeckError::Unsupported { reason, .. } => RunError::Unsupported { solver: self.name(), reason },
+            DeckError::Resolution(reason) => RunError::Resolution { solver: self.name(), reason },
+        })?;
         let (stepping, deadline) = (deck.stepping, Deadline::after(self.time_limit));
         let launch = Launch {
             solver: self.name(),

@@ -70,7 +70,6 @@ pub(crate) struct Lines<'r> {
     ended: bool,
 }
 
-/// Opens the file at a path.
 pub(crate) fn opened(path: &Path) -> Result<BufReader<File>, ReadError> {
     let file = File::open(path).map_err(|error| ReadError::opening(&path.to_string_lossy(), error))?;
     Ok(BufReader::new(file))
@@ -196,16 +195,13 @@ fn not_text(file: &str, number: u64, line: &[u8], place: usize) -> ReadError {
     let before = String::from_utf8_lossy(line.get(..place).unwrap_or_default());
     let byte = line.get(place).copied().unwrap_or_default();
     let mut found = format!("the byte 0x{byte:02x}");
-    if !before.is_empty() {
-        found = format!("{found} after {}", quoted(&last_characters(&before)));
+    let length = before.chars().count();
+    if length > 0 {
+        // The last characters are enough to identify the position.
+        let last: String = before.chars().skip(length.saturating_sub(20)).collect();
+        found = format!("{found} after {}", quoted(&last));
     }
-    ReadError::at(file, number, "plain text", found).with_column(before.chars().count() + 1)
-}
-
-/// Returns the last characters of `text`, enough to identify the position.
-fn last_characters(text: &str) -> String {
-    let skipped = text.chars().count().saturating_sub(20);
-    text.chars().skip(skipped).collect()
+    ReadError::at(file, number, "plain text", found).with_column(length + 1)
 }
 
 #[cfg(test)]
