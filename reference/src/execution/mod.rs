@@ -33,24 +33,20 @@ pub const CANNOT: i32 = 64;
 
 /// Input files, command, limits and protocol of a run that is to be started.
 pub(crate) struct Launch<'p> {
-    /// Name of the solver.
     pub(crate) solver: String,
     /// Time steps and samples.
     pub(crate) stepping: Stepping,
     /// Name and text of each input file.
     pub(crate) files: Vec<(String, String)>,
-    /// Path of the program.
     pub(crate) executable: PathBuf,
     /// Command-line arguments. `{scene}` is replaced by the path of the first input file, and `{out}` by the path of
     /// the folder of the run.
     pub(crate) arguments: Vec<String>,
     /// Limits of the run. The time limit has already started.
     pub(crate) limits: Limits,
-    /// Protocol of the process.
     pub(crate) protocol: Protocol<'p>,
 }
 
-/// Protocol of a process.
 pub(crate) enum Protocol<'p> {
     /// The exit code is 0 after a successful run.
     ExitCode,

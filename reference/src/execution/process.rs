@@ -44,9 +44,7 @@ pub(crate) fn scratch<'f>(files: impl IntoIterator<Item = (&'f str, &'f str)>) -
 
 /// Program to start.
 pub(crate) struct ProcessStart<'s> {
-    /// Path of the program.
     pub(crate) executable: &'s Path,
-    /// Command-line arguments.
     pub(crate) arguments: &'s [String],
     /// Folder of the output files, including standard output.
     pub(crate) folder: &'s Path,
@@ -58,7 +56,6 @@ pub(crate) struct ProcessStart<'s> {
 
 /// Regular end of a program, without a signal.
 pub(crate) struct ProcessEnd {
-    /// Exit code.
     pub(crate) code: i32,
     /// Last lines of standard error, or of standard output if there are none.
     pub(crate) last_lines: Vec<String>,

@@ -63,7 +63,6 @@ pub(super) struct Times {
     pub(super) seconds: Option<f64>,
 }
 
-/// Worker process.
 #[derive(Debug)]
 pub(crate) struct Worker {
     guard: Child,

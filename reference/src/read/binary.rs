@@ -67,7 +67,6 @@ impl Number {
         }
     }
 
-    /// Returns the size of a number (B).
     pub(crate) const fn size(self) -> usize {
         self.size
     }

@@ -19,7 +19,6 @@ pub struct Digits {
     padded: bool,
     /// True if a number has decimals other than a single zero.
     has_fraction: bool,
-    /// True if a number has an exponent.
     has_exponent: bool,
     /// True if the numbers have single precision (f32), even if more digits are printed.
     single: bool,

@@ -25,7 +25,6 @@ pub(crate) struct Format {
 
 /// Beginning of a file.
 pub(crate) struct Beginning<'a> {
-    /// Path of the file.
     pub(crate) path: &'a Path,
     /// First bytes as stored.
     pub(crate) bytes: &'a [u8],

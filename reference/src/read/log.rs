@@ -140,7 +140,6 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     Ok(log)
 }
 
-/// Format of a row of numbers.
 const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Kept };
 
 /// Content that is expected in the next line of a log.
@@ -148,9 +147,7 @@ const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Ke
 enum ExpectedLine {
     /// Any text.
     Text,
-    /// Names of the columns.
     Names,
-    /// Rows of this table.
     Rows(Table),
 }
 
