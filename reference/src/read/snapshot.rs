@@ -137,37 +137,32 @@ impl DumpSnapshot {
         }
     }
 
-    /// Finds the first number that differs from another snapshot by more than the uncertainty of printed digits.
-    /// Returns the row of this number, and the expected and the actual value as text.
-    ///
-    /// Rows are matched by id. Columns that only one of the snapshots has are skipped.
-    fn difference_from(&self, other: &Self) -> Option<(usize, String, String)> {
-        if self.rows() != other.rows() {
-            return Some((0, format!("{} rows", other.rows()), self.rows().to_string()));
+    /// Checks that the numbers equal those of an earlier snapshot with the same step within the uncertainty of printed
+    /// digits. Rows are matched by id. Columns that only one of the snapshots has are skipped.
+    pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
+        let fault = |row: usize, expected: String, found: String| {
+            let expected = format!("{expected} as in the earlier frame of step {}", self.step);
+            Err(ReadError::at(file, self.first_line + row as u64, expected, found))
+        };
+        if self.rows() != before.rows() {
+            return fault(0, format!("{} rows", before.rows()), self.rows().to_string());
         }
-        let orders = [other, self].map(|snapshot| snapshot.rows_by(snapshot.column("id")));
-        let of_files = [other, self].map(|snapshot| snapshot.digits());
+        let orders = [before, self].map(|snapshot| snapshot.rows_by(snapshot.column("id")));
+        let of_files = [before, self].map(|snapshot| snapshot.digits());
         for (at, column) in self.columns.iter().enumerate().filter(|(_, column)| !column.is_text) {
-            let Some(before) = other.column(&column.name) else { continue };
-            let digits = [other.columns[before].digits, column.digits];
+            let Some(place) = before.column(&column.name) else { continue };
+            let digits = [before.columns[place].digits, column.digits];
             for (&first, &second) in orders[0].iter().zip(&orders[1]) {
-                let values = [other.row(first)[before], self.row(second)[at]];
+                let values = [before.row(first)[place], self.row(second)[at]];
                 let open: f64 = (0..2).map(|which| digits[which].half_unit(values[which], &of_files[which])).sum();
                 let is_one = (values[0] - values[1]).abs() <= open || values.iter().all(|value| value.is_nan());
                 if !is_one {
                     let [expected, found] = values.map(|value| format!("`{}` {value:?}", column.name));
-                    return Some((second, expected, found));
+                    return fault(second, expected, found);
                 }
             }
         }
-        None
-    }
-
-    /// Checks that the numbers equal those of an earlier snapshot with the same step.
-    pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
-        let Some((row, expected, found)) = self.difference_from(before) else { return Ok(()) };
-        let expected = format!("{expected} as in the earlier frame of step {}", self.step);
-        Err(ReadError::at(file, self.first_line + row as u64, expected, found))
+        Ok(())
     }
 }
 
