@@ -264,29 +264,20 @@ impl Manifest {
             return wrong("can.effects", &format!("names among {}", names().join(", ")), quoted(unknown));
         }
         if let Some(other) = self.knobs.critical_fraction.iter().find(|part| !(**part > 0.0 && **part < 1.0)) {
-            return wrong(
-                "knobs.critical-fraction",
-                "fractions of the critical step, above 0 and below 1",
-                other.to_string(),
-            );
+            let expected = "fractions of the critical step, above 0 and below 1";
+            return wrong("knobs.critical-fraction", expected, other.to_string());
         }
         if let Some(other) = self.knobs.cells.iter().find(|cells| !(cells.is_finite() && **cells > 0.0)) {
             return wrong("knobs.cells", "numbers of cells above zero", other.to_string());
         }
         if self.can.laws.is_empty() && self.can.deformable.is_empty() {
-            return wrong(
-                "can.laws",
-                "a contact law, or laws of deformable materials (`can.deformable`)",
-                "none".to_owned(),
-            );
+            let expected = "a contact law, or laws of deformable materials (`can.deformable`)";
+            return wrong("can.laws", expected, "none".to_owned());
         }
         let output = &self.output;
         if output.grains.is_none() && output.series.is_none() {
-            return wrong(
-                "output",
-                "`grains`, or a `series` if the bodies of the program deform",
-                "neither".to_owned(),
-            );
+            let expected = "`grains`, or a `series` if the bodies of the program deform";
+            return wrong("output", expected, "neither".to_owned());
         }
         let path = output.grains.as_ref().map(|grains| &grains.path);
         let files = [("output.grains.path", path), ("output.contacts", output.contacts.as_ref())];

@@ -75,12 +75,8 @@ fn whole(file: File, name: &str) -> Result<Table, ReadError> {
             })?);
         }
         if values.len() - before != columns.len() || values.len() > MOST_NUMBERS {
-            return Err(ReadError::at(
-                name,
-                1,
-                format!("{} columns of numbers", columns.len()),
-                "columns within columns",
-            ));
+            let expected = format!("{} columns of numbers", columns.len());
+            return Err(ReadError::at(name, 1, expected, "columns within columns"));
         }
     }
     Ok(Table::new(columns, values))

@@ -12,7 +12,7 @@ use std::path::{Path, PathBuf};
 
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::{Failure, RunError};
-use grainbench_solver::record::{Cost, Record, Series};
+use grainbench_solver::record::{self, Cost, Record, Series};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::ReadError;
@@ -155,13 +155,7 @@ impl StoredRun {
             .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
         let options = vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)];
         Ok(Record {
-            provenance: grainbench_solver::record::Provenance::new(
-                scene,
-                solver,
-                resolution,
-                stepping.time_step,
-                options,
-            ),
+            provenance: record::Provenance::new(scene, solver, resolution, stepping.time_step, options),
             series: self.series(scene),
             snapshots: Vec::new(),
             cost: Cost::of_program(stepping.steps, scene.grains.len(), f64::NAN),

@@ -105,15 +105,13 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
     let arrays = arrays(path, &name)?;
     let fault = |expected: String, found: String| ReadError::at(&name, 1, expected, found);
     let have = || quoted(&arrays.keys().cloned().collect::<Vec<_>>().join(" "));
-    let of_moments = |key: &str| -> Result<Option<Vec<f64>>, ReadError> {
-        match arrays.get(key) {
-            Some(array) if array.shape.len() == 1 => Ok(Some(array.numbers.clone())),
-            Some(array) => Err(fault(
-                format!("one number for each time in the array `{key}`"),
-                format!("the shape {:?}", array.shape),
-            )),
-            None => Ok(None),
+    let of_moments = |key: &str| match arrays.get(key) {
+        Some(Array { shape, numbers, .. }) if shape.len() == 1 => Ok(Some(numbers.clone())),
+        Some(Array { shape, .. }) => {
+            let expected = format!("one number for each time in the array `{key}`");
+            Err(fault(expected, format!("the shape {shape:?}")))
         }
+        None => Ok(None),
     };
     let (steps, times) = (of_moments("step")?, of_moments("time")?);
     let moments = steps.as_ref().or(times.as_ref()).map(Vec::len);
@@ -163,10 +161,8 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
             let words = if width == 1 { "grains" } else { "grains, 3" };
             let grains = if must { "grains".to_owned() } else { course.grains.to_string() };
             let words = words.replace("grains", &grains);
-            return Err(fault(
-                format!("the shape ({moments}, {words}) of the array `{key}`"),
-                format!("{:?}", array.shape),
-            ));
+            let expected = format!("the shape ({moments}, {words}) of the array `{key}`");
+            return Err(fault(expected, format!("{:?}", array.shape)));
         }
         if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
             return Err(fault(format!("finite numbers in the array `{key}`"), wrong.to_string()));

@@ -94,7 +94,7 @@ impl File<'_> {
                 Event::Empty(tag) => {
                     self.open(&tag, at)?;
                     if tag.name().as_ref() == ARRAY {
-                        self.close(path.last())?;
+                        self.close(path.last().map(Vec::as_slice))?;
                     }
                 }
                 Event::Text(text) if is_in_array => self.add(&String::from_utf8_lossy(&text)),
@@ -106,7 +106,7 @@ impl File<'_> {
                 Event::End(_) => {
                     path.pop();
                     if is_in_array {
-                        self.close(path.last())?;
+                        self.close(path.last().map(Vec::as_slice))?;
                     }
                 }
                 Event::Eof => break,
@@ -173,7 +173,7 @@ impl File<'_> {
 
     /// Reads the array whose tag ends if it contains positions, data of points, or the time. Numbers of a further piece of
     /// the file are appended to the array of the same name.
-    fn close(&mut self, parent: Option<&Vec<u8>>) -> Result<(), ReadError> {
+    fn close(&mut self, parent: Option<&[u8]>) -> Result<(), ReadError> {
         let Some(array) = self.array.take() else { return Ok(()) };
         let is_in = |name: &[u8]| parent.is_some_and(|parent| parent == name);
         let is_time = is_in(b"FieldData") && self.pieces == 0 && array.name.eq_ignore_ascii_case("TimeValue");
