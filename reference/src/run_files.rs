@@ -1,6 +1,6 @@
 //! Output files of a run, read snapshot by snapshot in any format.
 
-use crate::read::decoding::{InputContent, decoded};
+use crate::read::decoding::decoded;
 use crate::read::format::{Beginning, FORMATS, FileContent, Format, SnapshotReader, dump};
 use crate::read::lines::{Lines, opened};
 use crate::read::parquet;
@@ -31,7 +31,7 @@ pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadErro
     if let Some(format) = find(&[], "") {
         return Ok(Some(format));
     }
-    if let InputContent::Text(reader) = decoded(opened(path)?).map_err(reading)? {
+    if let Ok(reader) = decoded(opened(path)?).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
     }
     if let Some(format) = find(&unpacked, "") {

@@ -23,32 +23,28 @@ const BINARY_DUMP: &str =
 /// Length of the longest first bytes in [`UNREADABLE`] (B).
 const MARK: u64 = 18;
 
-/// Content of an input, identified by its first bytes.
-pub(crate) enum InputContent<'r> {
-    /// Text, decompressed if it is gzip or zstd.
-    Text(Box<dyn Read + 'r>),
-    /// Unsupported format, with its name.
-    Unreadable(&'static str),
-}
+/// Content of an input, or the name of its unsupported format.
+pub(crate) type Decoded<'r> = Result<Box<dyn Read + 'r>, &'static str>;
 
 /// Detects the format of `reader` from its first bytes, and decompresses gzip and zstd.
-pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<InputContent<'r>> {
+pub(crate) fn decoded<'r>(mut reader: impl BufRead + 'r) -> io::Result<Decoded<'r>> {
     let mut head = Vec::new();
     reader.by_ref().take(MARK).read_to_end(&mut head)?;
     if let Some((_, name)) = UNREADABLE.iter().find(|(mark, _)| head.starts_with(mark)) {
-        return Ok(InputContent::Unreadable(name));
+        return Ok(Err(*name));
     }
     let is = |mark: &[u8]| head.starts_with(mark);
     let (gzip, zstd) = (is(GZIP), is(ZSTD));
     let whole = Cursor::new(head).chain(reader);
-    Ok(InputContent::Text(if gzip {
+    let content: Box<dyn Read + 'r> = if gzip {
         // A gzip file may be a sequence of gzip files, for example from `cat a.gz b.gz`.
         Box::new(MultiGzDecoder::new(whole))
     } else if zstd {
-        Box::new(ZstdFrames::new(whole))
+        Box::new(ZstdFrames { decoder: FrameDecoder::new(), source: whole, inside: false })
     } else {
         Box::new(whole)
-    }))
+    };
+    Ok(Ok(content))
 }
 
 /// Reader of a zstd file, which may be a sequence of zstd frames.
@@ -56,12 +52,6 @@ struct ZstdFrames<R: BufRead> {
     decoder: FrameDecoder,
     source: R,
     inside: bool,
-}
-
-impl<R: BufRead> ZstdFrames<R> {
-    fn new(source: R) -> Self {
-        Self { decoder: FrameDecoder::new(), source, inside: false }
-    }
 }
 
 impl<R: BufRead> Read for ZstdFrames<R> {

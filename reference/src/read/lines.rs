@@ -4,7 +4,7 @@ use std::fs::File;
 use std::io::{BufRead, BufReader, ErrorKind, Read};
 use std::path::Path;
 
-use crate::read::decoding::{InputContent, decoded};
+use crate::read::decoding::decoded;
 use crate::read::read_error::{ReadError, quoted};
 
 /// Maximum length of a line (B), enough for a dump with a few thousand columns. A file without line ends is refused
@@ -82,12 +82,8 @@ impl<'r> Lines<'r> {
     }
 
     pub(crate) fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
-        let reader = match decoded(reader).map_err(|error| ReadError::reading(name, 1, error))? {
-            InputContent::Text(reader) => reader,
-            InputContent::Unreadable(found) => {
-                return Err(ReadError::at(name, 1, "plain text, gzip or zstd", found));
-            }
-        };
+        let reader = decoded(reader).map_err(|error| ReadError::reading(name, 1, error))?;
+        let reader = reader.map_err(|found| ReadError::at(name, 1, "plain text, gzip or zstd", found))?;
         let (name, buffer) = (name.to_owned(), vec![0; BLOCK]);
         Ok(Self { reader, name, buffer, start: 0, end: 0, at_end: false, number: 0, ended: true })
     }

@@ -9,7 +9,7 @@ mod legacy;
 pub(crate) mod points;
 mod xml;
 
-use super::decoding::{InputContent, decoded};
+use super::decoding::decoded;
 use super::lines::opened;
 use super::read_error::ReadError;
 use super::snapshot::DumpSnapshot;
@@ -67,10 +67,8 @@ fn parse(name: &str, bytes: &[u8]) -> Result<DumpSnapshot, ReadError> {
 /// Reads all bytes of a file and decompresses them.
 pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
     let name = path.to_string_lossy();
-    let reader = match decoded(opened(path)?).map_err(|error| ReadError::reading(&name, 1, error))? {
-        InputContent::Text(reader) => reader,
-        InputContent::Unreadable(found) => return Err(ReadError::at(&name, 1, "a plain file, gzip or zstd", found)),
-    };
+    let reader = decoded(opened(path)?).map_err(|error| ReadError::reading(&name, 1, error))?;
+    let reader = reader.map_err(|found| ReadError::at(&name, 1, "a plain file, gzip or zstd", found))?;
     let mut bytes = Vec::new();
     reader.take(MOST + 1).read_to_end(&mut bytes).map_err(|error| ReadError::reading(&name, 1, error))?;
     if bytes.len() as u64 > MOST {
