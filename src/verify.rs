@@ -52,7 +52,7 @@ pub fn verify(reference: &Reference) -> Result<Vec<Verdict>, SceneError> {
         Ok(rerun) => rerun,
         Err(error) => return Ok(ended(&error)),
     };
-    let provenance = stored.provenance();
+    let provenance = &stored.provenance;
     let source = format!(
         "{}, stored on {}; repeated with {}",
         provenance.version,

@@ -20,7 +20,8 @@ pub struct Tracer {
     pub position: Vector3<f64>,
     /// Ids of the labelled grains with their initial positions (m).
     labelled: Vec<(u32, Vector3<f64>)>,
-    lost: bool,
+    /// True if the tracer has stopped because there were no grains around it.
+    pub lost: bool,
 }
 
 /// Creates a tracer at the centre of each non-empty cell of a grid. The grains in the cell are its labelled grains.
@@ -37,12 +38,6 @@ pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
 }
 
 impl Tracer {
-    /// Returns true if the tracer has stopped because there were no grains around it.
-    #[must_use]
-    pub const fn is_lost(&self) -> bool {
-        self.lost
-    }
-
     /// Moves the tracer for a time (s) with the mean velocities of `elements`, by the midpoint rule.
     ///
     /// The tracer is lost if there is no velocity at its position or at the midpoint of its path.

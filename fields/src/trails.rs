@@ -48,12 +48,12 @@ impl Trails {
             None => self.tracers = tracers(snapshot, &self.boxes),
             Some(before) => {
                 let elapsed = snapshot.time - before.time;
-                for tracer in self.tracers.iter_mut().filter(|tracer| !tracer.is_lost()) {
+                for tracer in self.tracers.iter_mut().filter(|tracer| !tracer.lost) {
                     tracer.carry(&before.elements, grid, snapshot.periodic, elapsed);
                 }
             }
         }
-        for (tracer, trail) in self.tracers.iter().enumerate().filter(|(_, trail)| !trail.is_lost()) {
+        for (tracer, trail) in self.tracers.iter().enumerate().filter(|(_, trail)| !trail.lost) {
             let deformation = trail.deformation(snapshot, dimension);
             let strain = deformation.and_then(|deformation| hencky(&deformation)).map(|strain| strain.norm());
             self.stops.push(Stop { tracer, frame: frames.len(), position: trail.position, strain });

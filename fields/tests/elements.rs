@@ -293,7 +293,7 @@ fn tracers_move_and_deform_with_the_flow() {
         let shot = shot(frame);
         let elements = elements(&shot, Dimension::Three, &grid);
         all.iter_mut().for_each(|tracer| tracer.carry(&elements, &grid, shot.periodic, step));
-        assert!(all.iter().all(|tracer| !tracer.is_lost()));
+        assert!(all.iter().all(|tracer| !tracer.lost));
     }
     let last = shot(40);
     for (tracer, start) in

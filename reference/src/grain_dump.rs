@@ -38,7 +38,8 @@ pub struct GrainDump {
     contacts: Option<(DumpReader<'static>, String)>,
     file: String,
     beside: DumpOptions,
-    cut: Option<String>,
+    /// Error at the position where the dump is truncated, if truncation is allowed.
+    pub cut: Option<String>,
     rows: DumpSnapshot,
     entries: DumpSnapshot,
 }
@@ -116,12 +117,6 @@ impl GrainDump {
             snapshot.contacts = Some(contacts_of(&snapshot, reader, &mut self.entries, file, &self.beside.names)?);
         }
         Ok(Some(snapshot))
-    }
-
-    /// Returns the error at the position where the dump is truncated, if truncation is allowed.
-    #[must_use]
-    pub fn cut(&self) -> Option<&str> {
-        self.cut.as_deref()
     }
 
     /// Returns true for each periodic axis. Axes coupled by a tilt count as not periodic, because their images are not

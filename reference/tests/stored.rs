@@ -67,15 +67,15 @@ fn every_run_loads_and_every_file_is_vouched_for() {
     for program in Program::ALL {
         for entry in fs::read_dir(folder(program, "")).unwrap() {
             let run = StoredRun::load(&entry.unwrap().path()).unwrap();
-            let there: BTreeSet<String> = fs::read_dir(run.directory())
+            let there: BTreeSet<String> = fs::read_dir(&run.directory)
                 .unwrap()
                 .map(|entry| entry.unwrap().file_name().into_string().unwrap())
                 .filter(|name| name != "provenance.toml")
                 .collect();
-            let listed: BTreeSet<String> = run.provenance().blake3.keys().cloned().collect();
+            let listed: BTreeSet<String> = run.provenance.blake3.keys().cloned().collect();
             assert_eq!(there, listed);
-            assert_eq!(run.provenance().program, program.to_string());
-            assert!(run.provenance().version.contains(&run.provenance().program), "{}", run.provenance().version);
+            assert_eq!(run.provenance.program, program.to_string());
+            assert!(run.provenance.version.contains(&run.provenance.program), "{}", run.provenance.version);
             count += 1;
         }
     }

@@ -60,7 +60,7 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
         .filter_map(|stored_run| {
             let scene = stored_run.scene().ok().filter(|scene| *scene == candidate.scene)?;
             let stored = StoredRun::load(&folder(stored_run.program, &stored_run.id)).ok()?;
-            let provenance = stored.is_of(&scene, &stored_run.run.resolution).then(|| stored.provenance())?;
+            let provenance = stored.is_of(&scene, &stored_run.run.resolution).then_some(&stored.provenance)?;
             let last = provenance.predictable_steps.unwrap_or(u64::MAX);
             let predictable = |series: Series| {
                 let samples = series.step.partition_point(|&step| step <= last);

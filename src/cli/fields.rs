@@ -204,7 +204,7 @@ fn of_dump(
     while let Some(snapshot) = dump.read().map_err(Fault::reading)? {
         take(snapshot)?;
     }
-    if let Some(cut) = dump.cut() {
+    if let Some(cut) = &dump.cut {
         say("warning", &format!("only the complete frames are read (--partial): {cut}"));
     }
     Ok(())

@@ -71,8 +71,10 @@ pub struct Provenance {
 /// Stored run. Its files have been verified by their hashes.
 #[derive(Debug, Clone)]
 pub struct StoredRun {
-    directory: PathBuf,
-    provenance: Provenance,
+    /// Folder of the run.
+    pub directory: PathBuf,
+    /// Provenance of the run.
+    pub provenance: Provenance,
     series: Table,
     half_step: Table,
 }
@@ -103,18 +105,6 @@ impl StoredRun {
         let (series, half_step) = (read_table(&listed(SERIES)?)?, read_table(&listed(HALF_STEP_SERIES)?)?);
         check_half_step(directory, &series, &half_step)?;
         Ok(Self { directory: directory.to_owned(), provenance, series, half_step })
-    }
-
-    /// Returns the folder of the run.
-    #[must_use]
-    pub fn directory(&self) -> &Path {
-        &self.directory
-    }
-
-    /// Returns the provenance of the run.
-    #[must_use]
-    pub fn provenance(&self) -> &Provenance {
-        &self.provenance
     }
 
     /// Returns true if the run was made from this scene at this resolution.
