@@ -13,15 +13,15 @@ pub(crate) static FORMAT: Format = Format {
     is_it: |beginning| is_of_grains(&header(beginning.line).1),
     numbering: Numbering::Frames,
     holds: |path| {
-        let moments = read_moments(path)?;
-        let begins = moments.first().map(|first| first.snapshot.step);
-        Ok(if moments.iter().all(|moment| moment.is_keyed) { FileContent::Course(begins) } else { FileContent::Moment })
+        let (snapshots, is_keyed) = read_snapshots(path)?;
+        let begins = snapshots.first().map(|first| first.step);
+        Ok(if is_keyed { FileContent::Course(begins) } else { FileContent::Moment })
     },
     open: |path, most_rows| {
-        let moments = read_moments(path)?;
-        let most = moments.iter().map(|moment| moment.snapshot.rows()).max().unwrap_or_default();
+        let (snapshots, _) = read_snapshots(path)?;
+        let most = snapshots.iter().map(|snapshot| snapshot.rows()).max().unwrap_or_default();
         check_grains(&path.to_string_lossy(), most, most_rows)?;
-        Ok(indexed(path, move |place| Ok(moments.get(place).map(|moment| moment.snapshot.clone()))))
+        Ok(indexed(path, move |place| Ok(snapshots.get(place).cloned())))
     },
 };
 
@@ -55,48 +55,27 @@ fn column_name(name: &str) -> String {
     if is_id(name) { "id".to_owned() } else { name.to_owned() }
 }
 
-/// Snapshot of the grains at one moment.
-struct Moment {
-    /// True if the table has columns with steps, frame numbers or times.
-    is_keyed: bool,
-    snapshot: DumpSnapshot,
-}
-
-/// Indices of the columns with steps, frames and times.
-struct Keys {
-    step: Option<usize>,
-    frame: Option<usize>,
-    time: Option<usize>,
-}
-
-impl Keys {
-    fn from_table(table: &Table) -> Self {
-        let column = |names: &[&str]| names.iter().find_map(|name| table.column(name));
-        Self { step: column(&["step"]), frame: column(&["TimeStep"]), time: column(&["Time", "time", "t", "time (s)"]) }
-    }
-
-    /// Returns the step or frame number and the time of a row. Rows of one moment have equal results.
-    fn of_row(&self, row: &[f64]) -> [Option<f64>; 2] {
-        [self.step.or(self.frame), self.time].map(|at| at.map(|at| row[at]))
-    }
-}
-
-/// Reads the moments of the table at a path.
+/// Reads the snapshots of the table at a path. Also returns true if the table has columns with steps, frame numbers or
+/// times.
 ///
 /// # Errors
 /// If the file cannot be read, has two columns of the same meaning, or if a step, frame number or time decreases.
-fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
+fn read_snapshots(path: &Path) -> Result<(Vec<DumpSnapshot>, bool), ReadError> {
     let name = path.to_string_lossy();
     let mut table = read_table(path)?;
-    let keys = Keys::from_table(&table);
+    let column = |names: &[&str]| names.iter().find_map(|name| table.column(name));
+    let (steps, frames) = (column(&["step"]), column(&["TimeStep"]));
+    let times = column(&["Time", "time", "t", "time (s)"]);
     rename_columns(&name, &mut table)?;
-    let mut moments: Vec<Moment> = Vec::new();
+    // Step or frame number, and time of a row. Rows of one moment have equal keys.
+    let key_of = |row: usize| [steps.or(frames), times].map(|at| at.map(|at| table.row(row)[at]));
+    let mut snapshots = Vec::new();
     let mut row = 0;
     while row < table.rows() {
-        let key = keys.of_row(table.row(row));
-        let rows = (row..table.rows()).take_while(|&other| keys.of_row(table.row(other)) == key).count();
+        let key = key_of(row);
+        let rows = (row..table.rows()).take_while(|&other| key_of(other) == key).count();
         let line = row as u64 + 2;
-        let before = row.checked_sub(1).map(|last| keys.of_row(table.row(last)));
+        let before = row.checked_sub(1).map(key_of);
         if let Some([number, time]) = before.filter(|before| goes_back(*before, key)) {
             let expected = format!("a time after {:?}", time.or(number).unwrap_or_default());
             return Err(ReadError::at(&name, line, expected, format!("{:?}", key[1].or(key[0]).unwrap_or_default())));
@@ -106,22 +85,19 @@ fn read_moments(path: &Path) -> Result<Vec<Moment>, ReadError> {
             Some(step) => {
                 return Err(ReadError::at(&name, line, "a step, a whole number of 0 or more", step.to_string()));
             }
-            None => moments.len() as u64,
+            None => snapshots.len() as u64,
         };
-        moments.push(Moment {
-            is_keyed: key != [None; 2],
-            snapshot: DumpSnapshot {
-                step,
-                numbering: if keys.step.is_some() { Numbering::Steps } else { Numbering::Frames },
-                time: key[1],
-                table: table.part(row, rows),
-                first_line: line,
-                ..DumpSnapshot::default()
-            },
+        snapshots.push(DumpSnapshot {
+            step,
+            numbering: if steps.is_some() { Numbering::Steps } else { Numbering::Frames },
+            time: key[1],
+            table: table.part(row, rows),
+            first_line: line,
+            ..DumpSnapshot::default()
         });
         row += rows;
     }
-    Ok(moments)
+    Ok((snapshots, steps.or(frames).or(times).is_some()))
 }
 
 fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
