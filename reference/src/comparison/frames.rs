@@ -1,5 +1,6 @@
 //! Sequence of frames of an output. A frame has the values of selected columns at one step, time or row.
 
+use std::ops::Range;
 use std::path::Path;
 use std::vec;
 
@@ -53,19 +54,8 @@ pub(super) struct Frames {
 }
 
 enum FrameSource {
-    Grains {
-        files: vec::IntoIter<RunFile>,
-        reader: Option<Snapshots>,
-        /// True until a snapshot of the open file has been read.
-        is_new: bool,
-        snapshot: DumpSnapshot,
-    },
-    Table {
-        table: Table,
-        step: Option<usize>,
-        time: Option<usize>,
-        rows: vec::IntoIter<usize>,
-    },
+    Grains { files: vec::IntoIter<RunFile>, reader: Option<Snapshots>, snapshot: DumpSnapshot },
+    Table { table: Table, step: Option<usize>, time: Option<usize>, rows: Range<usize> },
 }
 
 impl Frames {
@@ -74,12 +64,11 @@ impl Frames {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
             let files = in_order(&[path.to_owned()])?.into_iter();
-            FrameSource::Grains { files, reader: None, is_new: true, snapshot: DumpSnapshot::default() }
+            FrameSource::Grains { files, reader: None, snapshot: DumpSnapshot::default() }
         } else {
             let table = read_table(path)?;
             let time = ["time", "t"].into_iter().find_map(|name| table.column(names.in_file(name)));
-            let (step, rows) = (table.column(names.in_file("step")), (0..table.rows()).collect::<Vec<_>>());
-            FrameSource::Table { step, time, rows: rows.into_iter(), table }
+            FrameSource::Table { step: table.column(names.in_file("step")), time, rows: 0..table.rows(), table }
         };
         let (file, time_step) = (path.to_string_lossy().into_owned(), options.time_steps[which]);
         let (wanted, partial) = (Vec::new(), options.partial);
@@ -182,25 +171,21 @@ impl Frames {
     /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if truncation is
     /// allowed.
     fn next_snapshot(&mut self) -> Result<bool, ReadError> {
-        let FrameSource::Grains { files, reader, is_new, snapshot } = &mut self.from else { return Ok(false) };
+        let FrameSource::Grains { files, reader, snapshot } = &mut self.from else { return Ok(false) };
         loop {
+            let before = reader.is_none().then(|| snapshot.clone());
             let open = match reader {
                 Some(open) => open,
-                None => match files.next() {
-                    Some(file) => {
-                        *is_new = true;
-                        reader.insert(Snapshots::open(&file, u64::MAX, self.partial)?)
-                    }
-                    None => return Ok(false),
-                },
+                None => {
+                    let Some(file) = files.next() else { return Ok(false) };
+                    reader.insert(Snapshots::open(&file, u64::MAX, self.partial)?)
+                }
             };
-            let before = (*is_new).then(|| snapshot.clone());
             if !open.read(snapshot)? {
                 self.cut = open.cut.take().or(self.cut.take());
                 *reader = None;
                 continue;
             }
-            *is_new = false;
             let is_same_step = |before: &DumpSnapshot| !before.columns.is_empty() && before.step == snapshot.step;
             if let Some(before) = before.filter(is_same_step) {
                 snapshot.check_repeated(&self.file, &before)?;
