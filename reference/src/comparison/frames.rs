@@ -142,23 +142,19 @@ impl Frames {
     /// Reads the next frame. Also returns all numbers of the row for a table, and an empty list for a dump.
     fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
-        match &mut self.from {
-            FrameSource::Grains { .. } => {
-                if !self.next_snapshot()? {
-                    return Ok(None);
-                }
-            }
-            FrameSource::Table { rows, table, step, time } => {
-                let Some(row) = rows.next() else { return Ok(None) };
-                let numbers = table.row(row).to_vec();
-                let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
-                let step = step.map(|at| value(at) as u64);
-                let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
-                let place = Place { step, time, number, line: row as u64 + 2 };
-                let column = |name: &String| table.column(self.names.in_file(name)).map_or(f64::NAN, value);
-                let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
-                return Ok(Some((Frame { place, ids: None, values }, numbers)));
-            }
+        if let FrameSource::Table { rows, table, step, time } = &mut self.from {
+            let Some(row) = rows.next() else { return Ok(None) };
+            let numbers = table.row(row).to_vec();
+            let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
+            let step = step.map(|at| value(at) as u64);
+            let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
+            let place = Place { step, time, number, line: row as u64 + 2 };
+            let column = |name: &String| table.column(self.names.in_file(name)).map_or(f64::NAN, value);
+            let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
+            return Ok(Some((Frame { place, ids: None, values }, numbers)));
+        }
+        if !self.next_snapshot()? {
+            return Ok(None);
         }
         let FrameSource::Grains { snapshot, .. } = &self.from else { return Ok(None) };
         if let Some(id) = snapshot.column(self.names.in_file("id")) {

@@ -26,7 +26,7 @@ pub(crate) static FORMAT: Format = Format {
     holds: |_| Ok(FileContent::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;
-        check_grains(&course.name, course.grains, most_rows)?;
+        check_grains(&path.to_string_lossy(), course.grains, most_rows)?;
         Ok(indexed(path, move |place| Ok(course.snapshot(place))))
     },
 };
@@ -49,7 +49,6 @@ struct Array {
 /// Grains at several moments, from one file.
 #[derive(Debug)]
 struct Course {
-    name: String,
     /// Step of each moment. If the file has no steps, this is the index of the moment.
     steps: Vec<u64>,
     /// Numbering of the moments. If the file has both steps and times, the steps are those of the run. Otherwise the
@@ -101,7 +100,7 @@ const CONTACT: [(&str, &[&str]); 2] =
 /// # Errors
 /// If the file cannot be read, lacks a required array, or has arrays of other shapes.
 fn read_course(path: &Path) -> Result<Course, ReadError> {
-    let name = path.to_string_lossy().into_owned();
+    let name = path.to_string_lossy();
     let arrays = arrays(path, &name)?;
     let fault = |expected: String, found: String| ReadError::at(&name, 1, expected, found);
     let have = || quoted(&arrays.keys().cloned().collect::<Vec<_>>().join(" "));
@@ -133,7 +132,7 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
     }
     let contacts = contacts(&arrays, &steps).map_err(|(expected, found)| fault(expected, found))?;
     let (columns, numbers) = (Vec::new(), Vec::new());
-    let mut course = Course { name: name.clone(), steps, numbering, times, grains: 0, columns, numbers, contacts };
+    let mut course = Course { steps, numbering, times, grains: 0, columns, numbers, contacts };
     let known =
         KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
     let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| {
