@@ -353,9 +353,9 @@ impl Outputs {
             return self.observe_table(scene, table);
         }
         let decks = self.decks(scene);
-        let names = decks.first().map(|deck| &deck.names).into_iter().chain(decks.get(1).map(|deck| &deck.names));
+        let names = decks.iter().flat_map(|deck| deck.names.0.clone()).collect();
         let observer = DumpObserver::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
-        let mut observer = observer.with_names_of_decks(names.flat_map(|names| names.0.clone()).collect());
+        let mut observer = observer.with_names_of_decks(names);
         // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;
