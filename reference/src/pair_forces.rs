@@ -39,18 +39,9 @@ const TANGENTIAL: [&str; 3] = ["tangential_x", "tangential_y", "tangential_z"];
 
 /// Columns of the contact dumps that our decks write: those of LAMMPS, with separate normal and tangential forces, and
 /// those of LIGGGHTS, whose column 3 is a flag for pairs across a periodic boundary.
-const OF_DECKS: [&[&str]; 2] = [
-    &[
-        "c_pairs[1]",
-        "c_pairs[2]",
-        "c_forces[1]",
-        "c_forces[2]",
-        "c_forces[3]",
-        "c_forces[4]",
-        "c_forces[5]",
-        "c_forces[6]",
-    ],
-    &["c_pairs[1]", "c_pairs[2]", "c_pairs[4]", "c_pairs[5]", "c_pairs[6]"],
+const OF_DECKS: [&str; 2] = [
+    "c_pairs[1] c_pairs[2] c_forces[1] c_forces[2] c_forces[3] c_forces[4] c_forces[5] c_forces[6]",
+    "c_pairs[1] c_pairs[2] c_pairs[4] c_pairs[5] c_pairs[6]",
 ];
 
 /// Indices of columns in a dump of contacts: ids of two grains, and parts of the force on the first grain.
@@ -82,11 +73,11 @@ impl PairColumns {
     /// Returns the columns of a dump that one of our decks wrote, unless the ids have other names.
     fn of_deck(snapshot: &DumpSnapshot, names: &Names) -> Option<Self> {
         let has_names = names.in_file("id1") != "id1" || names.in_file("force_x") != "force_x";
-        let is_of =
-            |deck: &&&[&str]| snapshot.columns.iter().map(|column| column.name.as_str()).eq(deck.iter().copied());
-        let deck = OF_DECKS.iter().find(is_of).filter(|_| !has_names)?;
-        let part = |first: usize| [0, 1, 2].map(|axis| Some(first + axis).filter(|&at| at < deck.len()));
-        Some(Self { ids: [0, 1], parts: [part(2), part(5)] })
+        let columns = snapshot.columns.iter().map(|column| column.name.as_str());
+        let is_of_deck = !has_names && OF_DECKS.iter().any(|deck| deck.split(' ').eq(columns.clone()));
+        let count = snapshot.columns.len();
+        let part = |first: usize| [0, 1, 2].map(|axis| Some(first + axis).filter(|&at| at < count));
+        is_of_deck.then(|| Self { ids: [0, 1], parts: [part(2), part(5)] })
     }
 }
 
