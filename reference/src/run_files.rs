@@ -137,10 +137,8 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
 
 /// Reader of the snapshots of a file.
 pub(crate) struct Snapshots {
+    file: RunFile,
     reader: SnapshotReader,
-    /// Moment and file name if the file contains one snapshot only; otherwise `None`.
-    only: Option<(Moment, String)>,
-    numbering: Numbering,
     read: usize,
     /// True if the complete frames of a truncated file are read.
     partial: bool,
@@ -152,10 +150,8 @@ impl Snapshots {
     /// Opens a file whose snapshots must have at most `most_rows` rows. If `partial` is true, a truncated file ends after
     /// its last complete frame.
     pub(crate) fn open(file: &RunFile, most_rows: u64, partial: bool) -> Result<Self, ReadError> {
-        let only = file.moment.map(|moment| (moment, shown(&file.path)));
-        let numbering = file.format.numbering;
         let reader = (file.format.open)(&file.path, most_rows)?;
-        Ok(Self { reader, only, numbering, read: 0, partial, cut: None })
+        Ok(Self { file: file.clone(), reader, read: 0, partial, cut: None })
     }
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
@@ -170,10 +166,11 @@ impl Snapshots {
     }
 
     fn next(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let Some((moment, name)) = &self.only else {
+        let numbering = self.file.format.numbering;
+        let Some(moment) = self.file.moment else {
             let is_there = (self.reader)(snapshot)?;
-            if is_there && self.numbering == Numbering::Files {
-                snapshot.numbering = Numbering::Files;
+            if is_there && numbering == Numbering::Files {
+                snapshot.numbering = numbering;
             }
             return Ok(is_there);
         };
@@ -181,11 +178,11 @@ impl Snapshots {
         let is_there = (self.reader)(&mut next)?;
         if is_there != (self.read == 0) {
             let found = if is_there { "several" } else { "none" };
-            return Err(ReadError::at(name, 1, "one time per file, from a list or the file name", found));
+            let expected = "one time per file, from a list or the file name";
+            return Err(ReadError::at(&shown(&self.file.path), 1, expected, found));
         }
         self.read += 1;
         if is_there {
-            let numbering = self.numbering;
             *snapshot = DumpSnapshot { step: moment.step, numbering, time: next.time.or(moment.time), ..next };
         }
         Ok(is_there)
