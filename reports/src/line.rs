@@ -5,18 +5,17 @@ use grainbench_harness::expect::ExpectedValue;
 use grainbench_harness::verdict::{ControlResult, Outcome, Severity, Verdict};
 
 use crate::number;
-use crate::report::Report;
 
-/// Returns the lines of all results of a report with their reasons, and the number of results of each colour.
+/// Returns the lines of results with their reasons, and the number of results of each colour.
 #[must_use]
-pub fn results(report: &Report) -> String {
-    with_reasons(&report.verdicts().collect::<Vec<_>>(), verdict_in_section) + &counts(report)
+pub fn results(rows: &[&Verdict]) -> String {
+    with_reasons(rows, verdict_in_section) + &counts(rows)
 }
 
 /// Returns the number of results of each colour.
 #[must_use]
-pub fn counts(report: &Report) -> String {
-    let count = |severity| report.verdicts().filter(|row| row.outcome.severity() == severity).count();
+pub fn counts(rows: &[&Verdict]) -> String {
+    let count = |severity| rows.iter().filter(|row| row.outcome.severity() == severity).count();
     let [pass, amber, fail] = [Severity::Green, Severity::Amber, Severity::Red].map(count);
     format!("{pass} pass, {fail} fail, {amber} amber\n")
 }

@@ -307,5 +307,5 @@ fn text(report: &Report) -> String {
             text.push_str(&format!("{:<12} {}\n", row.outcome.word(), power_words(row)));
         }
     }
-    text + &line::counts(report)
+    text + &line::counts(&report.verdicts().collect::<Vec<_>>())
 }

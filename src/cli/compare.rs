@@ -64,7 +64,8 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
     let is_mute = !columns.any(|row| row.outcome.is_judged() && !is_label(row));
-    let text = format!("{}{}\n", line::results(&report), counts(&comparison));
+    let rows: Vec<_> = report.verdicts().collect();
+    let text = format!("{}{}\n", line::results(&rows), counts(&comparison));
     arguments.report.publish(report, is_mute, Some(text))
 }
 
