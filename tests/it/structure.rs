@@ -7,22 +7,22 @@ use std::path::{Path, PathBuf};
 /// Folder, largest number of lines in its Rust files, and largest number of files with a cyclic dependency. `harness`
 /// has a cycle, because a case has a function that draws figures with a runner, and a runner runs a case.
 const BUDGETS: [(&str, usize, usize); 16] = [
-    ("solvers/scene", 10_190, 0),
-    ("solvers/solver", 3_455, 0),
-    ("solvers/lanes", 1_495, 0),
-    ("solvers/dem", 9_120, 0),
-    ("solvers/mpm", 11_665, 0),
-    ("solvers/rigid", 1_620, 0),
-    ("harness", 8_075, 5),
-    ("store", 2_000, 0),
-    ("reference", 15_170, 0),
-    ("cases", 20_440, 0),
-    ("fields", 3_225, 0),
-    ("reports", 15_665, 0),
-    ("studies", 6_380, 0),
-    ("jobs", 2_865, 0),
-    ("src", 11_650, 0),
-    ("tests", 11_185, 0),
+    ("solvers/scene", 9_905, 0),
+    ("solvers/solver", 3_390, 0),
+    ("solvers/lanes", 1_480, 0),
+    ("solvers/dem", 8_825, 0),
+    ("solvers/mpm", 11_355, 0),
+    ("solvers/rigid", 1_550, 0),
+    ("harness", 7_775, 5),
+    ("store", 1_980, 0),
+    ("reference", 14_475, 0),
+    ("cases", 19_555, 0),
+    ("fields", 3_180, 0),
+    ("reports", 14_855, 0),
+    ("studies", 6_090, 0),
+    ("jobs", 2_820, 0),
+    ("src", 11_180, 0),
+    ("tests", 10_785, 0),
 ];
 
 fn root() -> &'static Path {
@@ -49,9 +49,9 @@ fn crates_stay_within_their_budgets() {
     let (mut over, mut far_below) = (Vec::new(), Vec::new());
     for (folder, most_lines, most_files) in BUDGETS {
         let lines: usize = files(&root().join(folder)).iter().map(|(_, text)| text.lines().count()).sum();
-        let circular = if folder == "tests" { 0 } else { in_circles(&modules(folder)).len() };
-        if lines > most_lines || circular > most_files {
-            over.push(format!("{folder}: {lines} lines, {circular} files in circles"));
+        let circular = if folder == "tests" { BTreeSet::new() } else { in_circles(&modules(folder)) };
+        if lines > most_lines || circular.len() > most_files {
+            over.push(format!("{folder}: {lines} lines, files in circles: {circular:?}"));
         }
         // A limit far above the number of lines would let a crate grow without notice.
         if lines + lines / 40 < most_lines {
