@@ -15,36 +15,17 @@ const DEEPEST: usize = 100;
 const MOST_TERMS: usize = 1000;
 
 /// Arithmetic expression of a claim or sweep file.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug)]
 pub enum Expression {
     /// Literal number.
     Number(f64),
     /// Named number.
     Name(String),
-    /// Expression with a minus sign.
-    Negative(Box<Self>),
-    /// Binary operator with its two operands.
-    Of(Operator, Box<[Self; 2]>),
-    /// Function with its arguments.
+    /// Operator or function with its arguments.
     Call(Function, Vec<Self>),
 }
 
-/// Binary operator.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Operator {
-    /// +
-    Plus,
-    /// −
-    Minus,
-    /// ×
-    Times,
-    /// /
-    Over,
-    /// ^
-    Power,
-}
-
-/// Named function, such as `sin`, with the number of its arguments.
+/// Operator, such as `+`, or function, such as `sin`, with the number of its arguments.
 #[derive(Clone, Copy)]
 pub struct Function {
     name: &'static str,
@@ -59,40 +40,39 @@ impl fmt::Debug for Function {
     }
 }
 
-impl PartialEq for Function {
-    fn eq(&self, other: &Self) -> bool {
-        self.name == other.name
-    }
+const fn one(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
+    Function { name, arguments: 1, of: function }
 }
 
-const FUNCTIONS: [Function; 17] = {
-    const fn one(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
-        Function { name, arguments: 1, of: function }
-    }
-    const fn two(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
-        Function { name, arguments: 2, of: function }
-    }
-    [
-        one("sin", |x| x[0].sin()),
-        one("cos", |x| x[0].cos()),
-        one("tan", |x| x[0].tan()),
-        one("asin", |x| x[0].asin()),
-        one("acos", |x| x[0].acos()),
-        one("atan", |x| x[0].atan()),
-        two("atan2", |x| x[0].atan2(x[1])),
-        one("sinh", |x| x[0].sinh()),
-        one("cosh", |x| x[0].cosh()),
-        one("tanh", |x| x[0].tanh()),
-        one("exp", |x| x[0].exp()),
-        one("ln", |x| x[0].ln()),
-        one("sqrt", |x| x[0].sqrt()),
-        one("cbrt", |x| x[0].cbrt()),
-        one("abs", |x| x[0].abs()),
-        // NaN if either argument is NaN.
-        two("min", |x| if x[0].is_nan() || x[0] < x[1] { x[0] } else { x[1] }),
-        two("max", |x| if x[0].is_nan() || x[0] > x[1] { x[0] } else { x[1] }),
-    ]
-};
+const fn two(name: &'static str, function: fn(&[f64]) -> f64) -> Function {
+    Function { name, arguments: 2, of: function }
+}
+
+const SUMS: [Function; 2] = [two("+", |x| x[0] + x[1]), two("-", |x| x[0] - x[1])];
+const PRODUCTS: [Function; 2] = [two("*", |x| x[0] * x[1]), two("/", |x| x[0] / x[1])];
+const POWER: Function = two("^", |x| x[0].powf(x[1]));
+const NEGATIVE: Function = one("-", |x| -x[0]);
+
+const FUNCTIONS: [Function; 17] = [
+    one("sin", |x| x[0].sin()),
+    one("cos", |x| x[0].cos()),
+    one("tan", |x| x[0].tan()),
+    one("asin", |x| x[0].asin()),
+    one("acos", |x| x[0].acos()),
+    one("atan", |x| x[0].atan()),
+    two("atan2", |x| x[0].atan2(x[1])),
+    one("sinh", |x| x[0].sinh()),
+    one("cosh", |x| x[0].cosh()),
+    one("tanh", |x| x[0].tanh()),
+    one("exp", |x| x[0].exp()),
+    one("ln", |x| x[0].ln()),
+    one("sqrt", |x| x[0].sqrt()),
+    one("cbrt", |x| x[0].cbrt()),
+    one("abs", |x| x[0].abs()),
+    // NaN if either argument is NaN.
+    two("min", |x| if x[0].is_nan() || x[0] < x[1] { x[0] } else { x[1] }),
+    two("max", |x| if x[0].is_nan() || x[0] > x[1] { x[0] } else { x[1] }),
+];
 
 impl Expression {
     /// Parses an expression.
@@ -113,8 +93,6 @@ impl Expression {
         match self {
             Self::Number(_) => Vec::new(),
             Self::Name(name) => vec![name],
-            Self::Negative(inner) => inner.names(),
-            Self::Of(_, sides) => sides.iter().flat_map(Self::names).collect(),
             Self::Call(_, arguments) => arguments.iter().flat_map(Self::names).collect(),
         }
     }
@@ -124,17 +102,6 @@ impl Expression {
         match self {
             Self::Number(value) => *value,
             Self::Name(name) => variable(name).unwrap_or(f64::NAN),
-            Self::Negative(inner) => -inner.value(variable),
-            Self::Of(operator, sides) => {
-                let [left, right] = [sides[0].value(variable), sides[1].value(variable)];
-                match operator {
-                    Operator::Plus => left + right,
-                    Operator::Minus => left - right,
-                    Operator::Times => left * right,
-                    Operator::Over => left / right,
-                    Operator::Power => left.powf(right),
-                }
-            }
             Self::Call(function, arguments) => {
                 (function.of)(&arguments.iter().map(|argument| argument.value(variable)).collect::<Vec<_>>())
             }
@@ -161,11 +128,11 @@ impl Reader<'_> {
         self.rest().chars().next()
     }
 
-    /// Consumes the next non-blank character and returns true if it equals `letter`.
-    fn takes(&mut self, letter: char) -> bool {
-        let is_there = self.next() == Some(letter);
+    /// Consumes `symbol` and blanks before it, and returns true if it comes next.
+    fn takes(&mut self, symbol: &str) -> bool {
+        let is_there = self.next().is_some() && self.rest().starts_with(symbol);
         if is_there {
-            self.at += letter.len_utf8();
+            self.at += symbol.len();
         }
         is_there
     }
@@ -177,20 +144,18 @@ impl Reader<'_> {
 
     /// Parses a sum of products.
     fn sum(&mut self) -> Result<Expression, String> {
-        self.operators(&[('+', Operator::Plus), ('-', Operator::Minus)], |reader| {
-            reader.operators(&[('*', Operator::Times), ('/', Operator::Over)], Self::signed)
-        })
+        self.operators(&SUMS, |reader| reader.operators(&PRODUCTS, Self::signed))
     }
 
     /// Parses operators of one precedence, which associate to the left.
     fn operators(
         &mut self,
-        rank: &[(char, Operator)],
+        rank: &[Function],
         side: impl Fn(&mut Self) -> Result<Expression, String>,
     ) -> Result<Expression, String> {
         let mut left = side(self)?;
-        while let Some((_, operator)) = rank.iter().find(|(letter, _)| self.takes(*letter)) {
-            left = Expression::Of(*operator, Box::new([left, side(self)?]));
+        while let Some(operator) = rank.iter().find(|operator| self.takes(operator.name)) {
+            left = Expression::Call(*operator, vec![left, side(self)?]);
         }
         Ok(left)
     }
@@ -201,11 +166,11 @@ impl Reader<'_> {
         if self.depth > DEEPEST {
             return Err(format!("expected at most {DEEPEST} levels, found more"));
         }
-        let signed = if self.takes('-') {
-            Expression::Negative(Box::new(self.signed()?))
+        let signed = if self.takes(NEGATIVE.name) {
+            Expression::Call(NEGATIVE, vec![self.signed()?])
         } else {
             let base = self.atom()?;
-            if self.takes('^') { Expression::Of(Operator::Power, Box::new([base, self.signed()?])) } else { base }
+            if self.takes(POWER.name) { Expression::Call(POWER, vec![base, self.signed()?]) } else { base }
         };
         self.depth -= 1;
         Ok(signed)
@@ -219,9 +184,9 @@ impl Reader<'_> {
         }
         match self.next() {
             Some('(') => {
-                self.takes('(');
+                self.takes("(");
                 let inner = self.sum()?;
-                if self.takes(')') { Ok(inner) } else { Err(self.expected("`)`")) }
+                if self.takes(")") { Ok(inner) } else { Err(self.expected("`)`")) }
             }
             Some('{') => self.braced(),
             Some(letter) if letter.is_ascii_digit() || letter == '.' => self.number(),
@@ -272,12 +237,12 @@ impl Reader<'_> {
             let names: Vec<&str> = FUNCTIONS.iter().map(|function| function.name).collect();
             return Err(self.expected(&format!("a function, one of {},", names.join(", "))));
         };
-        self.takes('(');
+        self.takes("(");
         let mut arguments = vec![self.sum()?];
-        while self.takes(',') {
+        while self.takes(",") {
             arguments.push(self.sum()?);
         }
-        if !self.takes(')') {
+        if !self.takes(")") {
             return Err(self.expected("`,` or `)`"));
         }
         if arguments.len() != function.arguments {

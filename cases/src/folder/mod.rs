@@ -26,6 +26,7 @@ use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::written;
 use grainbench_scene::toml_error::TomlError;
 use row::Reader;
+use std::fmt::Display;
 use std::fs;
 use std::path::{Path, PathBuf};
 
@@ -44,16 +45,9 @@ pub struct CaseFolderError {
     what: String,
 }
 
-/// Error in a claim.
-enum ClaimError {
-    /// Error in a key: the key and the message.
-    Key(String, String),
-    /// Error in the scene or in a table file; the message names the place.
-    Scene(String),
-}
-
-fn wrong(key: &str, expected: impl Into<String>, found: impl Into<String>) -> ClaimError {
-    ClaimError::Key(key.to_owned(), format!("expected {}, found {}", expected.into(), found.into()))
+/// Returns the message of an error in a key of a claim.
+fn wrong(key: &str, expected: impl Display, found: impl Display) -> String {
+    format!("{key}: expected {expected}, found {found}")
 }
 
 /// Leaks a text to obtain a static lifetime. The leak is small, because a command reads few cases.
@@ -122,8 +116,7 @@ pub(crate) const EMPTY: Case = Case {
     home: &HOME,
 };
 
-/// Returns the claims of a case in the registry from the text of its file. An invalid file gives one claim, which
-/// fails.
+/// Returns the claims of a case in the registry from the text of its file. An invalid file gives one failing claim.
 pub(crate) fn claims(case: &Case, text: &str) -> Vec<Claim> {
     let (folder, source) = (case.directory(), case.source());
     let claims = toml::from_str(text).map_err(|error| error.message().replace('\n', " "));
@@ -140,18 +133,12 @@ fn unreadable(reason: String) -> Claim {
         .refuses(Control::scene("none", |_| ()))
 }
 
-/// Converts the claims of a file.
-///
-/// # Errors
-/// The message names the claim and the key, and gives the expected and the found text.
+/// Converts the claims of a file. An error names the claim and the key, and gives the expected and the found text.
 fn rows(claims: &[ClaimEntry], reader: &Reader<'_>) -> Result<Vec<Claim>, String> {
     let mut rows = Vec::new();
     for (place, claimed) in claims.iter().enumerate() {
         let entry = format!("claim {} ({})", place + 1, claimed.quantity);
-        rows.extend(reader.claims(claimed).map_err(|wrong| match wrong {
-            ClaimError::Key(key, what) => format!("{entry}: {key}: {what}"),
-            ClaimError::Scene(what) => format!("{entry}: {what}"),
-        })?);
+        rows.extend(reader.claims(claimed).map_err(|what| format!("{entry}: {what}"))?);
     }
     Ok(rows)
 }

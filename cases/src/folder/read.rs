@@ -3,7 +3,7 @@
 use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
-use super::{ClaimError, wrong};
+use super::wrong;
 use grainbench_harness::claim::{ClaimWithExpectation, Quantity, RunsReader};
 use grainbench_harness::course::Points;
 use grainbench_harness::run::{FinishedRun, MissingData};
@@ -83,18 +83,17 @@ impl RecordExpression {
     }
 
     /// Returns a function that reads the value from finished runs, for a claim with a bound.
-    pub(super) fn bounded(self) -> Result<impl RunsReader<f64>, ClaimError> {
+    pub(super) fn bounded(self) -> Result<impl RunsReader<f64>, String> {
         if self.over == Some(SampleReduction::Course) {
             return Err(wrong("over", "`max`, `min` or `mean` with a bound", "`course`"));
         }
         Ok(move |done: &[FinishedRun]| Ok(self.one(&done[0])?.1))
     }
 
-    /// Returns a function that reads each sample, or the samples between two times (s).
-    pub(super) fn samples(self, within: Option<[f64; 2]>) -> Samples {
+    /// Returns a function that reads the samples between two times (s).
+    pub(super) fn samples(self, [first, last]: [f64; 2]) -> Samples {
         Arc::new(move |done| {
             let mut points = self.all(done)?;
-            let [first, last] = within.unwrap_or([f64::NEG_INFINITY, f64::INFINITY]);
             points.retain(|(t, _)| (first..=last).contains(t));
             if points.is_empty() { Err(MissingData(format!("sample from {first} to {last} s"))) } else { Ok(points) }
         })

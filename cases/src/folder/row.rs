@@ -6,7 +6,7 @@ use super::claims_file::{
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
 use super::read::{RecordExpression, follow, interpolated};
-use super::{ClaimError, kept, wrong};
+use super::{kept, wrong};
 use crate::registry::read_grains;
 use crate::solvers;
 use crate::sources::WORKS;
@@ -39,28 +39,24 @@ pub(super) struct Reader<'a> {
 }
 
 impl Reader<'_> {
-    /// Converts an entry to one claim for each of its solvers.
-    ///
-    /// # Errors
-    /// The message names the key and gives the expected and the found text.
-    pub(super) fn claims(&self, claimed: &ClaimEntry) -> Result<Vec<Claim>, ClaimError> {
-        if claimed.solver.list().is_empty() {
+    /// Converts an entry to one claim for each of its solvers. An error names the key, the expected and the found text.
+    pub(super) fn claims(&self, claimed: &ClaimEntry) -> Result<Vec<Claim>, String> {
+        let names = claimed.solver.list();
+        if names.is_empty() {
             return Err(wrong("solver", "at least one name", "none"));
         }
-        let names = claimed.solver.list();
         if let Some(twice) = names.iter().enumerate().find(|(place, name)| names[..*place].contains(name)) {
             return Err(wrong("solver", "different names", format!("{} twice", quoted(twice.1))));
         }
         names.iter().map(|solver| self.claim(claimed, solver)).collect()
     }
 
-    fn claim(&self, claimed: &ClaimEntry, solver: &str) -> Result<Claim, ClaimError> {
+    fn claim(&self, claimed: &ClaimEntry, solver: &str) -> Result<Claim, String> {
         let variant = claimed.variant.as_deref().unwrap_or(PLAIN);
         let source = if variant == PLAIN { self.source.clone() } else { self.source.clone().variant(variant) };
-        let in_scene = |error: grainbench_scene::error::SceneError| ClaimError::Scene(error.to_string());
+        let in_scene = |error: grainbench_scene::error::SceneError| error.to_string();
         let scene = source.scene(&read_grains).map_err(in_scene)?;
-        let numbers = Numbers::new(source.table().map_err(in_scene)?, &scene).map_err(ClaimError::Scene)?;
-        let numbers = Arc::new(numbers);
+        let numbers = Arc::new(Numbers::new(source.table().map_err(in_scene)?, &scene)?);
         for (key, text) in [("quantity", &claimed.quantity), ("unit", &claimed.unit), ("because", &claimed.because)] {
             in_words(key, text)?;
         }
@@ -98,8 +94,8 @@ impl Reader<'_> {
     }
 
     /// Reads an expected curve from a table. The times must increase and lie within the run.
-    fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, ClaimError> {
-        let table = read_table(&self.folder.join(&file.file)).map_err(|error| ClaimError::Scene(error.to_string()))?;
+    fn course(&self, file: &CourseFile, scene: &Scene) -> Result<Points, String> {
+        let table = read_table(&self.folder.join(&file.file)).map_err(|error| error.to_string())?;
         let column = |key: &'static str, name: &str| {
             let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
             let found = table.column(name).map(|at| table.values(at).collect::<Vec<_>>());
@@ -126,7 +122,7 @@ fn expecting(
     claimed: &ClaimEntry,
     course: Option<Points>,
     numbers: &Arc<Numbers>,
-) -> Result<ClaimWithExpectation, ClaimError> {
+) -> Result<ClaimWithExpectation, String> {
     let value = expression("value", &claimed.value)?;
     let is_new = |name: &&str| numbers.is_of_record(name) && !numbers.columns.iter().any(|column| column == name);
     if let Some(unknown) = value.names().into_iter().find(is_new) {
@@ -145,13 +141,11 @@ fn expecting(
     if over.is_some() && claimed.at.is_some() {
         return Err(wrong("at", "only one of `at` and `over`", "both"));
     }
-    let expected = claimed.equals.as_ref().map(|formula| formula_of("equals", formula)).transpose()?;
-    let follows_time = expected.is_some_and(|exact| exact.names().contains(&TIME));
+    let equals = claimed.equals.as_ref().map(|formula| formula_of("equals", formula)).transpose()?;
+    let follows_time = equals.as_ref().is_some_and(|exact| exact.names().contains(&TIME));
     let read = RecordExpression { value, numbers: Arc::clone(numbers), at: claimed.at, over, follows_time };
-    let ClaimEntry { equals, at_least, at_most, between, .. } = claimed;
-    match (equals, course, at_least, at_most, between) {
-        (Some(formula), None, None, None, None) => {
-            let exact = formula_of("equals", formula)?;
+    match (equals, course, &claimed.at_least, &claimed.at_most, &claimed.between) {
+        (Some(exact), None, None, None, None) => {
             check_names("equals", &exact, numbers, matches!(over, None | Some(SampleReduction::Course)))?;
             let at = |t: f64| value_at(&exact, numbers, t);
             if over != Some(SampleReduction::Course) && scale.is_none() && at(1.0) == 0.0 {
@@ -160,7 +154,7 @@ fn expecting(
             let of_scene = Arc::clone(numbers);
             let exact = move |t: f64| value_at(&exact, &of_scene, t);
             if over == Some(SampleReduction::Course) {
-                return Ok(follow(quantity, source, read.samples(None), exact, scale));
+                return Ok(follow(quantity, source, read.samples([f64::NEG_INFINITY, f64::INFINITY]), exact, scale));
             }
             Ok(quantity.equals(source, move |done| {
                 let (t, value) = read.one(&done[0])?;
@@ -174,8 +168,7 @@ fn expecting(
             }
             let within = [table[0].0, table[table.len() - 1].0];
             let read = RecordExpression { at: None, over: Some(SampleReduction::Course), ..read };
-            let read = read.samples(Some(within));
-            Ok(follow(quantity, source, read, move |t| interpolated(&table, t), scale))
+            Ok(follow(quantity, source, read.samples(within), move |t| interpolated(&table, t), scale))
         }
         (None, None, Some(bound), None, None) => {
             let bound = constant("at_least", bound, numbers)?;
@@ -200,23 +193,18 @@ fn value_at(expression: &Expression, numbers: &Numbers, t: f64) -> f64 {
     expression.value(&|name| if name == TIME { Some(t) } else { numbers.get(name) })
 }
 
-fn expression(key: &'static str, text: &str) -> Result<Expression, ClaimError> {
-    Expression::read(text).map_err(|error| ClaimError::Key(key.to_owned(), error))
+fn expression(key: &'static str, text: &str) -> Result<Expression, String> {
+    Expression::read(text).map_err(|error| format!("{key}: {error}"))
 }
 
-fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, ClaimError> {
+fn formula_of(key: &'static str, formula: &Formula) -> Result<Expression, String> {
     match formula {
         Formula::Number(value) => Ok(Expression::Number(*value)),
         Formula::Text(text) => expression(key, text),
     }
 }
 
-fn check_names(
-    key: &'static str,
-    expression: &Expression,
-    numbers: &Numbers,
-    with_time: bool,
-) -> Result<(), ClaimError> {
+fn check_names(key: &'static str, expression: &Expression, numbers: &Numbers, with_time: bool) -> Result<(), String> {
     let known = |name: &&str| numbers.get(name).is_some() || (with_time && *name == TIME);
     match expression.names().into_iter().find(|name| !known(name)) {
         None => Ok(()),
@@ -232,17 +220,17 @@ fn check_names(
 }
 
 /// Evaluates a formula over numbers of the scene. The result must be finite.
-fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, ClaimError> {
+fn constant(key: &'static str, formula: &Formula, numbers: &Numbers) -> Result<f64, String> {
     let expression = formula_of(key, formula)?;
     check_names(key, &expression, numbers, false)?;
     let value = value_at(&expression, numbers, f64::NAN);
-    if value.is_finite() { Ok(value) } else { Err(wrong(key, "a finite number", value.to_string())) }
+    if value.is_finite() { Ok(value) } else { Err(wrong(key, "a finite number", value)) }
 }
 
-fn tolerance(claimed: &ClaimEntry, numbers: &Numbers) -> Result<Tolerance, ClaimError> {
+fn tolerance(claimed: &ClaimEntry, numbers: &Numbers) -> Result<Tolerance, String> {
     let allowed = constant("allowed", &claimed.allowed, numbers)?;
     if allowed < 0.0 {
-        return Err(wrong("allowed", "zero or more", allowed.to_string()));
+        return Err(wrong("allowed", "zero or more", allowed));
     }
     // A tolerance without names is engineering judgement. A formula over numbers of the scene is computed.
     let follows = !formula_of("allowed", &claimed.allowed)?.names().is_empty();
@@ -252,7 +240,7 @@ fn tolerance(claimed: &ClaimEntry, numbers: &Numbers) -> Result<Tolerance, Claim
     })
 }
 
-fn source(claimed: &ClaimEntry) -> Result<Source, ClaimError> {
+fn source(claimed: &ClaimEntry) -> Result<Source, String> {
     let printed = |kind: Kind, place: &Place| {
         in_words("work", &place.work)?;
         in_words("place", &place.place)?;
@@ -272,10 +260,10 @@ fn source(claimed: &ClaimEntry) -> Result<Source, ClaimError> {
     }
 }
 
-fn control(controlled: &ControlEntry, source: &SceneSource, scene: &Scene) -> Result<Control, ClaimError> {
+fn control(controlled: &ControlEntry, source: &SceneSource, scene: &Scene) -> Result<Control, String> {
     in_words("control.name", &controlled.name)?;
     let set = controlled.set.iter().fold(source.clone(), |source, (key, value)| source.set(key, &value.to_string()));
-    let given = set.scene(&read_grains).map_err(|error| wrong("control.set", "another scene", error.to_string()))?;
+    let given = set.scene(&read_grains).map_err(|error| wrong("control.set", "another scene", error))?;
     if given == *scene {
         return Err(wrong("control.set", "values that change the scene", "values that change nothing"));
     }
@@ -287,7 +275,7 @@ fn control(controlled: &ControlEntry, source: &SceneSource, scene: &Scene) -> Re
 }
 
 /// Returns the resolution of a solver from the parameters of its method.
-fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Result<Resolution, ClaimError> {
+fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Result<Resolution, String> {
     let Some(method) = solvers::by_name(solver).and(Method::from_name(solver)) else {
         return Err(wrong("solver", format!("one of {}", solvers::names().join(", ")), quoted(solver)));
     };
@@ -314,7 +302,7 @@ fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Resu
     }
     let courant = courant.unwrap_or(Resolution::COURANT);
     if courant >= 1.0 {
-        return Err(wrong("resolution.courant", "less than 1", courant.to_string()));
+        return Err(wrong("resolution.courant", "less than 1", courant));
     }
     match method {
         Method::Dem => {
@@ -322,11 +310,7 @@ fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Resu
             let fraction = time_step_fraction.unwrap_or(Resolution::FRACTION);
             let step = time_step.unwrap_or(fraction * critical);
             if step >= critical {
-                return Err(wrong(
-                    "resolution",
-                    format!("less than the critical step, {critical:.6e} s"),
-                    step.to_string(),
-                ));
+                return Err(wrong("resolution", format!("less than the critical step, {critical:.6e} s"), step));
             }
             Ok(time_step.map_or(Resolution::CriticalFraction(fraction), Resolution::TimeStep))
         }
@@ -344,7 +328,7 @@ fn resolution(knobs: &ResolutionParameters, solver: &str, scene: &Scene) -> Resu
 }
 
 /// Checks that a text fits in a table and on a page: one line, at most 500 bytes, not empty.
-fn in_words(key: &'static str, text: &str) -> Result<(), ClaimError> {
+fn in_words(key: &'static str, text: &str) -> Result<(), String> {
     const LONGEST: usize = 500;
     let is_plain = !text.trim().is_empty() && text.len() <= LONGEST && tamed(text, |_| false) == text;
     if is_plain { Ok(()) } else { Err(wrong(key, "words on one line", quoted(text))) }
