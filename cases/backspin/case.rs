@@ -3,9 +3,7 @@
 mod elastic;
 
 use crate::exact::one_grain::{OneGrain, State, course, nearest, rest_at_overlap};
-use crate::rows::on_plane::{
-    self, DAMPING, NEARLY_RIGID, Plane, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
-};
+use crate::rows::on_plane::{self, DAMPING, NEARLY_RIGID, Plane, STEP, at_overlap, other_inertia, stronger_friction};
 use crate::rows::rigid;
 use crate::rows::{incline, programs};
 use grainbench_harness::prelude::*;
@@ -24,7 +22,8 @@ const SOURCE: Source =
 fn claims() -> Vec<Claim> {
     let dem =
         VARIANTS.into_iter().flat_map(|variant| [rigid(variant), final_motion(variant), near_rigid(variant)].concat());
-    dem.chain(rigid::backspins(&CASE, RIGID)).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
+    let rigid = RIGID.iter().flat_map(|&plane| rigid::backspin(&CASE, plane));
+    dem.chain(rigid).chain(programs::one_grain(&VARIANTS)).chain(elastic::claims()).collect()
 }
 
 /// Compares a quantity of the last state with the rigid solution, in units of the rigid solution.
@@ -48,8 +47,7 @@ fn first_step(variant: &str) -> Tolerance {
     )
 }
 
-/// Returns the tolerance for the displacement at 1 s, relative to the rigid solution. It allows for the soft contact
-/// and for a first step without friction.
+/// Returns the relative tolerance for the displacement at 1 s: soft contact, and a first step without friction.
 fn fallen_behind(variant: &str) -> Tolerance {
     let behind = |(grain, step): (OneGrain, f64)| {
         (grain.tail() + grain.friction * grain.onto * step * sliding(&grain)) / grain.rigid_backspin(1.0).x
@@ -80,18 +78,8 @@ fn rigid(variant: &'static str) -> Vec<Claim> {
     ]
 }
 
-/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
-/// nearly agree.
+/// Returns solver-independent claims for a contact so stiff that all conventions nearly agree.
 fn near_rigid(variant: &'static str) -> Vec<Claim> {
-    type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
-    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
-        claim(format!("{quantity}, nearly rigid contact"), unit)
-            .run(nearly_rigid(variant, tangential_dashpot))
-            .equals(SOURCE, move |done| pick(&done[0]))
-            .within(tolerance)
-            .refuses(control)
-            .fair_to_any()
-    };
     let slides = |allowed| {
         estimated(
             allowed,
@@ -107,26 +95,13 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
             "lever arm between R and R − overlap: overlap/R = 1e-5 times (1−i)/(1+i), for the spin times 2/(1+i)",
         )
     };
+    let allowed = [slides(5e-5), slides(2e-4), arm(1.0), arm(1.5)];
+    let [x, half, v, omega] = on_plane::near_rigid(variant, SOURCE, velocity_halfway, end, allowed);
     vec![
-        near_rigid_claim("displacement at 1 s", "m", slides(5e-5), false, stronger_friction(), |done| {
-            end(done, |state| state.x)
-        })
-        .at_other_numbers("displacement at the end", ELSEWHERE, displaced),
-        near_rigid_claim(
-            "velocity halfway through the slide",
-            "m/s",
-            slides(2e-4),
-            false,
-            stronger_friction(),
-            velocity_halfway,
-        )
-        .at_other_numbers("velocity halfway through the slide", ELSEWHERE, halfway),
-        near_rigid_claim("velocity at 1 s", "m/s", arm(1.0), true, other_inertia(), |done| end(done, |state| state.v))
-            .at_other_numbers("velocity at the end", ELSEWHERE, rolling),
-        near_rigid_claim("spin at 1 s", "rad/s", arm(1.5), true, other_inertia(), |done| {
-            end(done, |state| state.omega)
-        })
-        .at_other_numbers("spin at the end", ELSEWHERE, rolling),
+        x.at_other_numbers("displacement at the end", ELSEWHERE, displaced),
+        half.at_other_numbers("velocity halfway through the slide", ELSEWHERE, halfway),
+        v.at_other_numbers("velocity at the end", ELSEWHERE, rolling),
+        omega.at_other_numbers("spin at the end", ELSEWHERE, rolling),
     ]
 }
 
@@ -161,10 +136,8 @@ fn displaced(scene: &Scene) -> f64 {
 
 fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let grain = OneGrain::from_scene(&done.scene);
-    let halfway = 0.5 * sliding(&grain);
-    let (t, state) = nearest(done, halfway)?;
-    let exact = grain.rigid_backspin(t).v;
-    Ok(Measurement::relative(state.v, exact))
+    let (t, state) = nearest(done, 0.5 * sliding(&grain))?;
+    Ok(Measurement::relative(state.v, grain.rigid_backspin(t).v))
 }
 
 fn final_motion(variant: &'static str) -> Vec<Claim> {

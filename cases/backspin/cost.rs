@@ -6,6 +6,11 @@ use crate::rows::one_grain_cost::displacement;
 use grainbench_harness::subject::TargetQuantity;
 
 pub(crate) fn subjects() -> Vec<TargetQuantity> {
-    const SOURCE: &str = "2001 paper, section on backspin; derivation";
-    displacement("backspin", &["disc", "sphere"], 0.5, OneGrain::rigid_backspin, SOURCE)
+    displacement(
+        "backspin",
+        &["disc", "sphere"],
+        0.5,
+        OneGrain::rigid_backspin,
+        "2001 paper, section on backspin; derivation",
+    )
 }

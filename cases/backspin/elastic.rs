@@ -98,8 +98,7 @@ fn beside_rigid(run: Run, words: &str, allowed: Tolerance, control: Control) -> 
         .refuses(control)
 }
 
-/// Returns the claims with moduli ten and a hundred times as large. The disc is then closer to the rigid solution, so
-/// no elastic reference is needed.
+/// Returns the claims with larger moduli. The disc is then closer to the rigid solution, which needs no reference.
 fn stiff_discs() -> [Claim; 2] {
     [(10.0, 0.01), (100.0, 0.008)].map(|(factor, allowed)| {
         let run = stiffened("disc", "mpm", 8.0, factor);

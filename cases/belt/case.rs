@@ -2,9 +2,9 @@
 
 use crate::exact::one_grain::{OneGrain, State, course, last, nearest, rest_at_overlap};
 use crate::rows::on_plane::{
-    self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction, touching,
+    self, DAMPING, NEARLY_RIGID, STEP, at_overlap, nearly_rigid, other_inertia, stronger_friction,
 };
-use crate::rows::programs;
+use crate::rows::{programs, rigid};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use std::f64::consts::TAU;
@@ -13,8 +13,6 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fra
 const VARIANTS: [&str; 2] = ["disc", "sphere"];
 /// Variant with a belt that stops.
 const STOPS: &str = "stops";
-/// Number of substeps in 1/60 s of the solver `rigid`.
-const SUBSTEPS: u32 = 8;
 
 const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then rolls (derivation)");
 const STOPPED: Source =
@@ -76,8 +74,7 @@ impl Belt {
         self.speed * moment / (moment + arm * arm)
     }
 
-    /// Returns the largest delay (s) until friction is fully mobilised, for a time step (s): the spring displacement
-    /// divided by V, plus one step.
+    /// Returns the largest delay (s) until friction is fully mobilised: spring displacement over V, plus a step (s).
     fn lag(&self, step: f64) -> f64 {
         self.grain.stretch(self.push()) / self.speed + step
     }
@@ -106,12 +103,13 @@ impl Belt {
 }
 
 fn claims() -> Vec<Claim> {
-    let of_both = |variant| [near_rigid(variant), final_motion(variant), by_impulses(variant)].concat();
+    let of_both = |variant| [near_rigid(variant).to_vec(), final_motion(variant), by_impulses(variant)].concat();
     let mut claims: Vec<Claim> = VARIANTS.into_iter().flat_map(of_both).collect();
     claims.extend(stopped());
     claims.push(kick());
     // Damped runs against LIGGGHTS are left out. At step 0, the belt moves for the dashpot of LIGGGHTS and is at rest
     // for our dashpot: see `kick`.
+    let is_kicked = |claim: &Claim| claim.runs[1].solver == "liggghts" && claim.quantity.contains(", damped,");
     claims.extend(programs::one_grain(&VARIANTS).into_iter().filter(|claim| !is_kicked(claim)));
     claims
 }
@@ -119,20 +117,17 @@ fn claims() -> Vec<Claim> {
 /// Compares a quantity of the last state with the rigid solution, in units of the rigid solution.
 fn end(done: &FinishedRun, pick: fn(State) -> f64) -> Result<Measurement, MissingData> {
     let (t, state) = last(done)?;
-    let exact = pick(Belt::from_scene(&done.scene).rigid(t));
-    Ok(Measurement::relative(pick(state), exact))
+    Ok(Measurement::relative(pick(state), pick(Belt::from_scene(&done.scene).rigid(t))))
 }
 
 /// Compares the velocity at half the time of sliding with the rigid solution.
 fn velocity_halfway(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let belt = Belt::from_scene(&done.scene);
     let (t, state) = nearest(done, 0.5 * belt.sliding())?;
-    let exact = belt.rigid(t).v;
-    Ok(Measurement::relative(state.v, exact))
+    Ok(Measurement::relative(state.v, belt.rigid(t).v))
 }
 
-/// Returns a number computed from grain and belt of a variant with the spring stiffness of the nearly rigid runs, and from
-/// their time step (s).
+/// Returns a number computed from the belt of a nearly rigid run and from the time step (s) of this run.
 fn stiff(variant: &str, value: impl FnOnce(&Belt, f64) -> f64) -> f64 {
     CASE.number(variant, |scene| {
         let mut scene = scene.clone();
@@ -144,18 +139,8 @@ fn stiff(variant: &str, value: impl FnOnce(&Belt, f64) -> f64) -> f64 {
     })
 }
 
-/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
-/// nearly agree.
-fn near_rigid(variant: &'static str) -> Vec<Claim> {
-    type RunReader = fn(&FinishedRun) -> Result<Measurement, MissingData>;
-    let near_rigid_claim = |quantity: &str, unit, tolerance, tangential_dashpot, control, pick: RunReader| {
-        claim(format!("{quantity}, nearly rigid contact"), unit)
-            .run(nearly_rigid(variant, tangential_dashpot))
-            .equals(SOURCE, move |done| pick(&done[0]))
-            .within(tolerance)
-            .refuses(control)
-            .fair_to_any()
-    };
+/// Returns solver-independent claims for a contact so stiff that all conventions nearly agree.
+fn near_rigid(variant: &'static str) -> [Claim; 4] {
     let arm = |times: f64| {
         computed(
             times * NEARLY_RIGID,
@@ -173,27 +158,10 @@ fn near_rigid(variant: &'static str) -> Vec<Claim> {
         "2 (s/V + Δt)/t_s: the spring must reach the displacement s = μ m g/k_t, and friction may be absent in the \
          first step",
     );
-    vec![
-        near_rigid_claim("displacement at 1 s", "m", displaced, false, stronger_friction(), |done| {
-            end(done, |state| state.x)
-        }),
-        near_rigid_claim(
-            "velocity halfway through the slide",
-            "m/s",
-            halfway,
-            false,
-            stronger_friction(),
-            velocity_halfway,
-        ),
-        near_rigid_claim("velocity at 1 s", "m/s", arm(2.0), true, other_inertia(), |done| end(done, |state| state.v)),
-        near_rigid_claim("spin at 1 s", "rad/s", arm(1.0), true, other_inertia(), |done| {
-            end(done, |state| state.omega)
-        }),
-    ]
+    on_plane::near_rigid(variant, SOURCE, velocity_halfway, end, [displaced, halfway, arm(2.0), arm(1.0)])
 }
 
-/// Returns the tolerance for the rounding error of a sum over all steps of a run at overlap/R = 1e-3, relative to the
-/// velocity.
+/// Returns the tolerance for the rounding error of a sum over all steps of a run at overlap/R = 1e-3.
 fn rounding() -> Tolerance {
     let steps = 1.0 / (0.01 * 2.0 * (1e-3_f64 * 0.5 / 9.8).sqrt());
     computed(
@@ -210,30 +178,18 @@ fn final_motion(variant: &'static str) -> Vec<Claim> {
 /// Returns the claims on the solver `rigid` (rapier), whose contacts have no compliance. The error of `rigid` comes
 /// from the time step and from the overlap at rest (see `cases/src/rows/rigid.rs`).
 fn by_impulses(variant: &'static str) -> Vec<Claim> {
-    let step = Resolution::RIGID_STEP / f64::from(SUBSTEPS);
+    let step = Resolution::RIGID_STEP / f64::from(rigid::SUBSTEPS);
     let sunk =
         stiff(variant, |belt, _| belt.grain.onto / (TAU * Settings::default().frequency).powi(2) / belt.grain.radius);
     let lag = stiff(variant, |belt, _| belt.rolling() * step / belt.rigid(1.0).x);
-    let impulse_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
-        let run = Run::new(variant, "rigid", Resolution::substeps(SUBSTEPS)).adjusted("touching", touching);
-        claim(format!("{quantity} at 1 s"), unit)
-            .run(run)
-            .equals(SOURCE, move |done| end(&done[0], pick))
-            .within(tolerance)
-            .refuses(control)
-    };
     let arm = "lever arm between R and R − δ with the static overlap δ = g/(2πf)²: at most 2/(1+i) < 2 times δ/R, for \
                the spin half of that";
     let late = "f V Δt/x: friction begins or ends up to a step Δt late";
-    vec![
-        impulse_claim("displacement", "m", computed(lag, late), stronger_friction(), |state| state.x),
-        impulse_claim("velocity", "m/s", computed(2.0 * sunk, arm), other_inertia(), |state| state.v),
-        impulse_claim("spin", "rad/s", computed(sunk, arm), other_inertia(), |state| state.omega),
-    ]
+    let allowed = [computed(lag, late), computed(2.0 * sunk, arm), computed(sunk, arm)];
+    rigid::against(variant, SOURCE, end, [stronger_friction(), other_inertia()], allowed)
 }
 
-/// Returns the claims on a disc on a belt that stops. Velocity and spin become zero. The displacement is the velocity of
-/// rolling times the time at which the belt stops.
+/// Returns the claims on a disc on a belt that stops. Velocity and spin become zero.
 fn stopped() -> Vec<Claim> {
     let turning = || {
         Control::scene("a disc that turns at first, at a thousandth of the belt's speed", |scene| {
@@ -280,13 +236,7 @@ fn stopped() -> Vec<Claim> {
     ]
 }
 
-/// Returns true if a claim compares with a damped LIGGGHTS run, which has a dashpot along the belt.
-fn is_kicked(claim: &Claim) -> bool {
-    claim.runs.iter().any(|run| run.solver == "liggghts") && claim.quantity.contains(", damped,")
-}
-
-/// Returns the claim on the difference between LIGGGHTS and our solver in velocity after the first step. At step 0, the
-/// dashpot of LIGGGHTS acts, but our belt is still at rest.
+/// Returns the claim on the first step of LIGGGHTS, whose dashpot acts at step 0, when our belt is still at rest.
 fn kick() -> Claim {
     let runs = ["dem:liggghts", "liggghts"].map(|solver| {
         Run::new("disc", solver, Resolution::TimeStep(1e-4)).adjusted("one step, overlap/R = 1e-3", |scene| {
@@ -348,8 +298,7 @@ mod tests {
         }
     }
 
-    /// Checks that the disc is at rest after the displacement f V T, and that it slides as long on the stopped belt as
-    /// on the moving belt.
+    /// Checks that the disc comes to rest after the displacement f V T and slides equally long on both belts.
     #[test]
     fn a_belt_that_stops_brings_it_to_rest() {
         let belt = Belt::from_scene(&CASE.variant(STOPS).unwrap());

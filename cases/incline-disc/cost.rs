@@ -6,6 +6,5 @@ use crate::rows::one_grain_cost::displacement;
 use grainbench_harness::subject::TargetQuantity;
 
 pub(crate) fn subjects() -> Vec<TargetQuantity> {
-    const SOURCE: &str = "MPM 2000 eq. 25";
-    displacement("incline-disc", &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, SOURCE)
+    displacement("incline-disc", &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, "MPM 2000 eq. 25")
 }

@@ -6,6 +6,11 @@ use crate::rows::one_grain_cost::displacement;
 use grainbench_harness::subject::TargetQuantity;
 
 pub(crate) fn subjects() -> Vec<TargetQuantity> {
-    const SOURCE: &str = "2001 paper, eqs. 23-26";
-    displacement("incline-sphere", &["45deg-mu.495", "60deg-mu2_7"], 0.3, OneGrain::rigid_incline, SOURCE)
+    displacement(
+        "incline-sphere",
+        &["45deg-mu.495", "60deg-mu2_7"],
+        0.3,
+        OneGrain::rigid_incline,
+        "2001 paper, eqs. 23-26",
+    )
 }

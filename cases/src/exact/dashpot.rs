@@ -24,8 +24,7 @@ fn arc(damping_ratio: f64) -> f64 {
     if damping_ratio < 1.0 { damping_ratio.acos() / root } else { damping_ratio.acosh() / root }
 }
 
-/// Returns the damping ratio that gives a coefficient of restitution, for a contact that ends when its force is zero.
-/// It is found by bisection.
+/// Returns the damping ratio that gives a restitution with a release at zero force, by bisection.
 pub(crate) fn no_tension_ratio(restitution: f64) -> f64 {
     let (mut low, mut high) = (0.0, 1.0 / restitution);
     for _ in 0..80 {

@@ -4,10 +4,8 @@ use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::{FinishedRun, MissingData};
 use grainbench_scene::manufactured::Medium;
 
-/// Returns the error of the final displacement (m): the root mean square over the material points, weighted by volume.
-///
-/// # Errors
-/// When the record has no material points or the scene has no manufactured motion.
+/// Returns the error of the final displacement (m): the root mean square over the material points, weighted by volume. It
+/// fails without material points in the record or manufactured motion in the scene.
 pub(crate) fn error(done: &FinishedRun) -> Result<f64, MissingData> {
     let missing = || MissingData("material points at the end".to_owned());
     let (scene, snapshot) = (&done.scene, done.record.snapshots.last().ok_or_else(missing)?);
@@ -25,9 +23,6 @@ pub(crate) fn error(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 /// Returns the order of convergence in the cell length, fitted over runs with these numbers of cells per metre.
-///
-/// # Errors
-/// When [`error`] has an error for a run.
 pub(crate) fn order(done: &[FinishedRun], cells: &[f64]) -> Result<f64, MissingData> {
     let point = |(done, cells): (&FinishedRun, &f64)| Ok((1.0 / cells, error(done)?));
     Ok(slope(&done.iter().zip(cells).map(point).collect::<Result<Vec<_>, MissingData>>()?))

@@ -72,7 +72,10 @@ impl OneGrain {
             onto,
             friction: law.friction,
             tangential_stiffness,
-            spin: rolling_spin(scene, &grain.spin),
+            spin: match scene.dimension {
+                Dimension::Two => -grain.spin.z,
+                Dimension::Three => grain.spin.y,
+            },
             overlap_ratio: overlap / grain.radius,
             normal_stiffness,
             tangential_damping: law.tangential_damping,
@@ -123,8 +126,7 @@ impl OneGrain {
         self.mass * acceleration / self.tangential_stiffness
     }
 
-    /// Returns the time at which the undamped spring reaches the Coulomb limit, arccos(1 − μ g_n/(f g_t))/ω (s). NaN if
-    /// it never does.
+    /// Returns the time of the Coulomb limit of the undamped spring, arccos(1 − μ g_n/(f g_t))/ω (s); NaN if never.
     pub(crate) fn slips_from(&self) -> f64 {
         (1.0 - self.friction * self.onto / (self.share() * self.along)).acos() / self.tangential_frequency()
     }
@@ -253,15 +255,6 @@ pub(crate) fn normal_axis(scene: &Scene) -> usize {
     scene.dimension.count() - 1
 }
 
-/// Returns the spin in the direction of rolling towards +x: −ω_z in two dimensions, +ω_y in three (the plane's normal
-/// is z).
-fn rolling_spin(scene: &Scene, spin: &nalgebra::Vector3<f64>) -> f64 {
-    match scene.dimension {
-        Dimension::Two => -spin.z,
-        Dimension::Three => spin.y,
-    }
-}
-
 /// Sets stiffness and start so that the grain rests at a static overlap of `ratio`·R: k_n = m g_n/(ratio R), k_t =
 /// (2/7) k_n. The normal damping ratio is ζ and the tangential coefficient is equal: γ_n = γ_t = 2ζ√(k_n/m).
 pub(crate) fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64) {
@@ -278,10 +271,7 @@ pub(crate) fn rest_at_overlap(scene: &mut Scene, ratio: f64, damping_ratio: f64)
     });
 }
 
-/// Returns time (s) and state of the probe `grain` at each sample.
-///
-/// # Errors
-/// When the record lacks the probe.
+/// Returns time (s) and state of the probe `grain` at each sample; an error if the record lacks the probe.
 pub(crate) fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingData> {
     let (x, v) = (done.column("grain.x")?, done.column("grain.vx")?);
     let (spin, sign) = match done.scene.dimension {
@@ -293,18 +283,12 @@ pub(crate) fn course(done: &FinishedRun) -> Result<Vec<(f64, State)>, MissingDat
     Ok(samples.map(|(((&t, x), &v), omega)| (t, State { x: x - start, v, omega: sign * omega })).collect())
 }
 
-/// Returns time (s) and state of the last sample.
-///
-/// # Errors
-/// When the record lacks the probe.
+/// Returns time (s) and state of the last sample; an error without probe or samples.
 pub(crate) fn last(done: &FinishedRun) -> Result<(f64, State), MissingData> {
     course(done)?.last().copied().ok_or_else(|| "samples".into())
 }
 
-/// Returns time (s) and state of the sample nearest to the time `moment` (s).
-///
-/// # Errors
-/// When the record lacks the probe `grain` or has no samples.
+/// Returns time (s) and state of the sample nearest to the time `moment` (s); an error without probe or samples.
 pub(crate) fn nearest(done: &FinishedRun, moment: f64) -> Result<(f64, State), MissingData> {
     let course = course(done)?;
     let near = course.iter().min_by(|a, b| (a.0 - moment).abs().total_cmp(&(b.0 - moment).abs()));
@@ -332,8 +316,7 @@ mod tests {
         }
     }
 
-    /// Checks that the closed form of the undamped spring nearly reaches the bound of `compliance` and does not exceed
-    /// it.
+    /// Checks that the closed form of the undamped spring nearly reaches the bound of `compliance`.
     #[test]
     fn an_undamped_spring_takes_no_more_than_compliance_says() {
         let worst = |grain: OneGrain, component: fn(State) -> f64| {

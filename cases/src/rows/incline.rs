@@ -29,16 +29,13 @@ impl Incline {
         [
             springs(self.case, self.slopes),
             set_down::claims(variant, dashpots),
-            rigid::inclines(self.case, self.slopes),
+            self.slopes.iter().flat_map(|&slope| rigid::incline(self.case, slope)).collect(),
             programs::one_grain(&variants),
         ]
         .concat()
     }
 
     /// Returns all figures except the figures of the elastic body.
-    ///
-    /// # Errors
-    /// When a run fails.
     pub(crate) fn figures(&self, runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let mut figures = motion(runner, self.slopes)?;
         figures.push(rigid::figure(runner, self.slopes, OneGrain::rigid_incline)?);
@@ -79,8 +76,7 @@ fn springs(case: &Case, slopes: &[Plane]) -> Vec<Claim> {
     claims
 }
 
-/// Returns the claims on an undamped slipping grain against the exact compliant solution: a small error at a fine time
-/// step, and second order in the time step.
+/// Returns the claims on an undamped slipping grain against the compliant solution, of second order in the step.
 fn compliant(case: &Case, slope: Plane) -> Vec<Claim> {
     const SOURCE: Source =
         Source::Derived("closed form with the tangential spring (derivation); MPM 2000 eq. 25 for the slip law");
@@ -113,8 +109,7 @@ const SWINGS: &str = "the tangential spring vibrates by up to twice its static d
 const LATE: &str = "friction may be absent until an undamped spring has reached Coulomb's limit, t_s = arccos(1 − μ \
                     g_n/(f g_t))/ω: t_s/t for the spin, μ g_n t_s/v for the velocity, twice that for the displacement";
 
-/// Returns the largest effect of compliance on displacement, velocity and spin at 1 s, as fractions, at a static
-/// overlap of `ratio`·R.
+/// Returns the largest fractional effect of compliance on the state at 1 s, at a static overlap of `ratio`·R.
 fn compliance(case: &Case, slope: Plane, ratio: f64) -> State {
     let unknown = State { x: f64::NAN, v: f64::NAN, omega: f64::NAN };
     case.variant(slope.variant).map_or(unknown, |mut scene| {
@@ -157,8 +152,7 @@ fn rigid(case: &Case, slope: Plane) -> Vec<Claim> {
     claims
 }
 
-/// Returns the claim on the exponent n in the relation error ∝ (overlap/R)^n, where the error is relative to the rigid
-/// solution.
+/// Returns the claim on the exponent n in the relation error ∝ (overlap/R)^n with the rigid solution.
 fn exponent(slope: Plane) -> Claim {
     let expected: f64 = if slope.rolls { 1.0 } else { 0.5 };
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
@@ -183,8 +177,7 @@ fn exponent(slope: Plane) -> Claim {
         .drawn(&COMPLIANCE, format!("{} ({})", label(slope.variant), if slope.rolls { "rolls" } else { "slips" }))
 }
 
-/// Returns solver-independent claims on motion against the rigid solution, for a contact so stiff that all conventions
-/// nearly agree.
+/// Returns solver-independent claims for a contact so stiff that all conventions nearly agree.
 fn near_rigid(case: &Case, slope: Plane) -> Vec<Claim> {
     let allowed = compliance(case, slope, NEARLY_RIGID);
     let near_rigid_claims = |quantity: [&'static str; 2], unit, pick: fn(State) -> f64| {
@@ -216,8 +209,7 @@ const ELSEWHERE: &str = "rolling: overlap/R for the lever arm, plus the spring d
                          displacement, or the velocity of its undamped vibration; slipping: half a period of each \
                          spring until friction acts in full, over the time";
 
-/// Returns the largest relative deviations of displacement, velocity and spin from the rigid solution at the end of the
-/// run, for a slope with varied parameters.
+/// Returns the largest relative deviations from the rigid solution at the end, for a slope with varied parameters.
 fn elsewhere(scene: &Scene) -> State {
     let grain = OneGrain::from_scene(scene);
     let end = scene.duration.seconds().unwrap_or(f64::NAN);
@@ -236,8 +228,7 @@ fn elsewhere(scene: &Scene) -> State {
     }
 }
 
-/// Returns the claims on the final rolling motion: v and ΩR agree to rounding with the solution for the lever arm of
-/// each convention.
+/// Returns the claims that final v and ΩR agree to rounding with the solution for the lever arm of a convention.
 fn final_motion(case: &Case, slope: Plane) -> Vec<Claim> {
     let speed_claim = |solver: &'static str, quantity: &str, of_spin: bool| {
         claim(quantity, "m/s")

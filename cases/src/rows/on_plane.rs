@@ -17,14 +17,13 @@ pub(crate) struct Plane {
     pub(crate) variant: &'static str,
     /// True if a rigid grain finally rolls without slip.
     pub(crate) rolls: bool,
-    /// Largest relative effects of lift-off on velocity and spin, for the solver `rigid` at its default resolution; `None`
-    /// unless rotation lifts the contact point off the plane at 1 s.
+    /// Largest relative effects of lift-off on velocity and spin, for the solver `rigid` at its default resolution;
+    /// `None` unless rotation lifts the contact point off the plane at 1 s.
     pub(crate) lifts: Option<[f64; 2]>,
 }
 
 impl Plane {
-    /// Returns a negative control that changes the result: wrong inertia for a rolling grain, larger friction for a
-    /// slipping grain.
+    /// Returns a negative control: wrong inertia for a rolling grain, larger friction for a slipping grain.
     pub(crate) fn control(self) -> Control {
         if self.rolls { other_inertia() } else { stronger_friction() }
     }
@@ -78,15 +77,36 @@ pub(crate) fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> R
     })
 }
 
-/// Compares a quantity of the last state with the exact value, in units of the exact value.
-///
-/// # Errors
-/// When the record lacks the probe `grain` or has no samples.
-pub(crate) fn end(
-    done: &FinishedRun,
-    exact: impl Fn(&OneGrain, f64) -> State,
-    pick: fn(State) -> f64,
-) -> Result<Measurement, MissingData> {
+/// Result of the comparison of a run with a rigid solution.
+type Comparison = Result<Measurement, MissingData>;
+
+/// Returns solver-independent claims on a grain that slides and then rolls, for a contact so stiff that all conventions
+/// nearly agree: displacement, velocity halfway through the slide, final velocity and final spin.
+pub(crate) fn near_rigid(
+    variant: &'static str,
+    source: Source,
+    halfway: fn(&FinishedRun) -> Comparison,
+    end: fn(&FinishedRun, fn(State) -> f64) -> Comparison,
+    [x, half, v, omega]: [Tolerance; 4],
+) -> [Claim; 4] {
+    let near_rigid_claim = |quantity: &str, unit, rolls, tolerance, pick: Option<fn(State) -> f64>| {
+        claim(format!("{quantity}, nearly rigid contact"), unit)
+            .run(nearly_rigid(variant, rolls))
+            .equals(source, move |done| pick.map_or_else(|| halfway(&done[0]), |pick| end(&done[0], pick)))
+            .within(tolerance)
+            .refuses(if rolls { other_inertia() } else { stronger_friction() })
+            .fair_to_any()
+    };
+    [
+        near_rigid_claim("displacement at 1 s", "m", false, x, Some(|state| state.x)),
+        near_rigid_claim("velocity halfway through the slide", "m/s", false, half, None),
+        near_rigid_claim("velocity at 1 s", "m/s", true, v, Some(|state| state.v)),
+        near_rigid_claim("spin at 1 s", "rad/s", true, omega, Some(|state| state.omega)),
+    ]
+}
+
+/// Compares a quantity of the last state with the exact value, in units of this value.
+pub(crate) fn end(done: &FinishedRun, exact: impl Fn(&OneGrain, f64) -> State, pick: fn(State) -> f64) -> Comparison {
     let (t, state) = last(done)?;
     Ok(Measurement::relative(pick(state), pick(exact(&OneGrain::from_scene(&done.scene), t))))
 }

@@ -22,49 +22,30 @@ pub(crate) fn displacement(
     variants: &[&'static str],
     seconds: f64,
     exact: fn(&OneGrain, f64) -> State,
-    source: &'static str,
+    source: &str,
 ) -> Vec<TargetQuantity> {
     let Some(case) = registry::by_name(name) else { return Vec::new() };
-    variants.iter().map(|variant| subject(case, variant, seconds, exact, source)).collect()
-}
-
-fn subject(
-    case: &'static Case,
-    variant: &'static str,
-    seconds: f64,
-    exact: fn(&OneGrain, f64) -> State,
-    source: &'static str,
-) -> TargetQuantity {
-    let dem = OVERLAPS.map(|ratio| SolverSetup {
-        method: Method::Dem,
-        knobs: format!("overlap/R = {ratio:e}"),
-        prepare: Some(lasting(seconds, move |scene| rest_at_overlap(scene, ratio, DAMPING))),
-        about: Resolution::CriticalFraction(0.1),
+    let setup = |method, knobs, prepare, about| SolverSetup { method, knobs, prepare: Some(prepare), about };
+    let dem = OVERLAPS.map(|ratio| {
+        let at_rest = lasting(seconds, move |scene| rest_at_overlap(scene, ratio, DAMPING));
+        setup(Method::Dem, format!("overlap/R = {ratio:e}"), at_rest, Resolution::CriticalFraction(0.1))
     });
-    let rigid = SolverSetup {
-        method: Method::Rigid,
-        knobs: String::new(),
-        prepare: Some(lasting(seconds, touching)),
-        about: Resolution::substeps(8),
-    };
-    let grid = STIFFENED.map(|factor| SolverSetup {
-        method: Method::Grid,
-        knobs: if factor == 1.0 { String::new() } else { format!("moduli × {factor}") },
-        prepare: Some(Arc::new(move |scene| settled(scene, factor, seconds))),
-        about: Resolution::grid(8.0, 3),
+    let rigid = setup(Method::Rigid, String::new(), lasting(seconds, touching), Resolution::substeps(8));
+    let grid = STIFFENED.map(|factor| {
+        let knobs = if factor == 1.0 { String::new() } else { format!("moduli × {factor}") };
+        setup(Method::Grid, knobs, Arc::new(move |scene| settled(scene, factor, seconds)), Resolution::grid(8.0, 3))
     });
-    TargetQuantity {
+    let lanes: Vec<SolverSetup> = dem.into_iter().chain([rigid]).chain(grid).collect();
+    let of_variant = |&variant: &&'static str| TargetQuantity {
         case,
         variant,
         quantity: format!("displacement at {seconds} s"),
         unit: "m",
         source: source.to_owned(),
-        measure: Arc::new(move |done| {
-            let done = done.first().ok_or("run")?;
-            end(done, exact, |state| state.x)
-        }),
-        lanes: dem.into_iter().chain([rigid]).chain(grid).collect(),
-    }
+        measure: Arc::new(move |done| end(done.first().ok_or("run")?, exact, |state| state.x)),
+        lanes: lanes.clone(),
+    };
+    variants.iter().map(of_variant).collect()
 }
 
 fn lasting(seconds: f64, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Change {
@@ -74,9 +55,8 @@ fn lasting(seconds: f64, change: impl Fn(&mut Scene) + Send + Sync + 'static) ->
     })
 }
 
-/// Sets the grain on the plane and lets it relax before the run, under the normal component of gravity. The moduli of
-/// all materials are multiplied by `factor`. Materials without moduli first get K = 10 MPa and G = 2.5 MPa
-/// (Bardenhagen, Brackbill & Sulsky 2000).
+/// Lets the grain relax on the plane before the run, under the normal component of gravity. Multiplies moduli by
+/// `factor`; missing moduli are K = 10 MPa and G = 2.5 MPa (Bardenhagen, Brackbill & Sulsky 2000).
 fn settled(scene: &mut Scene, factor: f64, seconds: f64) {
     settle(scene, Rest { duration: 0.3, damping: 100.0 }, seconds);
     let paper = Deformable { bulk_modulus: 1e7, shear_modulus: 2.5e6, constitutive: Constitutive::NeoHookean };

@@ -39,39 +39,25 @@ pub(crate) fn one_grain(variants: &[&'static str]) -> Vec<Claim> {
     let mut claims = Vec::new();
     for &variant in variants {
         for (pair, [other, _]) in PAIRS.into_iter().zip([PAIRS[1], PAIRS[0]]) {
-            claims.push(on_a_plane(
-                pair.map(|solver| at_overlap(variant, solver, 1e-3, 0.0, STEP)),
-                "undamped",
-                telling(),
-            ));
+            // The stiffness affects when a grain starts to slip and how a grain starts to roll.
+            let stiffer =
+                Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001));
             let other = Control::solver("ours in the convention of the other program", other);
-            claims.push(on_a_plane(
-                pair.map(|solver| at_overlap(variant, solver, 1e-3, DAMPING, STEP)),
-                "damped",
-                other,
-            ));
+            for (words, damping, control) in [("undamped", 0.0, stiffer), ("damped", DAMPING, other)] {
+                let (quantity, allowed) = (format!("position over 1 s, {words}, worst"), same_cycle("in units of R"));
+                let runs = pair.map(|solver| at_overlap(variant, solver, 1e-3, damping, STEP));
+                claims.push(row(&quantity, "m", allowed, runs, control, |done| {
+                    let is_flat = done[0].scene.dimension.count() == 2;
+                    let axes = ["grain.x", if is_flat { "grain.y" } else { "grain.z" }];
+                    worst(done, &axes, done[0].scene.grains[0].radius)
+                }));
+            }
         }
     }
     claims
 }
 
-/// Returns a negative control with a tangential stiffness 0.1 % too large. The stiffness affects when a grain starts to
-/// slip and how a grain starts to roll.
-fn telling() -> Control {
-    Control::our_contact_law("tangential stiffness × 1.001 in ours", |law| law.scale_tangential(1.001))
-}
-
-fn on_a_plane(runs: [Run; 2], damping: &str, control: Control) -> Claim {
-    let allowed = same_cycle("in units of R");
-    row(&format!("position over 1 s, {damping}, worst"), "m", allowed, runs, control, |done| {
-        let scene = &done[0].scene;
-        let axes = if scene.dimension.count() == 2 { &["grain.x", "grain.y"][..] } else { &["grain.x", "grain.z"] };
-        worst(done, axes, scene.grains[0].radius)
-    })
-}
-
-/// Replaces discs by spheres of the same mass in one layer, because LIGGGHTS moves walls inwards in three dimensions
-/// only.
+/// Replaces discs by a layer of spheres of equal mass, because LIGGGHTS moves walls inwards only in three dimensions.
 pub(crate) fn layer_of_spheres(scene: &mut Scene) {
     scene.grain_shape = GrainShape::Sphere;
     let factor = GrainShape::Sphere.inertia_factor();

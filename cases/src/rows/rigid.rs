@@ -23,8 +23,10 @@ use std::f64::consts::TAU;
 
 /// Name of the solver.
 const RIGID: &str = "rigid";
+/// Default number of substeps in 1/60 s.
+pub(crate) const SUBSTEPS: u32 = 8;
 /// Default resolution of the claims.
-pub(crate) const DEFAULT: Resolution = Resolution::substeps(8);
+pub(crate) const DEFAULT: Resolution = Resolution::substeps(SUBSTEPS);
 /// Numbers of substeps in 1/60 s that the figure shows.
 const LEVELS: [u32; 8] = [1, 2, 4, 8, 16, 32, 64, 128];
 /// Numbers of substeps in 1/60 s at which rotating grains no longer lift off.
@@ -45,24 +47,25 @@ fn rest_overlap(grain: &OneGrain) -> f64 {
     grain.onto / (TAU * Settings::default().wall_frequency).powi(2)
 }
 
-fn against(
-    plane: Plane,
-    exact: fn(&OneGrain, f64) -> State,
-    x_control: Control,
-    allowed: [Tolerance; 3],
+/// Returns the claims on displacement, velocity and spin at 1 s. The first control is that of the displacement.
+pub(crate) fn against(
+    variant: &'static str,
+    source: Source,
+    end: fn(&FinishedRun, fn(State) -> f64) -> Result<Measurement, MissingData>,
+    [x_control, control]: [Control; 2],
+    [x, v, omega]: [Tolerance; 3],
 ) -> Vec<Claim> {
     let rigid_claim = |quantity: &str, unit, tolerance, control, pick: fn(State) -> f64| {
         claim(quantity, unit)
-            .run(run(plane.variant, DEFAULT))
-            .equals(SOLUTION, move |done| end(&done[0], exact, pick))
+            .run(run(variant, DEFAULT))
+            .equals(source, move |done| end(&done[0], pick))
             .within(tolerance)
             .refuses(control)
     };
-    let [x, v, omega] = allowed;
     vec![
         rigid_claim("displacement at 1 s", "m", x, x_control, |state| state.x),
-        rigid_claim("velocity at 1 s", "m/s", v, plane.control(), |state| state.v),
-        rigid_claim("spin at 1 s", "rad/s", omega, plane.control(), |state| state.omega),
+        rigid_claim("velocity at 1 s", "m/s", v, control.clone(), |state| state.v),
+        rigid_claim("spin at 1 s", "rad/s", omega, control, |state| state.omega),
     ]
 }
 
@@ -117,18 +120,14 @@ fn between_arms(case: &Case, plane: Plane) -> Claim {
         .refuses(plane.control())
 }
 
-/// Returns the claims on a grain released on a slope.
-pub(crate) fn inclines(case: &Case, planes: &[Plane]) -> Vec<Claim> {
-    planes.iter().flat_map(|&plane| incline(case, plane)).collect()
-}
-
 /// Returns the overlap at rest divided by the radius, and the inertia factor I/(mR²).
 fn arm(case: &Case, plane: Plane) -> (f64, f64) {
     let grain = case.variant(plane.variant).map(|scene| OneGrain::from_scene(&scene));
     grain.map_or((f64::NAN, f64::NAN), |grain| (rest_overlap(&grain) / grain.radius, grain.inertia_factor))
 }
 
-fn incline(case: &Case, plane: Plane) -> Vec<Claim> {
+/// Returns the claims on a grain released on a slope.
+pub(crate) fn incline(case: &Case, plane: Plane) -> Vec<Claim> {
     const X: &str = "with symplectic Euler, positions are ahead of the velocities by h/t = 5.2e-4, h = Δt/4; if \
                      rotation lifts the contact point off the plane, the friction impulse of the fall is missing";
     const LIFTED: &str = "rotation lifts the contact point off for a part of a step: the friction impulse μ m |v_n| is \
@@ -149,7 +148,9 @@ fn incline(case: &Case, plane: Plane) -> Vec<Claim> {
             of_arm(1.0, "the torque of friction has a lever arm between R and R − δ: δ/R"),
         ],
     };
-    let mut claims = against(plane, OneGrain::rigid_incline, plane.control(), [estimated(2e-3, X), v, omega]);
+    let end = |done: &FinishedRun, pick: fn(State) -> f64| end(done, OneGrain::rigid_incline, pick);
+    let controls = [plane.control(), plane.control()];
+    let mut claims = against(plane.variant, SOLUTION, end, controls, [estimated(2e-3, X), v, omega]);
     claims.push(if plane.rolls { between_arms(case, plane) } else { order(plane) });
     if plane.rolls {
         claims.push(final_velocity(case, plane));
@@ -190,11 +191,7 @@ fn final_velocity(case: &Case, plane: Plane) -> Claim {
 }
 
 /// Returns the claims on a grain set down with spin.
-pub(crate) fn backspins(case: &Case, planes: &[Plane]) -> Vec<Claim> {
-    planes.iter().flat_map(|&plane| backspin(case, plane)).collect()
-}
-
-fn backspin(case: &Case, plane: Plane) -> Vec<Claim> {
+pub(crate) fn backspin(case: &Case, plane: Plane) -> Vec<Claim> {
     const X: &str = "while RΩ² exceeds g, the contact point lifts off faster than the grain can fall: friction starts \
                      up to a step late and is intermittent";
     let (overlap, i) = arm(case, plane);
@@ -207,13 +204,12 @@ fn backspin(case: &Case, plane: Plane) -> Vec<Claim> {
         ),
         of_arm(2.0 / (1.0 + i), "lever arm between R and R − δ in Ω = v/a: 2/(1 + i) times δ/R"),
     ];
-    against(plane, OneGrain::rigid_backspin, stronger_friction(), allowed)
+    let end = |done: &FinishedRun, pick: fn(State) -> f64| end(done, OneGrain::rigid_backspin, pick);
+    against(plane.variant, SOLUTION, end, [stronger_friction(), plane.control()], allowed)
 }
 
-/// Returns a figure of the error of the displacement against the number of substeps.
-///
-/// # Errors
-/// When a run fails for another reason than a crash of the solver.
+/// Returns a figure of the error of the displacement against the number of substeps; an error if a run fails for another
+/// reason than a crash of the solver.
 pub(crate) fn figure(
     runner: &Runner,
     planes: &[Plane],

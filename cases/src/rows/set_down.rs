@@ -101,11 +101,6 @@ fn rest(scene: &Scene) -> f64 {
     grain.overlap_ratio * grain.radius
 }
 
-/// Returns the peak slip velocity of a sticking grain on an undamped tangential spring: g_t/ω (m/s).
-fn peak(scene: &Scene) -> f64 {
-    OneGrain::from_scene(scene).along / oscillators(scene)[1].frequency
-}
-
 fn set_down(scene: &mut Scene, dashpots: Dashpots) {
     rest_at_overlap(scene, RATIO, DAMPING);
     let axis = normal_axis(scene);
@@ -159,7 +154,8 @@ pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                     OneGrain::from_scene(&done.scene).along / (oscillator.frequency * oscillator.frequency)
                         * oscillator.approach(t)
                 },
-                |done| peak(&done.scene),
+                // Peak slip velocity of a sticking grain on an undamped tangential spring: g_t/ω.
+                |done| OneGrain::from_scene(&done.scene).along / oscillators(&done.scene)[1].frequency,
             )
             .within(estimated(0.01, BECAUSE).up_to(0.02))
             .refuses(Control::contact_law("dashpots a tenth too weak", |law| {
