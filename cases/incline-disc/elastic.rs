@@ -7,7 +7,7 @@
 //! use the rigid solution and need no prototype.
 
 use crate::exact::one_grain::{State, course, last};
-use crate::rows::elastic::{Rest, excess, settle, stiffen};
+use crate::rows::elastic::{Rest, excess, excess_claim, settle, stiffen};
 use crate::sources::literature::bardenhagen_2001;
 use crate::sources::prototype::{elastic_disc, nodal_contact_2000 as nodal};
 use grainbench_harness::measure::slope as fitted;
@@ -21,8 +21,7 @@ struct Elastic {
     time: f64,
     /// Displacement of the converged elastic disc, divided by the displacement of a rigid disc, minus one.
     reference: CitedNumber,
-    /// Pairs of cells per radius and largest deviation from the reference. Deviations are fractions of the rigid
-    /// displacement.
+    /// Pairs of cells per radius and largest deviation from the reference, as a fraction of the rigid displacement.
     allowed: &'static [(f64, f64)],
     /// True if the deviations in `allowed` were required before the solver existed.
     asked: bool,
@@ -88,8 +87,7 @@ fn stiffened(slope: Elastic, solver: &'static str, cells: f64, factor: f64) -> R
     })
 }
 
-/// Duration at the end of the run over which rolling is averaged (s). It is about one period of the undamped rocking of
-/// the disc on its contact, which changes ΩR/v by 4 %.
+/// Time over which rolling is averaged (s): about a period of the disc's rocking, which changes ΩR/v by 4 %.
 const ROCKS: f64 = 0.1;
 
 /// Returns mean ΩR divided by mean v, over the last 0.1 s of the run.
@@ -104,7 +102,11 @@ fn rolling(done: &FinishedRun) -> Result<f64, MissingData> {
 pub(super) fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();
     for slope in SLOPES {
-        claims.extend(slope.allowed.iter().map(|&(cells, allowed)| against_reference(slope, cells, allowed)));
+        claims.extend(slope.allowed.iter().map(|&(cells, allowed)| {
+            let run = run(slope, "mpm", cells);
+            excess_claim(excess_words(slope, cells), run, slope.reference, asked(slope, allowed))
+                .refuses(telling_at(slope, cells))
+        }));
         claims.extend(slope.kinematic.map(|(cells, cited)| reproduced(slope, cells, cited)));
         claims.push(stiff(slope, 10.0));
         claims.push(stiff(slope, 100.0));
@@ -134,14 +136,6 @@ fn telling(slope: Elastic) -> Control {
     }
 }
 
-fn against_reference(slope: Elastic, cells: f64, allowed: f64) -> Claim {
-    claim(excess_words(slope, cells), "1")
-        .run(run(slope, "mpm", cells))
-        .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
-        .within(asked(slope, allowed))
-        .refuses(telling_at(slope, cells))
-}
-
 /// Returns the tolerance for the deviation of a disc from the elastic reference, for any contact algorithm.
 fn asked(slope: Elastic, allowed: f64) -> Tolerance {
     let allowed = allowed + slope.reference.uncertainty;
@@ -155,18 +149,14 @@ fn asked(slope: Elastic, allowed: f64) -> Tolerance {
 /// Returns the claim that any solver with a deformable disc agrees with the reference within one per cent. Contact at
 /// nodes has an error of first order in the cell length.
 fn to_a_hundredth(slope: Elastic) -> Claim {
-    const PART: f64 = 0.3;
-    claim(format!("{}, to a hundredth", excess_words(slope, 8.0)), "1")
-        .run(run(slope, "mpm", 8.0))
-        .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
-        .within(required(
-            0.01 + slope.reference.uncertainty,
-            "the accuracy at which costs are compared, one per cent, and the uncertainty of the reference",
-        ))
-        .refuses(
-            Control::contact_law("three tenths of the friction", |law| law.friction *= PART)
-                .coarser(Resolution::grid(4.0, POINTS)),
-        )
+    let quantity = format!("{}, to a hundredth", excess_words(slope, 8.0));
+    let allowed = required(
+        0.01 + slope.reference.uncertainty,
+        "the accuracy at which costs are compared, one per cent, and the uncertainty of the reference",
+    );
+    let control = Control::contact_law("three tenths of the friction", |law| law.friction *= 0.3);
+    excess_claim(quantity, run(slope, "mpm", 8.0), slope.reference, allowed)
+        .refuses(control.coarser(Resolution::grid(4.0, POINTS)))
         .fair_to_any_continuum()
 }
 
@@ -189,8 +179,7 @@ fn order(slope: Elastic) -> Claim {
         .refuses(telling(slope))
 }
 
-/// Returns the claim with moduli that are `factor` times as large, 10 or 100. The disc is then closer to the rigid
-/// solution, so no elastic reference is needed.
+/// Returns the claim with larger moduli. The disc is then closer to the rigid solution, which needs no reference.
 fn stiff(slope: Elastic, factor: f64) -> Claim {
     let run = stiffened(slope, "mpm", 8.0, factor);
     // At 60° with μ = 0.5 the disc hardly slips, because tan 60° = 1.73 is close to 3μ = 1.5. It first sticks for a
@@ -219,17 +208,14 @@ fn stiff(slope: Elastic, factor: f64) -> Claim {
 fn reproduced(slope: Elastic, cells: f64, cited: CitedNumber) -> Claim {
     let control =
         if slope.sticks { Control::solver("springs at the surface", "mpm") } else { telling_at(slope, cells) };
-    claim(excess_words(slope, cells), "1")
-        .run(run(slope, "mpm:2000", cells))
-        .equals_cited(cited, 1.0, |done| excess(&done[0]))
-        .within(judged(
-            0.022,
-            "two implementations of one method at the same resolution, with different material points. During \
-             relaxation ours damps points instead of nodes, which changes the result by up to .004. This holds for one \
-             position on the grid: from other positions in a cell, the displacement of rolling discs is up to .075 \
-             smaller or .053 larger (derivation)",
-        ))
-        .refuses(control)
+    let allowed = judged(
+        0.022,
+        "two implementations of one method at the same resolution, with different material points. During \
+         relaxation ours damps points instead of nodes, which changes the result by up to .004. This holds for one \
+         position on the grid: from other positions in a cell, the displacement of rolling discs is up to .075 \
+         smaller or .053 larger (derivation)",
+    );
+    excess_claim(excess_words(slope, cells), run(slope, "mpm:2000", cells), cited, allowed).refuses(control)
 }
 
 fn known(slope: Elastic) -> Claim {
@@ -240,11 +226,12 @@ fn known(slope: Elastic) -> Claim {
     )
     // The relative error is −1 if the disc does not move.
     .up_to(1.0);
-    claim(format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time), "1")
-        .run(run)
-        .equals_cited(slope.reference, 1.0, |done| excess(&done[0]))
-        .within(asked(slope, allowed))
-        .refuses(Control::without_the_error("springs at the surface", "mpm", Resolution::grid(cells, POINTS)))
+    let quantity = format!("displacement at {} s over the rigid one, less 1, against the elastic disc", slope.time);
+    excess_claim(quantity, run, slope.reference, asked(slope, allowed)).refuses(Control::without_the_error(
+        "springs at the surface",
+        "mpm",
+        Resolution::grid(cells, POINTS),
+    ))
 }
 
 fn does_not_roll() -> Claim {
@@ -258,8 +245,7 @@ fn does_not_roll() -> Claim {
         .refuses(Control::solver("springs at the surface", "mpm"))
 }
 
-/// Returns the claim that the extrapolation from our runs with 4, 8 and 16 cells per radius, at the observed order,
-/// agrees with the reference.
+/// Returns the claim on the extrapolation from our runs with 4, 8 and 16 cells per radius, at the observed order.
 fn extrapolated(slope: Elastic) -> Claim {
     claim(
         format!(

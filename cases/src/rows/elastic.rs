@@ -15,8 +15,7 @@ pub(crate) struct Rest {
     pub(crate) damping: f64,
 }
 
-/// Places the first grain in contact with its plane and relaxes it under the normal component of gravity. The run then
-/// lasts `time` (s).
+/// Relaxes the first grain on its plane under the normal component of gravity, before a run of `time` (s).
 pub(crate) fn settle(scene: &mut Scene, rest: Rest, time: f64) {
     touching(scene);
     let (normal, mut gravity) = (normal_axis(scene), Vector3::zeros());
@@ -34,12 +33,14 @@ pub(crate) fn stiffen(scene: &mut Scene, factor: f64) {
 }
 
 /// Returns the last displacement down an incline divided by that of a rigid grain, minus one.
-///
-/// # Errors
-/// When the record lacks the probe `grain` or has no samples.
 pub(crate) fn excess(done: &FinishedRun) -> Result<f64, MissingData> {
     let (t, state) = last(done)?;
     Ok(state.x / OneGrain::from_scene(&done.scene).rigid_incline(t).x - 1.0)
+}
+
+/// Returns the claim that [`excess`] equals a cited value.
+pub(crate) fn excess_claim(quantity: String, run: Run, cited: CitedNumber, tolerance: Tolerance) -> ClaimWithTolerance {
+    claim(quantity, "1").run(run).equals_cited(cited, 1.0, |done| excess(&done[0])).within(tolerance)
 }
 
 /// Elastic disc in plane strain that is compressed without friction at two opposite sides or at four. The shortening of
@@ -189,9 +190,8 @@ mod tests {
         ]
     }
 
-    /// Checks that the rim is free of traction except at the contact. Checks u and v by integrals of the strain along
-    /// the diameter and by Johnson's approach below a contact patch. Checks that the mean displacement is the
-    /// displacement of the centre.
+    /// Checks that the rim is free of traction except at the contact, u and v by integrals of the strain and by
+    /// Johnson's approach below a contact patch, and that the mean displacement is the displacement of the centre.
     #[test]
     fn a_disc_gives_way_to_a_load_that_its_inertia_bears() {
         for at in 1..20 {

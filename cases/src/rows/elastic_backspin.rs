@@ -32,9 +32,8 @@ pub(crate) fn slippery() -> Control {
     Control::contact_law("friction × .7", |law| law.friction *= 0.7)
 }
 
-/// Returns the claims that displacement and rolling velocity of the sphere agree with the prototype. `level` is the
-/// name of the resolution. `asked` is the relative error of the displacement that was required at this resolution
-/// before the solver existed.
+/// Returns the claims that displacement and rolling velocity of the sphere agree with the prototype. `asked` is the
+/// error of the displacement that was required at the resolution `level` before the solver existed.
 pub(crate) fn sphere(level: &str, asked: f64, run: Run) -> [Claim; 2] {
     [
         claim(format!("displacement at .8 s over the rigid one, less 1, {level}"), "1")
