@@ -1,7 +1,7 @@
 //! The deposit of the wide silo with half of its floor pushed up, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{LEVELS, Numbers, Silo, case};
+use crate::silo::claims::{LEVELS, Silo, case};
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::PaperSize;
 use crate::sources::prototype::silo as prototype;
@@ -9,11 +9,14 @@ use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = case(crate::heads::SILO_PUSH, &claims, figures);
 
-static NUMBERS: Numbers = Numbers { sine: prototype::PUSH_SINE, packing: prototype::PUSH_PACKING };
-
 fn silo() -> Silo {
     let run = Run::new("pushed", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
-    Silo { flow: Flow::Pushed, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+    Silo {
+        flow: Flow::Pushed,
+        run,
+        means: [prototype::PUSH_SINE, prototype::PUSH_PACKING],
+        packings: include_str!("packings.csv"),
+    }
 }
 
 fn full_size() -> PaperSize {

@@ -1,7 +1,7 @@
 //! A tall silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Numbers, Silo, case, no_springs};
+use crate::silo::claims::{DrainNumbers, GONE, LEVELS, Silo, case, no_springs};
 use crate::silo::ensemble::{Flow, gone};
 use crate::silo::paper::{DrainExpectations, PaperSize};
 use crate::silo::{collapse, flows};
@@ -9,8 +9,6 @@ use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = case(crate::heads::SILO_TALL, &claims, figures);
-
-static NUMBERS: Numbers = Numbers { sine: prototype::TALL_SINE, packing: prototype::TALL_PACKING };
 
 static DRAINED: DrainNumbers = DrainNumbers {
     plateau: prototype::TALL_PLATEAU,
@@ -22,7 +20,12 @@ static DRAINED: DrainNumbers = DrainNumbers {
 
 fn silo() -> Silo {
     let run = Run::new("drained", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().slow();
-    Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+    Silo {
+        flow: Flow::Drained,
+        run,
+        means: [prototype::TALL_SINE, prototype::TALL_PACKING],
+        packings: include_str!("packings.csv"),
+    }
 }
 
 fn full_size() -> PaperSize {
@@ -41,7 +44,7 @@ fn full_size() -> PaperSize {
 
 fn claims() -> Vec<Claim> {
     let silo = silo();
-    let mut all = vec![
+    let own = vec![
         silo.deposit(prototype::DEPOSIT),
         silo.equals(GONE, prototype::TALL_GONE, no_springs(), gone),
         silo.turn(prototype::TALL_TURN),
@@ -50,10 +53,7 @@ fn claims() -> Vec<Claim> {
         collapse::of_drains(silo.run.clone(), &collapse::TENTH[0], ["the wide silo", ""]),
         collapse::of_strained(silo.run.clone(), &collapse::TENTH, ""),
     ];
-    all.extend(silo.of_every());
-    all.extend(silo.of_drains(&DRAINED));
-    all.extend(full_size().claims());
-    all
+    [own, silo.of_every(), silo.of_drains(&DRAINED), full_size().claims()].concat()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

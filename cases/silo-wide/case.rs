@@ -1,7 +1,7 @@
 //! A wide silo that drains through a slit, evaluated in granular elements.
 
 use crate::silo::ELEMENTS;
-use crate::silo::claims::{DrainNumbers, LEVELS, Numbers, Silo, case};
+use crate::silo::claims::{DrainNumbers, LEVELS, Silo, case};
 use crate::silo::collapse;
 use crate::silo::ensemble::Flow;
 use crate::silo::paper::{DrainExpectations, PaperSize};
@@ -9,8 +9,6 @@ use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case = case(crate::heads::SILO_WIDE, &claims, figures);
-
-static NUMBERS: Numbers = Numbers { sine: prototype::WIDE_SINE, packing: prototype::WIDE_PACKING };
 
 static DRAINED: DrainNumbers = DrainNumbers {
     plateau: prototype::WIDE_PLATEAU,
@@ -22,7 +20,12 @@ static DRAINED: DrainNumbers = DrainNumbers {
 
 fn silo() -> Silo {
     let run = Run::new("drained", "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
-    Silo { flow: Flow::Drained, run, numbers: &NUMBERS, packings: include_str!("packings.csv") }
+    Silo {
+        flow: Flow::Drained,
+        run,
+        means: [prototype::WIDE_SINE, prototype::WIDE_PACKING],
+        packings: include_str!("packings.csv"),
+    }
 }
 
 fn full_size() -> PaperSize {
@@ -43,11 +46,8 @@ fn full_size() -> PaperSize {
 
 fn claims() -> Vec<Claim> {
     let silo = silo();
-    let mut all = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry()];
-    all.extend(silo.of_every());
-    all.extend(silo.of_drains(&DRAINED));
-    all.extend(full_size().claims());
-    all
+    let own = vec![silo.turn(prototype::WIDE_TURN), silo.symmetry()];
+    [own, silo.of_every(), silo.of_drains(&DRAINED), full_size().claims()].concat()
 }
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

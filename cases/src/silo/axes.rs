@@ -10,6 +10,8 @@ use grainbench_harness::prelude::*;
 const RATE: f64 = 1.6;
 /// Plotted half-length of the 90th percentile of the minor and major axes of the stress T (d). Blocks are 5 d wide.
 const STRESS: f64 = 2.4;
+/// Labels of the axes of the plots.
+const AXES: [&str; 2] = ["x (d)", "z (d)"];
 /// Line widths of the three kinds of axes, as fractions of the largest width.
 const WIDTHS: [f64; 3] = [0.2, 0.4, 0.2];
 
@@ -48,10 +50,6 @@ fn kinds(done: &FinishedRun) -> Option<Vec<Lines>> {
     ])
 }
 
-fn labels() -> [String; 2] {
-    ["x (d)".to_owned(), "z (d)".to_owned()]
-}
-
 /// Returns the figure of all blocks (figure 4).
 fn whole(done: &FinishedRun, part: [[f64; 2]; 2], time: f64, kinds: &[Lines]) -> Option<Figure> {
     let domain = done.scene.domain.as_ref()?;
@@ -71,7 +69,7 @@ fn whole(done: &FinishedRun, part: [[f64; 2]; 2], time: f64, kinds: &[Lines]) ->
         "axes",
         "Principal axes of stress and of rate of deformation",
         caption,
-        LinePlot { axes: labels(), to_scale: true, sheets: vec![sheet] },
+        LinePlot { axes: AXES.map(str::to_owned), to_scale: true, sheets: vec![sheet] },
     ))
 }
 
@@ -102,6 +100,6 @@ fn detail(done: &FinishedRun, seen: [[f64; 2]; 2], time: f64, kinds: Vec<Lines>)
         "forces",
         "Principal axes and single contact forces",
         caption,
-        LinePlot { axes: labels(), to_scale: true, sheets },
+        LinePlot { axes: AXES.map(str::to_owned), to_scale: true, sheets },
     ))
 }

@@ -10,18 +10,11 @@ use grainbench_harness::run::Set;
 /// Function that returns a quantity of a silo from its run.
 pub(crate) type Quantity = fn(&FinishedRun) -> Result<f64, MissingData>;
 
-/// Values of the prototype for every silo: mean sin φ and mean packing fraction of the flow.
-pub(crate) struct Numbers {
-    pub(crate) sine: CitedNumber,
-    pub(crate) packing: CitedNumber,
-}
-
 /// Values of the prototype for draining silos.
 pub(crate) struct DrainNumbers {
     pub(crate) plateau: CitedNumber,
     pub(crate) onset: CitedNumber,
-    /// Angles between the major principal axes of stress and strain rate (degrees): in single frames, and in means over
-    /// 20 frames.
+    /// Angles between the major axes of stress and strain rate (degrees), in single frames and in means over 20 frames.
     pub(crate) angles: [CitedNumber; 2],
     /// Correlation coefficients: of two measures of friction, and of shear rates from two methods.
     pub(crate) correlations: [CitedNumber; 2],
@@ -30,16 +23,14 @@ pub(crate) struct DrainNumbers {
 }
 
 /// Silo at a tenth of the paper's size, with the data for its expected values and tolerances.
-#[derive(Clone)]
 pub(crate) struct Silo {
     /// Cause of the flow.
     pub(crate) flow: Flow,
     /// Run of the claims.
     pub(crate) run: Run,
-    /// Expected values of the prototype.
-    pub(crate) numbers: &'static Numbers,
-    /// Table of all quantities for ten of our own packings, one row per packing. `examples/silo_packings.rs` computes
-    /// it.
+    /// Mean sin φ and mean packing fraction of the flow in the prototype.
+    pub(crate) means: [CitedNumber; 2],
+    /// Table of all quantities of ten of our own packings, one in a row, by `examples/silo_packings.rs`.
     pub(crate) packings: &'static str,
 }
 
@@ -73,10 +64,6 @@ const ONSET: [&str; 2] = ["largest sin φ of tracers before they dilate, median"
 const PACKINGS: &str = "a deposit is a random sample: 99 % interval of the difference of two deposits, from ten of our \
                         own";
 
-fn half_the_friction() -> Control {
-    Control::contact_law("friction .25 for .5", |law| law.friction = 0.25)
-}
-
 pub(crate) fn no_springs() -> Control {
     Control::contact_law("tangential springs a millionth as stiff", |law| law.scale_tangential(1e-6))
 }
@@ -100,40 +87,36 @@ fn packing(done: &FinishedRun) -> Result<f64, MissingData> {
 
 impl Silo {
     pub(crate) fn of_every(&self) -> Vec<Claim> {
-        let numbers = self.numbers;
+        let [of_sine, of_packing] = self.means;
         // In pushed silos, half the friction changes sin φ by less than the difference between ten packings.
-        let of_sine = match self.flow {
-            Flow::Drained => half_the_friction(),
+        let control = match self.flow {
+            Flow::Drained => Control::contact_law("friction .25 for .5", |law| law.friction = 0.25),
             Flow::Pushed => no_springs(),
         };
-        let mut all = vec![
-            self.equals(SINE, numbers.sine, of_sine, sine),
-            self.equals(PACKING, numbers.packing, no_springs(), packing),
-            self.range_of_friction(),
+        vec![
+            self.equals(SINE, of_sine, control, sine),
+            self.equals(PACKING, of_packing, no_springs(), packing),
+            self.range_of_friction(of_sine.source()),
             self.beginning(),
-        ];
-        all.extend([self.beside_lammps(SINE, sine), self.beside_lammps(PACKING, packing)]);
-        all
+            self.beside_lammps(SINE, sine),
+            self.beside_lammps(PACKING, packing),
+        ]
     }
 
-    /// Returns the claims on draining silos only. In pushed silos, too few elements deform for tracer paths and for
-    /// curves against the inertial number.
+    /// Returns the claims on draining silos only. In pushed silos, too few elements deform for these claims.
     pub(crate) fn of_drains(&self, numbers: &DrainNumbers) -> Vec<Claim> {
-        let mut all = vec![
+        let at_large_strain = vec![
             self.equals(PLATEAU, numbers.plateau, no_springs(), plateau),
             self.equals(ONSET, numbers.onset, no_springs(), onset),
         ];
-        all.extend(self.over_inertia(numbers.bins));
-        all.extend(self.correlations(numbers.correlations));
-        all.extend(self.coaxiality(numbers.angles));
-        all.extend([self.beside_lammps(PLATEAU, plateau), self.beside_lammps(ONSET, onset)]);
-        all
-    }
-
-    /// Returns the half-width of the 99 % interval of the difference between a quantity's values for two packings.
-    /// Returns zero if the table lacks the quantity, so that the claim fails.
-    fn spread(&self, quantity: &str) -> f64 {
-        apart(self.packings, quantity)
+        [
+            at_large_strain,
+            self.over_inertia(numbers.bins),
+            self.correlations(numbers.correlations),
+            self.coaxiality(numbers.angles),
+            vec![self.beside_lammps(PLATEAU, plateau), self.beside_lammps(ONSET, onset)],
+        ]
+        .concat()
     }
 
     /// Returns the claim that a quantity equals the prototype's value within the spread over packings. An angle may be
@@ -146,7 +129,7 @@ impl Silo {
         read: Quantity,
     ) -> Claim {
         let (scale, in_units) = if unit == "deg" { (45.0, "of 45°") } else { (cited.value.abs(), "of the value") };
-        let allowed = (self.spread(quantity) + cited.uncertainty) / scale;
+        let allowed = (apart(self.packings, quantity) + cited.uncertainty) / scale;
         let because = format!("{PACKINGS}, plus the uncertainty of the prototype's mean; in units {in_units}");
         claim(quantity, unit)
             .run(self.run.clone())
@@ -155,12 +138,10 @@ impl Silo {
             .refuses(control)
     }
 
-    fn range_of_friction(&self) -> Claim {
+    fn range_of_friction(&self, source: Source) -> Claim {
         claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow.words()), "1")
             .run(self.run.clone())
-            .at_least(0.95, self.numbers.sine.source(), |done| {
-                Ok(share(&steady(&done[0], "sine_of_friction")?, [0.2, 0.6]))
-            })
+            .at_least(0.95, source, |done| Ok(share(&steady(&done[0], "sine_of_friction")?, [0.2, 0.6])))
             .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
             .refuses(Control::misread("tan φ taken for sin φ", ensemble::tangent))
     }
@@ -176,12 +157,12 @@ impl Silo {
                 .run(self.run.clone())
                 .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
                 .within(exactly(for_criteria))
-                .refuses(ensemble::friction_elsewhere()),
+                .refuses(ensemble::FRICTION_ELSEWHERE),
             claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
                 .run(self.run.clone())
                 .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
                 .within(exactly(for_rates))
-                .refuses(ensemble::rate_elsewhere()),
+                .refuses(ensemble::RATE_ELSEWHERE),
         ]
     }
 
@@ -189,16 +170,16 @@ impl Silo {
         let of_frames = ["angle between the axes of largest T and D in blocks of 5 d", "deg"];
         let of_windows = ["the same angle of means over 20 frames", "deg"];
         vec![
-            self.equals(of_frames, cited[0], ensemble::stress_elsewhere(), |done| ensemble::angle(done, false)),
-            self.equals(of_windows, cited[1], ensemble::stress_elsewhere(), |done| ensemble::angle(done, true)),
+            self.equals(of_frames, cited[0], ensemble::STRESS_ELSEWHERE, |done| ensemble::angle(done, false)),
+            self.equals(of_windows, cited[1], ensemble::STRESS_ELSEWHERE, |done| ensemble::angle(done, true)),
         ]
     }
 
     /// Returns the claim on the mean rotation from the major axis of stress to that of strain rate. Outward rotation is
     /// positive in both halves. The mean is small for a symmetric flow.
     pub(crate) fn turn(&self, cited: CitedNumber) -> Claim {
-        let words = "turn from T to D in the plane, with the sign of x";
-        self.equals([words, "deg"], cited, ensemble::rate_turned(), ensemble::turn)
+        let quantity = ["turn from T to D in the plane, with the sign of x", "deg"];
+        self.equals(quantity, cited, ensemble::RATE_TURNED, ensemble::turn)
     }
 
     pub(crate) fn symmetry(&self) -> Claim {
@@ -242,14 +223,14 @@ impl Silo {
                     let off: Vec<f64> = pairs.iter().map(|[found, expected]| found - expected).collect();
                     Ok(Measurement::new(mean(&off), 0.0, 1.0))
                 })
-                .within(computed(self.spread(mean_off), format!("{PACKINGS}; in units of φ")))
-                .refuses(ensemble::density_of_one()),
+                .within(computed(apart(self.packings, mean_off), format!("{PACKINGS}; in units of φ")))
+                .refuses(ensemble::DENSITY_OF_ONE),
         ]
     }
 
     pub(crate) fn deposit(&self, cited: CitedNumber) -> Claim {
         let quantity = ["packing fraction of the deposit", "1"];
-        self.equals(quantity, cited, ensemble::larger_radii(), ensemble::deposit)
+        self.equals(quantity, cited, ensemble::LARGER_RADII, ensemble::deposit)
     }
 
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
@@ -258,8 +239,8 @@ impl Silo {
             law.scale_tangential(1e-6)
         });
         let because = format!("because of chaos the two runs are independent samples after .8 τ; {PACKINGS}");
-        let (apart, mean) = (self.spread(quantity), mean_of(self.packings, quantity));
-        let allowed = computed(apart / mean, format!("{because}; in units of the mean of ten packings"));
+        let (spread, mean) = (apart(self.packings, quantity), mean_of(self.packings, quantity));
+        let allowed = computed(spread / mean, format!("{because}; in units of the mean of ten packings"));
         row(quantity, unit, allowed, [run("dem:lammps"), run("lammps")], control, move |done| {
             Ok(Measurement::new(read(&done[0])?, read(&done[1])?, mean))
         })

@@ -61,9 +61,8 @@ impl ComparedFlow {
     }
 }
 
-/// Returns the claim that a draining silo and another silo have the same curve of packing fraction φ against inertial
-/// number |I₀|, up to the end of the other silo's run. `which` is the name of the other silo in the quantity; `size` is
-/// a suffix of the quantity.
+/// Returns the claim that two silos have the same curve of packing fraction φ against inertial number |I₀|, up to the end
+/// of the run of the other silo, `which`. `size` is a suffix of the quantity.
 pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .run(run)
@@ -75,15 +74,13 @@ pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [
             Ok(ensemble::worst(&ensemble::in_bins_of(&ensemble::over_inertia(&done[0], until)?, theirs)?))
         })
         .within(required(0.008, "required in advance: two runs of the prototype differ by .005 to .008; in units of φ"))
-        .refuses(ensemble::density_of_one())
+        .refuses(ensemble::DENSITY_OF_ONE)
 }
 
-/// Number of bins of strain below |E| = 0.1. These bins are not compared, because flows from different deposits differ
-/// there.
+/// Number of bins of strain below |E| = 0.1, in which flows from different deposits differ.
 const FEW_STRAINS: usize = 3;
 
-/// Returns the claim that the flow of `run` and the two `others` have the same curve of packing fraction φ against
-/// strain |E|.
+/// Returns the claim that the flow of `run` and the `others` have the same curve of φ against strain |E|.
 pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str) -> Claim {
     claim(format!("packing fraction over |E| from .1 on beside that of the other flows, worst bin{size}"), "1")
         .run(run)
@@ -100,5 +97,5 @@ pub(crate) fn of_strained(run: Run, others: &'static [ComparedFlow], size: &str)
             Ok(ensemble::worst(&pairs))
         })
         .within(required(0.013, "required in advance: runs of the prototype agree within .013 there; in units of φ"))
-        .refuses(ensemble::larger_radii())
+        .refuses(ensemble::LARGER_RADII)
 }

@@ -11,7 +11,7 @@ pub(crate) fn steady(done: &FinishedRun, quantity: &str) -> Result<Vec<f64>, Mis
     let flow = Flow::from_scene(&done.scene);
     let names = ["time", "x", "z", "side", "surface", "shear_rate", quantity];
     let flows = |&[time, x, z, side, surface, rate, _]: &[f64; 7]| {
-        time >= STEADY - 1e-9 && side + surface == 0.0 && rate >= FLOWING && flow.is_far(x, z)
+        time >= STEADY - 1e-9 && side + surface == 0.0 && rate >= FLOWING && flow.is_far([x, z], [7.5, 12.5])
     };
     let values = rows(done, "elements", names)?.into_iter().filter(flows).map(|row| row[6]);
     enough(values.collect(), FEWEST, "steadily flowing elements")
@@ -58,8 +58,7 @@ pub(crate) fn of_criteria(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(correlation(&flowing(done, ["sine_of_friction", "drucker_prager"])?))
 }
 
-/// Returns Pearson's correlation between log |D₀| from instantaneous velocities and log |D₀| from displacements over
-/// 0.2 τ.
+/// Returns Pearson's correlation between log |D₀| from velocities and from displacements over 0.2 τ.
 pub(crate) fn of_rates(done: &FinishedRun) -> Result<f64, MissingData> {
     let pairs = flowing(done, ["shear_rate", "shear_rate_between"])?;
     Ok(correlation(&pairs.into_iter().map(|pair| pair.map(f64::ln)).collect::<Vec<_>>()))
@@ -81,8 +80,7 @@ pub(crate) const FULL: usize = 6;
 /// Mean packing fraction in each bin of |I₀|; `None` for a bin with too few elements.
 type Bins = [Option<f64>; INERTIA.len()];
 
-/// Returns the mean packing fraction in each bin of |I₀| in steady flow up to the time `until` (τ), for elements away from
-/// sides and surface at any shear rate.
+/// Returns the mean packing fraction in each bin of |I₀| in steady flow up to `until` (τ), at any shear rate.
 pub(crate) fn over_inertia(done: &FinishedRun, until: f64) -> Result<Bins, MissingData> {
     // For a large silo, the table `elements` skips some frames; the table `rates` has all of them.
     let table = if done.table("rates").is_ok() { "rates" } else { "elements" };
@@ -97,8 +95,7 @@ pub(crate) fn over_inertia_flowing(done: &FinishedRun) -> Result<Bins, MissingDa
     Ok(INERTIA.map(|bin| in_bin(&pairs, bin)))
 }
 
-/// Pairs the values in bins of `found` (first) with the values of another flow in the same bins (second). A bin that
-/// `found` lacks is an error.
+/// Pairs values in bins of `found` with values of another flow in the same bins. A bin that `found` lacks is an error.
 pub(crate) fn in_bins_of(
     found: &Bins,
     others: impl Iterator<Item = (usize, f64)>,
@@ -201,14 +198,14 @@ pub(crate) fn angles(done: &FinishedRun, averaged: bool, name: &str) -> Result<V
             && (frames > 1.0) == averaged
             && side + surface == 0.0
             && rate >= FLOWING
-            && flow.is_far_block(x, z)
+            && flow.is_far([x, z], [5.0, 10.0])
     };
     let values = rows(done, "blocks", names)?.into_iter().filter(flows).map(|row| row[7]);
     enough(values.collect(), 4, "flowing blocks")
 }
 
-/// Returns the mean angle (degrees) between the major principal axes of stress T and strain rate D. `averaged` selects axes
-/// that are averaged over a window of frames.
+/// Returns the mean angle (degrees) between the major principal axes of stress T and strain rate D. `averaged` selects
+/// axes that are averaged over a window of frames.
 pub(crate) fn angle(done: &FinishedRun, averaged: bool) -> Result<f64, MissingData> {
     Ok(mean(&angles(done, averaged, "largest")?))
 }
@@ -233,20 +230,16 @@ pub(crate) fn deposit(done: &FinishedRun) -> Result<f64, MissingData> {
     first.ok_or_else(|| "a bulk at the start".into())
 }
 
-/// Returns the number of grains that have left the silo by the last frame. Their centres are below the floor, or they
-/// have been removed.
+/// Returns the number of grains below the floor, or removed, in the last frame.
 pub(crate) fn gone(done: &FinishedRun) -> Result<f64, MissingData> {
     let last = rows(done, "whole", ["grains"])?.last().map(|row| row[0]);
     Ok(done.scene.grains.len() as f64 - last.ok_or("a frame")?)
 }
 
-pub(crate) const fn friction_elsewhere() -> Control {
-    Control::misread("each element beside the friction of another", |tables| rotate(tables, "sine_of_friction"))
-}
-
-pub(crate) const fn rate_elsewhere() -> Control {
-    Control::misread("each element beside the rate of another", |tables| rotate(tables, "shear_rate_between"))
-}
+pub(crate) const FRICTION_ELSEWHERE: Control =
+    Control::misread("each element beside the friction of another", |tables| rotate(tables, "sine_of_friction"));
+pub(crate) const RATE_ELSEWHERE: Control =
+    Control::misread("each element beside the rate of another", |tables| rotate(tables, "shear_rate_between"));
 
 /// Shifts a column by half the rows of the table, so that each element has the value of another element.
 fn rotate(tables: &mut [Table], name: &str) {
@@ -279,37 +272,26 @@ fn at(table: &Table, name: &str, row: usize) -> f64 {
     table.column(name).map_or(f64::NAN, |values| values[row])
 }
 
-pub(crate) const fn stress_elsewhere() -> Control {
-    Control::misread("each block beside the stress of another", |tables| {
-        change(tables, "largest", |table, row| at(table, "largest_elsewhere", row));
-    })
-}
+pub(crate) const STRESS_ELSEWHERE: Control = Control::misread("each block beside the stress of another", |tables| {
+    change(tables, "largest", |table, row| at(table, "largest_elsewhere", row));
+});
 
-/// Returns a negative control that rotates D by ten degrees about y, outwards in both halves.
-pub(crate) const fn rate_turned() -> Control {
-    Control::misread("D turned by 10°", |tables| {
-        change(tables, "turn", |table, row| at(table, "turn", row) - 10.0 * at(table, "x", row).signum());
-    })
-}
+/// Negative control that rotates D by ten degrees about y, outwards in both halves.
+pub(crate) const RATE_TURNED: Control = Control::misread("D turned by 10°", |tables| {
+    change(tables, "turn", |table, row| at(table, "turn", row) - 10.0 * at(table, "x", row).signum());
+});
 
-pub(crate) const fn density_of_one() -> Control {
-    Control::misread("the density of the grains 1 for 6/π", |tables| {
-        change(tables, "inertial_number", |table, row| at(table, "inertial_number", row) * (PI / 6.0).sqrt());
-    })
-}
+pub(crate) const DENSITY_OF_ONE: Control = Control::misread("the density of the grains 1 for 6/π", |tables| {
+    change(tables, "inertial_number", |table, row| at(table, "inertial_number", row) * (PI / 6.0).sqrt());
+});
 
-/// Returns a negative control that omits elements after 14 τ, the end of the prototype's runs, from φ against |I₀|.
-pub(crate) const fn without_the_end() -> Control {
-    Control::misread("what comes after 14 τ left out", |tables| {
-        change(tables, "inertial_number", |table, row| {
-            if at(table, "time", row) > 14.0 + 1e-9 { f64::NAN } else { at(table, "inertial_number", row) }
-        });
-    })
-}
+/// Negative control that omits elements after 14 τ, the end of the prototype's runs, from φ against |I₀|.
+pub(crate) const WITHOUT_THE_END: Control = Control::misread("what comes after 14 τ left out", |tables| {
+    change(tables, "inertial_number", |table, row| {
+        if at(table, "time", row) > 14.0 + 1e-9 { f64::NAN } else { at(table, "inertial_number", row) }
+    });
+});
 
-/// Returns the control with radii 1.01 times as large, and volumes 1.01³ = 1.030301 times as large.
-pub(crate) const fn larger_radii() -> Control {
-    Control::misread("radii a hundredth too large", |tables| {
-        change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.030_301);
-    })
-}
+pub(crate) const LARGER_RADII: Control = Control::misread("radii a hundredth too large", |tables| {
+    change(tables, "packing_fraction", |table, row| at(table, "packing_fraction", row) * 1.030_301);
+});

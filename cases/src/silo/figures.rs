@@ -12,8 +12,7 @@ const FRAMES: usize = 24;
 /// Largest number of points in a scatter plot; more points overlap.
 const CLOUD: usize = 600;
 
-/// Inertial number below which an element is at rest. Rounding errors give fixed grains an inertial number slightly
-/// above zero.
+/// Inertial number below which an element is at rest. Rounding errors give fixed grains a value above zero.
 const STILL: f64 = 1e-5;
 
 /// Returns all figures of a silo: the animation, axes of stress and strain rate, contact forces, φ against |I₀| with

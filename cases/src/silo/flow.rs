@@ -20,21 +20,12 @@ impl Flow {
         if scene.driven.is_empty() { Self::Drained } else { Self::Pushed }
     }
 
-    /// Returns true if an element of edge 2.5 d is far from the cause of the flow: at least 7.5 d from the slit of a
-    /// draining silo, or above 12.5 d in a pushed silo.
-    pub(super) fn is_far(self, x: f64, z: f64) -> bool {
+    /// Returns true if a place is far from the cause of the flow: at least `radius` (d) from the slit of a draining silo,
+    /// or above `height` (d) in a pushed silo.
+    pub(super) fn is_far(self, [x, z]: [f64; 2], [radius, height]: [f64; 2]) -> bool {
         match self {
-            Self::Drained => x.hypot(z) >= 7.5,
-            Self::Pushed => z > 12.5,
-        }
-    }
-
-    /// Returns true if a block of edge 5 d is far from the cause of the flow: at least 5 d from the slit of a draining
-    /// silo, or above 10 d in a pushed silo.
-    pub(super) fn is_far_block(self, x: f64, z: f64) -> bool {
-        match self {
-            Self::Drained => x.hypot(z) >= 5.0,
-            Self::Pushed => z > 10.0,
+            Self::Drained => x.hypot(z) >= radius,
+            Self::Pushed => z > height,
         }
     }
 

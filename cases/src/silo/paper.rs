@@ -28,22 +28,18 @@ pub(crate) struct PaperSize {
 
 /// Expected values of a draining silo at the paper's size.
 pub(crate) struct DrainExpectations {
-    /// Values of the prototype. The paper prints 0.6 for the largest sin φ before tracers dilate, which our runs do not reach
-    /// (derivation).
+    /// Values of the prototype. Our runs do not reach the paper's largest sin φ of 0.6 (derivation).
     pub(crate) numbers: &'static DrainNumbers,
     /// Number of bins of |I₀| whose worst error is tested. A further bin in `bins` of [`PaperSize`] is tested by its
     /// mean over the whole steady flow, because it contains few elements, all above the slit.
     pub(crate) bins: usize,
-    /// Another draining silo, whose curve of φ against |I₀| is compared. If present, the curves of φ against |E| of all
-    /// `others` are compared too.
+    /// Draining silo whose curve of φ against |I₀| is compared. The curves of `others` against |E| are compared then.
     pub(crate) beside: Option<&'static ComparedFlow>,
     /// Other flows, for figures and for the curves of φ against |E|.
     pub(crate) others: &'static [ComparedFlow],
 }
 
-fn tangent() -> Control {
-    Control::misread("tan φ for sin φ", ensemble::tangent)
-}
+const TANGENT: Control = Control::misread("tan φ for sin φ", ensemble::tangent);
 
 /// Suffix that distinguishes quantities at the paper's size from those at a tenth of this size.
 const SUFFIX: &str = ", size of the paper";
@@ -84,18 +80,13 @@ impl PaperSize {
         claim(format!("{quantity}{SUFFIX}"), unit).run(self.run())
     }
 
-    /// Starts a claim with a documented deviation of at most 0.02, whose reason is `reason`.
-    fn known(&self, quantity: &str, unit: &'static str, reason: &'static str) -> Quantity {
-        claim(format!("{quantity}{SUFFIX}"), unit).run(self.run().known(reason).up_to(0.02))
-    }
-
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let flow = if self.drained.is_some() { Flow::Drained } else { Flow::Pushed };
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
             self.claim(quantity, "deg")
                 .equals_cited(cited, cited.value, move |done| ensemble::angle(&done[0], averaged))
                 .within(asked(allowed / cited.value, TENTH))
-                .refuses(ensemble::stress_elsewhere())
+                .refuses(ensemble::STRESS_ELSEWHERE)
         };
         let mut all = vec![
             self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
@@ -106,7 +97,7 @@ impl PaperSize {
                 .within(exactly(
                     "required in advance: the source states the range but not the fraction of elements in it",
                 ))
-                .refuses(tangent()),
+                .refuses(TANGENT),
             angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
         // In a pushed silo, only few blocks flow in all twenty frames of a window.
@@ -124,27 +115,28 @@ impl PaperSize {
             one("packing fraction of the deposit")
                 .equals_cited(paper::DEPOSIT, 1.0, |done| ensemble::deposit(&done[0]))
                 .within(asked(0.005, "63.5 % ± .5; in units of φ"))
-                .refuses(ensemble::larger_radii()),
+                .refuses(ensemble::LARGER_RADII),
             over_inertia(
                 one(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 14 τ, worst")),
                 bins,
                 PROTOTYPE,
-                ensemble::density_of_one(),
+                ensemble::DENSITY_OF_ONE,
             ),
             over_inertia(
-                self.known(&format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst"), "1", STRAINED),
+                claim(format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst{SUFFIX}"), "1")
+                    .run(self.run().known(STRAINED).up_to(0.02)),
                 bins,
                 f64::INFINITY,
-                ensemble::without_the_end(),
+                ensemble::WITHOUT_THE_END,
             ),
             one("packing fraction of tracers strained by more than .4")
                 .equals_cited(drained.numbers.plateau, 1.0, |done| ensemble::plateau(&done[0]))
                 .within(asked(0.008, TENTH))
-                .refuses(ensemble::larger_radii()),
+                .refuses(ensemble::LARGER_RADII),
             one("largest sin φ of tracers before they dilate, median")
                 .equals_cited(drained.numbers.onset, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
-                .refuses(tangent()),
+                .refuses(TANGENT),
         ];
         if let [last] = over_the_slit {
             all.push(
@@ -154,7 +146,7 @@ impl PaperSize {
                         Ok(Measurement::new(fastest.ok_or("elements so fast")?, last.value, 1.0))
                     })
                     .within(asked(0.008, "two runs of the prototype differ by .005 to .008; in units of φ"))
-                    .refuses(ensemble::larger_radii()),
+                    .refuses(ensemble::LARGER_RADII),
             );
         }
         if let Some(other) = drained.beside {

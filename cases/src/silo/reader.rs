@@ -21,8 +21,7 @@ pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin 
 
 /// Number of frames whose stresses and motions are averaged in a window.
 const WINDOW: usize = 20;
-/// Largest number of stored rows of elements, and of blocks in single frames. For larger runs, only some frames are
-/// stored.
+/// Largest number of stored rows of elements, and of blocks in single frames. Larger runs skip frames.
 const MOST_ROWS: usize = 30_000;
 /// Plane in which rotations of axes are measured: x and z.
 const PLANE: [usize; 2] = [0, 2];
@@ -65,8 +64,7 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
     })
 }
 
-/// First columns of the table of elements; [`QUANTITIES`] follow. `side` is 1 at the walls in x. The floor does not
-/// count as a side.
+/// First columns of the table of elements; [`QUANTITIES`] follow. `side` is 1 at the walls in x, not at the floor.
 const PLACED: [&str; 5] = ["time", "x", "z", "side", "surface"];
 /// Quantities of elements, by their names in [`COLUMNS`].
 const QUANTITIES: [&str; 8] = [
@@ -265,8 +263,7 @@ fn is_side(grid: &Grid, cell: usize) -> bool {
     column == 0 || column + 1 == grid.count[0]
 }
 
-/// Returns the element whose stress and velocity gradient are means over some frames. A tensor is missing if the block
-/// lacks it in any of these frames.
+/// Returns the element with mean stress and velocity gradient, if the block has them in all of these frames.
 fn mean(frames: &[Vec<Element>], cell: usize) -> Element {
     let all: Vec<&Element> = frames.iter().map(|frame| &frame[cell]).collect();
     let count = all.len() as f64;
