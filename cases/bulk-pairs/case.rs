@@ -25,32 +25,23 @@ const PAIRS: [(&str, &str); 8] = [
     ("m2-wall", "M2 on a wall of steel"),
 ];
 
+/// Returns the claims on the force m Δv/Δt and on the torque I Δω/Δt on the first grain of a pair, over all steps.
 fn claims() -> Vec<Claim> {
-    PAIRS.into_iter().flat_map(|(variant, about)| [force(variant, about), torque(variant, about)]).collect()
-}
-
-fn runs(variant: &'static str) -> [Run; 2] {
-    SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution))
-}
-
-/// Returns the claim on the force m Δv/Δt on the first grain of a pair, over all steps.
-fn force(variant: &'static str, about: &str) -> Claim {
-    let allowed = same_cycle("in units of the largest force");
-    let control = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
-    row(&format!("force, {about}, worst"), "N", allowed, runs(variant), control, |done| {
-        let grain = &done[0].scene.grains[0];
-        rate(done, &["a.vx", "a.vz"], grain.mass)
-    })
-}
-
-/// Returns the claim on the torque I Δω/Δt on the first grain of a pair, over all steps.
-fn torque(variant: &'static str, about: &str) -> Claim {
-    let allowed = same_cycle("in units of the largest torque");
-    let control = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
-    row(&format!("torque, {about}, worst"), "N m", allowed, runs(variant), control, |done| {
-        let grain = &done[0].scene.grains[0];
-        rate(done, &["a.omega_y"], grain.inertia)
-    })
+    let of_pair = |(variant, about): (&'static str, &str)| {
+        let runs = || SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution));
+        let stiffer = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
+        let rougher = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
+        let [of_force, of_torque] = ["in units of the largest force", "in units of the largest torque"].map(same_cycle);
+        [
+            row(&format!("force, {about}, worst"), "N", of_force, runs(), stiffer, |done| {
+                rate(done, &["a.vx", "a.vz"], done[0].scene.grains[0].mass)
+            }),
+            row(&format!("torque, {about}, worst"), "N m", of_torque, runs(), rougher, |done| {
+                rate(done, &["a.omega_y"], done[0].scene.grains[0].inertia)
+            }),
+        ]
+    };
+    PAIRS.into_iter().flat_map(of_pair).collect()
 }
 
 /// Returns the largest difference between our rate and that of LIGGGHTS, in units of the largest rate of LIGGGHTS. A

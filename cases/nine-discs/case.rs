@@ -220,8 +220,7 @@ fn geometry() -> Claim {
         .refuses(Control::grains("mass off by a thousandth", |grain| grain.mass *= 1.001))
 }
 
-/// Sets a ramp of the same duration for each time step of the run: 40 steps of 0.1 of the critical step. The run ends
-/// ten periods of the slow mode after the ramp.
+/// Sets a ramp of 40 steps of 0.1 of the critical step, in seconds, and an end ten periods of the slow mode after it.
 fn fixed_ramp(scene: &mut Scene) {
     let modal = Modal::from_scene(scene);
     let ramp = RAMP_TIME / modal.rate.sqrt();
@@ -468,8 +467,7 @@ fn largest_turning(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(largest(turning(done)?.iter().copied()))
 }
 
-/// Returns the largest difference between the F_n of two runs while the walls rotate, divided by the largest F_n of the
-/// first run.
+/// Returns the largest difference of F_n between two runs while the walls rotate, over the largest F_n of the first.
 fn apart(a: &FinishedRun, b: &FinishedRun) -> Result<f64, MissingData> {
     let differences = turning(a)?.iter().zip(turning(b)?).map(|(a, b)| a - b);
     Ok(largest(differences) / largest_turning(a)?)

@@ -31,27 +31,15 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             all.push(Figure::forces(name, title, caption, force_plot(snapshot)));
         }
     }
-    all.push(damping(runner)?);
-    for (name, stiffness, variants, speeds) in [
-        ("speed-stiff", "1.35×10⁹", ["fast", "slow"], [0.12, 0.04]),
-        ("speed-soft", "1.5×10⁸", ["soft-fast", "soft-slow"], [0.36, 0.12]),
-    ] {
-        let title = format!("Effect of the loading speed, k_n = k_s = {stiffness} N/m");
-        all.push(speed(runner, name, &title, variants, speeds)?);
-    }
+    all.extend(after_the_walls_stop(runner)?);
     all.push(residual_over_step(runner)?);
-    for (name, angle, variants) in [
-        ("distortion-15deg", "15°", [DISTORTION[0], DISTORTION[1]]),
-        ("distortion-30deg", "30°", [DISTORTION[2], DISTORTION[3]]),
-    ] {
-        all.push(distortion(runner, name, angle, variants)?);
-    }
+    all.push(distortion(runner, "distortion-15deg", "15°", [DISTORTION[0], DISTORTION[1]])?);
+    all.push(distortion(runner, "distortion-30deg", "30°", [DISTORTION[2], DISTORTION[3]])?);
     all.push(convergence(runner)?);
     Ok(all)
 }
 
-/// Returns the force between centre and edge disc divided by its static value, against the number of cycles since the
-/// walls stopped.
+/// Returns the force between centre and edge disc over its static value, against cycles since the walls stopped.
 fn after_stop(done: &FinishedRun, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
     let phase = &done.scene.walls[0].motion.phases[0];
     let travel = phase.velocity.norm() * stop as f64 * done.record.provenance.time_step;
@@ -66,45 +54,47 @@ fn after_stop(done: &FinishedRun, stop: u64, cycles: usize) -> Vec<(f64, f64)> {
         .collect()
 }
 
-fn damping(runner: &Runner) -> Result<Figure, RunError> {
-    let run = |variant| runner.run(&Run::new(variant, "dem", FIGURE_STEP));
-    Ok(Figure::graph(
-        "damping",
-        "Effect of damping",
-        "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 6. Without \
-         damping it oscillates about its static value F_eq. With contact and global damping it relaxes to F_eq.",
-        [Axis::linear("cycles after the walls stop"), Axis::linear("force between centre and edge F_n / F_eq (1)")],
-        vec![
-            Curve::new("1: no damping", Stroke::Line, after_stop(&run("fast")?, 40, 160)),
-            Curve::new("2: contact and global damping", Stroke::Line, after_stop(&run("damped-fast")?, 40, 160)),
-        ],
-    ))
-}
-
-fn speed(
-    runner: &Runner,
-    name: &str,
-    title: &str,
-    variants: [&'static str; 2],
-    speeds: [f64; 2],
-) -> Result<Figure, RunError> {
-    let mut curves = Vec::new();
-    for ((variant, speed), stop) in variants.into_iter().zip(speeds).zip([40, 120]) {
-        let done = runner.run(&Run::new(variant, "dem", FIGURE_STEP))?;
-        curves.push(Curve::new(format!("walls at {speed} m/s"), Stroke::Line, after_stop(&done, stop, 160)));
+/// Returns the figures of the force between centre and edge disc. Each run has the cycle at which its walls stop.
+fn after_the_walls_stop(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+    const DAMPING: &str = "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 6. \
+                           Without damping it oscillates about its static value F_eq. With contact and global damping \
+                           it relaxes to F_eq.";
+    const SPEED: &str = "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 7. \
+                         Faster loading leaves a larger oscillation about the static value F_eq, with the same \
+                         frequency.";
+    let mut figures = Vec::new();
+    for (name, title, caption, runs) in [
+        (
+            "damping",
+            "Effect of damping",
+            DAMPING,
+            [("1: no damping", "fast", 40), ("2: contact and global damping", "damped-fast", 40)],
+        ),
+        (
+            "speed-stiff",
+            "Effect of the loading speed, k_n = k_s = 1.35×10⁹ N/m",
+            SPEED,
+            [("walls at 0.12 m/s", "fast", 40), ("walls at 0.04 m/s", "slow", 120)],
+        ),
+        (
+            "speed-soft",
+            "Effect of the loading speed, k_n = k_s = 1.5×10⁸ N/m",
+            SPEED,
+            [("walls at 0.36 m/s", "soft-fast", 40), ("walls at 0.12 m/s", "soft-slow", 120)],
+        ),
+    ] {
+        let mut curves = Vec::new();
+        for (label, variant, stop) in runs {
+            let done = runner.run(&Run::new(variant, "dem", FIGURE_STEP))?;
+            curves.push(Curve::new(label, Stroke::Line, after_stop(&done, stop, 160)));
+        }
+        let axes = ["cycles after the walls stop", "force between centre and edge F_n / F_eq (1)"].map(Axis::linear);
+        figures.push(Figure::graph(name, title, caption, axes, curves));
     }
-    Ok(Figure::graph(
-        name,
-        title,
-        "Normal force F_n between the centre disc and an edge disc after the walls stop, as in Fig. 7. Faster \
-         loading leaves a larger oscillation about the static value F_eq, with the same frequency.",
-        [Axis::linear("cycles after the walls stop"), Axis::linear("force between centre and edge F_n / F_eq (1)")],
-        curves,
-    ))
+    Ok(figures)
 }
 
-/// Returns the figure of the amplitude of oscillation after 40 cycles of loading, against the time step. The paper does
-/// not print its time step.
+/// Returns the figure of the residual amplitude against the time step, which the paper does not print.
 fn residual_over_step(runner: &Runner) -> Result<Figure, RunError> {
     let scene = runner.scene(&Run::new("kappa-1", "dem", FIGURE_STEP))?;
     let modal = Modal::from_scene(&scene);

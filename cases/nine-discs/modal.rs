@@ -16,8 +16,7 @@ pub(crate) struct Modal {
     pub(crate) rate: f64,
 }
 
-/// Inward displacement of the edge disc (a) and of the corner disc along each axis (b), as fractions of the wall
-/// travel.
+/// Inward displacements of the edge disc (a) and of the corner disc (b), as fractions of the wall travel.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct InwardDisplacements {
     pub(crate) edge: f64,

@@ -13,6 +13,13 @@ const BETWEEN: [&str; 4] =
 const AT_WALLS: [&str; 3] = ["wall-edge.normal_force", "wall-corner.normal_force", "wall-corner.shear_force"];
 
 pub(super) fn claims() -> Vec<Claim> {
+    // Positions are in units of the travel of the walls.
+    let over_all_cycles = |variant, pair| {
+        let quantity = "position over all cycles, worst";
+        row(quantity, "m", rounded(variant), runs(variant, pair), stiffer(), |done| {
+            worst(done, &POSITIONS, travel(&done[0]))
+        })
+    };
     let positions = MODAL.into_iter().flat_map(|variant| PAIRS.map(|pair| over_all_cycles(variant, pair)));
     // LIGGGHTS moves walls as meshes and does not report the wall force on each disc.
     let forces = [
@@ -27,14 +34,6 @@ fn runs(variant: &'static str, pair: [&'static str; 2]) -> [Run; 2] {
     pair.map(|solver| discs_for(pair[1], Run::new(variant, solver, STEP)))
 }
 
-/// Returns the claim on the positions over all cycles, in units of the travel of the walls.
-fn over_all_cycles(variant: &'static str, pair: [&'static str; 2]) -> Claim {
-    let quantity = "position over all cycles, worst";
-    row(quantity, "m", rounded(variant), runs(variant, pair), stiffer(), |done| {
-        worst(done, &POSITIONS, travel(&done[0]))
-    })
-}
-
 /// Returns the claim on contact forces, in units of k_n δ with the travel δ of the walls.
 fn forces(pair: [&'static str; 2], quantity: &str, columns: &'static [&'static str]) -> Claim {
     let unit = |done: &FinishedRun| {
@@ -47,9 +46,8 @@ fn forces(pair: [&'static str; 2], quantity: &str, columns: &'static [&'static s
     })
 }
 
-/// Returns the claim on the positions while the walls rotate. The runs are undamped for two reasons: LAMMPS and LIGGGHTS
-/// have no mass-proportional damping, and a damped contact of LIGGGHTS depends on where one `run` command ends and the
-/// next begins.
+/// Returns the claim on the positions while the walls rotate, without damping. LAMMPS and LIGGGHTS have no global
+/// damping, and a damped contact of LIGGGHTS depends on where one `run` command ends and the next begins.
 fn while_walls_turn(pair: [&'static str; 2]) -> Claim {
     fn undamped(scene: &mut Scene) {
         scene.global_damping = 0.0;

@@ -52,85 +52,70 @@ impl Impact {
     }
 }
 
-/// Measured quantity with its name, unit, column and exact value. `given` returns the change due to the impulse, to
-/// which errors are relative.
-struct Quantity {
-    name: &'static str,
-    unit: &'static str,
-    column: &'static str,
-    exact: fn(&Impact) -> f64,
-    given: fn(&Impact) -> f64,
-}
+/// Quantity of each grain: its name before and after the size of the grain, its unit and column, its exact value, and the
+/// change due to the impulse, to which errors are relative. Both functions take the index of the grain.
+type Quantity = ([&'static str; 2], &'static str, &'static str, GrainValue, GrainValue);
+type GrainValue = fn(&Impact, usize) -> f64;
 
-const QUANTITIES: [Quantity; 6] = [
-    Quantity {
-        name: "velocity of the small grain along the line of centres",
-        unit: "m/s",
-        column: "small.vx",
-        exact: |impact| impact.before[0] - impact.impulse[0] / impact.masses[0],
-        given: |impact| impact.impulse[0] / impact.masses[0],
-    },
-    Quantity {
-        name: "velocity of the large grain along the line of centres",
-        unit: "m/s",
-        column: "large.vx",
-        exact: |impact| impact.impulse[0] / impact.masses[1],
-        given: |impact| impact.impulse[0] / impact.masses[1],
-    },
-    Quantity {
-        name: "velocity of the small grain across it",
-        unit: "m/s",
-        column: "small.vy",
-        exact: |impact| impact.before[1] - impact.impulse[1] / impact.masses[0],
-        given: |impact| impact.impulse[0] / impact.masses[0],
-    },
-    Quantity {
-        name: "velocity of the large grain across it",
-        unit: "m/s",
-        column: "large.vy",
-        exact: |impact| impact.impulse[1] / impact.masses[1],
-        given: |impact| impact.impulse[0] / impact.masses[1],
-    },
-    Quantity {
-        name: "spin of the small grain",
-        unit: "rad/s",
-        column: "small.omega",
-        exact: |impact| -impact.impulse[1] * impact.radii[0] / impact.inertias[0],
-        given: |impact| impact.impulse[1] * impact.radii[0] / impact.inertias[0],
-    },
-    Quantity {
-        name: "spin of the large grain",
-        unit: "rad/s",
-        column: "large.omega",
-        exact: |impact| -impact.impulse[1] * impact.radii[1] / impact.inertias[1],
-        given: |impact| impact.impulse[1] * impact.radii[1] / impact.inertias[1],
-    },
+const QUANTITIES: [Quantity; 3] = [
+    (
+        ["velocity", " along the line of centres"],
+        "m/s",
+        "vx",
+        |impact, at| match at {
+            0 => impact.before[0] - impact.impulse[0] / impact.masses[0],
+            _ => impact.impulse[0] / impact.masses[1],
+        },
+        |impact, at| impact.impulse[0] / impact.masses[at],
+    ),
+    (
+        ["velocity", " across it"],
+        "m/s",
+        "vy",
+        |impact, at| match at {
+            0 => impact.before[1] - impact.impulse[1] / impact.masses[0],
+            _ => impact.impulse[1] / impact.masses[1],
+        },
+        |impact, at| impact.impulse[0] / impact.masses[at],
+    ),
+    (
+        ["spin", ""],
+        "rad/s",
+        "omega",
+        |impact, at| -impact.impulse[1] * impact.radii[at] / impact.inertias[at],
+        |impact, at| impact.impulse[1] * impact.radii[at] / impact.inertias[at],
+    ),
 ];
 
 fn claims() -> Vec<Claim> {
-    VARIANTS.into_iter().flat_map(|variant| QUANTITIES.iter().map(move |quantity| row(variant, quantity))).collect()
+    let of_quantity =
+        |variant, quantity| ["small", "large"].into_iter().enumerate().map(move |grain| row(variant, quantity, grain));
+    let of_variant = |variant| QUANTITIES.into_iter().flat_map(move |quantity| of_quantity(variant, quantity));
+    VARIANTS.into_iter().flat_map(of_variant).collect()
 }
 
-fn row(variant: &'static str, quantity: &'static Quantity) -> Claim {
-    let flat = variant == "discs";
-    let spins = quantity.column.ends_with("omega");
-    let column = if spins && !flat { format!("{}_z", quantity.column) } else { quantity.column.to_owned() };
+fn row(
+    variant: &'static str,
+    ([name, place], unit, column, exact, given): Quantity,
+    (at, size): (usize, &str),
+) -> Claim {
+    let has_axis = column == "omega" && variant != "discs";
+    let probed = format!("{size}.{column}{}", if has_axis { "_z" } else { "" });
     let allowed = CASE.number(variant, |scene| {
         let impact = Impact::from_scene(scene);
-        impact.off * ((quantity.given)(&impact) / (quantity.exact)(&impact)).abs()
+        impact.off * (given(&impact, at) / exact(&impact, at)).abs()
     });
-    let along = quantity.column.ends_with("vx");
     let heavier = Control::scene("the large grain a hundredth heavier", |scene| scene.grains[1].mass *= 1.01);
-    claim(quantity.name, quantity.unit)
+    claim(format!("{name} of the {size} grain{place}"), unit)
         .run(Run::new(variant, "dem", LEVELS[1].resolution))
         .equals(Source::Derived("momentum, restitution 1 and Coulomb's limit throughout (derivation)"), move |done| {
-            Ok(Measurement::relative(done[0].last(&column)?, (quantity.exact)(&Impact::from_scene(&done[0].scene))))
+            Ok(Measurement::relative(done[0].last(&probed)?, exact(&Impact::from_scene(&done[0].scene), at)))
         })
         .within(computed(
             allowed,
             "the line of centres turns by α during contact, α (1 + u/v); lever arms are between R and R − δ/2; contact \
              begins and ends within a step, (ωΔt)²/8; all relative to the impulse",
         ))
-        .refuses(if along { heavier } else { stronger_friction() })
+        .refuses(if column == "vx" { heavier } else { stronger_friction() })
         .fair_to_any_springs()
 }
