@@ -96,8 +96,7 @@ fn peak(values: &[f64]) -> f64 {
     if bend < 0.0 { top - (right - left).powi(2) / (8.0 * bend) } else { top }
 }
 
-/// Returns the time (s) at which the overlap ends. The overlap of the last sample in contact is extrapolated to zero,
-/// at the rate at which it decreased since the sample before.
+/// Returns the time (s) at which the overlap ends, extrapolated from the last two samples in contact.
 fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
     let overlap = done.column("contact.overlap")?;
     let time = &done.series().time;
@@ -228,8 +227,7 @@ fn tangential(done: &FinishedRun) -> Result<f64, MissingData> {
     Ok(done.last("a.vx")? / done.scene.grains[0].velocity.x)
 }
 
-/// Returns the tangential restitution and the spin (rad/s) after an impact that slides throughout, with the normal
-/// impulse ∫F_n dt = m(1+e)v.
+/// Returns tangential restitution and spin (rad/s) after sliding throughout, for the normal impulse m(1+e)v.
 fn sliding(scene: &Scene) -> (f64, f64) {
     let meeting = ImpactParameters::from_scene(scene);
     let [along, spin] = meeting.after(scene, 1.0 + meeting.restitution);

@@ -51,8 +51,7 @@ pub(super) fn claims() -> Vec<Claim> {
     claims.into_iter().map(asked).collect()
 }
 
-/// Makes a claim solver-independent. The time step is three times as long as in our own claims, because external
-/// solvers may take a thousand times our run time.
+/// Makes a claim solver-independent, with a longer time step, because external solvers may be a thousand times slower.
 fn asked(mut claim: Claim) -> Claim {
     for run in claim.runs.iter_mut().filter(|run| run.resolution == STEP.resolution) {
         *run = run.at(LEVELS[1].resolution);
@@ -69,8 +68,7 @@ fn scene(run: &Run) -> Option<Scene> {
     Some(scene)
 }
 
-/// Returns the largest overlap of the elastic impact, divided by the smallest radius. Lever arms of friction between R
-/// and R − overlap differ by this fraction.
+/// Returns the largest overlap over the smallest radius, the relative difference of lever arms of friction.
 fn depth(run: &Run) -> f64 {
     let relative_depth = |scene: &Scene| {
         let radius = scene.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
@@ -79,8 +77,7 @@ fn depth(run: &Run) -> f64 {
     scene(run).as_ref().map_or(0.0, relative_depth)
 }
 
-/// Returns the overlap (m) at each sample. It is the displacement of the first sphere since first contact, or twice
-/// this displacement if two equal spheres collide.
+/// Returns the overlap (m) at each sample, from the displacement of one or of two equal spheres since first contact.
 fn overlap(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let times = done.scene.grains.len() as f64;
     let start = done.scene.grains[0].position.z;
@@ -117,9 +114,8 @@ fn normal(variant: &'static str) -> [Claim; 3] {
     ]
 }
 
-/// Returns the claim on the coefficient of restitution of test 3. The scene prescribes the damping ratio. In some
-/// external solvers the dashpot may pull, and in others the contact ends at zero force. The claim accepts the
-/// coefficient of either case.
+/// Returns the claim on the coefficient of restitution of test 3 for the damping ratio of the scene. The dashpot of
+/// some external solvers may pull, and with others the contact ends at zero force. The claim accepts both coefficients.
 fn given_back(run: Run) -> Claim {
     let words = run.adjustment.as_ref().map_or("of the scene", |(name, _)| name);
     claim(format!("rebound velocity over impact velocity, {words}, or of a release at zero force"), "1")
@@ -136,12 +132,6 @@ fn given_back(run: Run) -> Claim {
         .refuses(Control::contact_law("damping × 1.2", |law| law.damping_ratio *= 1.2))
 }
 
-/// Returns the normal impulse on the first sphere (N s).
-fn normal_impulse(done: &FinishedRun) -> Result<f64, MissingData> {
-    let grain = &done.scene.grains[0];
-    Ok(grain.mass * (done.last("a.vz")? - grain.velocity.z))
-}
-
 /// Returns the claims on a contact that slides throughout: the loss of tangential velocity and the spin, computed from
 /// the measured normal impulse. The claim on the rebound tests the normal impulse itself.
 fn sliding(run: &Run) -> [Claim; 2] {
@@ -151,8 +141,9 @@ fn sliding(run: &Run) -> [Claim; 2] {
         claim(format!("{quantity} after sliding, {words}"), unit)
             .run(run.clone())
             .equals(SLIDING, move |done| {
-                let stopping = ImpactParameters::from_scene(&done[0].scene).stopping;
-                change(&done[0], at, normal_impulse(&done[0])? / stopping)
+                let (scene, grain) = (&done[0].scene, &done[0].scene.grains[0]);
+                let impulse = grain.mass * (done[0].last("a.vz")? - grain.velocity.z);
+                change(&done[0], at, impulse / ImpactParameters::from_scene(scene).stopping)
             })
             .within(allowed)
             .refuses(control)
@@ -200,8 +191,7 @@ fn coulomb(run: Run) -> Claim {
         .refuses(more_friction())
 }
 
-/// Returns the claim that angular momentum about the contact is conserved, for sticking and for sliding: I Δω = −a m Δv
-/// with the lever arm a of friction.
+/// Returns the claim that angular momentum about the contact is conserved: I Δω = −a m Δv with the arm a of friction.
 fn lever(run: Run, times: f64) -> Claim {
     let allowed = computed(
         times * depth(&run) + FIRST_ORDER,
@@ -225,8 +215,7 @@ fn lever(run: Run, times: f64) -> Claim {
         .refuses(wrong_inertia())
 }
 
-/// Returns the claims that the momentum changes of test 8 are equal and opposite, although one sphere is 125,000 times
-/// as heavy.
+/// Returns the claims that momentum changes of test 8 are opposite, although one sphere is 125,000 times as heavy.
 fn momentum(run: &Run) -> [Claim; 2] {
     let momentum_claim = |quantity: &str, columns: [&'static str; 2], axis: usize| {
         claim(quantity, "kg m/s")

@@ -7,8 +7,7 @@ use grainbench_harness::prelude::*;
 /// Impact parameters of the first grain of a scene against the second grain or the plane.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct ImpactParameters {
-    /// Velocity along x of the first grain's surface relative to the partner's surface, s = v_a − ω_a R_a − v_b − ω_b
-    /// R_b (m/s).
+    /// Slip velocity of the first grain's surface on the partner, s = v_a − ω_a R_a − v_b − ω_b R_b, along x (m/s).
     pub(super) slip: f64,
     /// Impulse m* v_n that stops the approach (N s).
     pub(super) stopping: f64,
@@ -18,8 +17,7 @@ pub(super) struct ImpactParameters {
     pub(super) restitution: f64,
     /// Coefficient of restitution e′ of a contact that ends as soon as its force is zero.
     pub(super) early: f64,
-    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force, divided by the growth rate of the Coulomb
-    /// limit of the normal spring force.
+    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the spring's Coulomb limit.
     pub(super) steepness: f64,
 }
 
@@ -63,8 +61,7 @@ impl ImpactParameters {
         -self.slip.signum() * self.friction * factor * self.stopping
     }
 
-    /// Returns the velocity along x (m/s) and the spin (rad/s) of the first grain after the impulse of
-    /// [`Self::impulse`], which acts at the distance R.
+    /// Returns velocity along x (m/s) and spin (rad/s) of the first grain after [`Self::impulse`] at the distance R.
     pub(super) fn after(&self, scene: &Scene, factor: f64) -> [f64; 2] {
         let (grain, impulse) = (&scene.grains[0], self.impulse(factor));
         [grain.velocity.x + impulse / grain.mass, grain.spin.y - impulse * grain.radius / grain.inertia]
@@ -75,8 +72,7 @@ impl ImpactParameters {
 pub(super) const ALONG_AND_SPIN: [(&str, &str, &str); 2] =
     [("velocity along the contact", "m/s", "a.vx"), ("spin", "rad/s", "a.omega_y")];
 
-/// Compares one of the quantities of [`ALONG_AND_SPIN`] after the impact with [`ImpactParameters::after`], in units of its
-/// change.
+/// Compares a quantity of [`ALONG_AND_SPIN`] with [`ImpactParameters::after`], in units of its change.
 pub(super) fn change(done: &FinishedRun, at: usize, factor: f64) -> Result<Measurement, MissingData> {
     let scene = &done.scene;
     let after = ImpactParameters::from_scene(scene).after(scene, factor)[at];

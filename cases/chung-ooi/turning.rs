@@ -41,9 +41,8 @@ pub(super) fn claims() -> Vec<Claim> {
     runs.chain(BALLS.map(|variant| spinning(variant, 12.0))).flat_map(|run| sharp(&run)).collect()
 }
 
-/// Returns the claims on velocity and spin after a sliding contact. With Cundall & Strack's limit, which applies to the
-/// spring, friction has the impulse μ(1+e) m* v_n. With a limit on spring and dashpot, the impulse lacks the part
-/// before the tangential spring is displaced.
+/// Returns the claims on velocity and spin after sliding. With Cundall & Strack's limit, friction has the impulse
+/// μ(1+e) m* v_n. A limit on spring and dashpot lacks the part before the tangential spring is displaced.
 fn sharp(run: &Run) -> Vec<Claim> {
     let is_plane = run.variant.starts_with('5');
     let sharp_claims =
@@ -74,8 +73,7 @@ fn sharp(run: &Run) -> Vec<Claim> {
     if is_plane { spring.to_vec() } else { [spring, pushing].concat() }
 }
 
-/// Returns the paper's figures of slip velocity after the impact over slip velocity before it, each divided by the normal
-/// velocity and, in test 5, by μ.
+/// Returns the paper's figures of slip after the impact over slip before it, each over v_n, and over μ in test 5.
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let slides = |done: &FinishedRun, friction: f64| -> Option<(f64, f64)> {
         let (grain, before) = (&done.scene.grains[0], ImpactParameters::from_scene(&done.scene));

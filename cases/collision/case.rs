@@ -24,6 +24,7 @@ fn claims() -> Vec<Claim> {
     }
     claims.extend(momentum());
     claims.extend(angular_momentum());
+    claims.extend(friction());
     claims.extend(by_impulses());
     claims.extend(DAMPED.into_iter().flat_map(|variant| programs::PAIRS.map(|pair| beside_program(variant, pair))));
     claims.push(force_that_moves());
@@ -48,8 +49,8 @@ fn by_impulses() -> Vec<Claim> {
                 law.normal_damping *= 1.05;
             }))
     };
-    let momentum = |axis| {
-        claim(along(axis), "kg m/s")
+    let momentum = |axis: (&'static str, usize)| {
+        claim(format!("momentum along {}, worst", axis.0), "kg m/s")
             .run(run("oblique"))
             .holds("equal and opposite impulses", move |done| worst_momentum(&done[0], axis))
             .within(rounding(1.0, "in units of the momentum of one grain"))
@@ -80,19 +81,16 @@ fn beside_program(variant: &'static str, pair: [&'static str; 2]) -> Claim {
     })
 }
 
-/// Columns of the momentum, each with the number of its axis.
-const AXES: [(&str, usize); 2] = [("all.momentum_x", 0), ("all.momentum_y", 1)];
-
-fn along((_, axis): (&str, usize)) -> String {
-    format!("momentum along {}, worst", ["x", "y"][axis])
-}
+/// Names of the axes, each with its number.
+const AXES: [(&str, usize); 2] = [("x", 0), ("y", 1)];
 
 /// Compares a momentum component with its initial value, in units of the first grain's momentum.
-fn worst_momentum(done: &FinishedRun, (column, axis): (&str, usize)) -> Result<Measurement, MissingData> {
+fn worst_momentum(done: &FinishedRun, (name, axis): (&str, usize)) -> Result<Measurement, MissingData> {
     let grains = &done.scene.grains;
     let start: f64 = grains.iter().map(|grain| grain.mass * grain.velocity[axis]).sum();
     let scale = grains[0].mass * grains[0].velocity.norm();
-    Ok(Measurement::worst(&done.series().time, done.column(column)?, |_| start, scale))
+    let momentum = done.column(&format!("all.momentum_{name}"))?;
+    Ok(Measurement::worst(&done.series().time, momentum, |_| start, scale))
 }
 
 /// Returns m v R of the first grain (kg m²/s).
@@ -164,9 +162,8 @@ fn force_that_moves() -> Claim {
         .refuses(Control::contact_law("damping × 1.001", |law| law.stiffness_damping *= 1.001))
 }
 
-/// Returns the claim on the contact force that LAMMPS or LIGGGHTS outputs. The program evaluates the contact again at
-/// output. Its dashpot then uses the velocity of the sample, half a step later than the velocity in the force that
-/// moved the grains.
+/// Returns the claim on the contact force that LAMMPS or LIGGGHTS evaluates again at output. Its dashpot uses the
+/// velocity of the sample, half a step later than in the force that moved the grains.
 fn force_that_is_printed(pair: [&'static str; 2]) -> Claim {
     let control = Control::ours("discs 1e-6 nearer to each other in ours", |scene| scene.grains[0].position.x += 1e-6);
     let because = "rounding only, because both programs use the same integration cycle; in units of the largest force \
@@ -250,7 +247,7 @@ fn oblique(quantity: impl Into<String>, unit: &'static str, solver: &'static str
 
 fn momentum() -> Vec<Claim> {
     let momentum_claim = |axis: (&'static str, usize)| {
-        oblique(along(axis), "kg m/s", "dem")
+        oblique(format!("momentum along {}, worst", axis.0), "kg m/s", "dem")
             .holds("equal and opposite forces", move |done| worst_momentum(&done[0], axis))
             .within(oblique_rounding(
                 2.0,
@@ -273,7 +270,7 @@ fn initial_angular_momentum(scene: &Scene) -> f64 {
 
 fn angular_momentum() -> Vec<Claim> {
     const ROUNDING: &str = "rounding of two positions, two velocities and two spins by ε per step; in units of m v R";
-    let mut claims = vec![
+    vec![
         oblique("angular momentum, arm R − overlap/2, worst", "kg m²/s", "dem:liggghts")
             .holds("tangential forces act at one point (derivation)", |done| worst_angular_momentum(&done[0]))
             .within(oblique_rounding(6.0, ROUNDING))
@@ -291,40 +288,31 @@ fn angular_momentum() -> Vec<Claim> {
             })
             .within(oblique_rounding(6.0, ROUNDING))
             .refuses(Control::solver("torque arm R − overlap/2", "dem:liggghts")),
-        at_the_limit(),
-    ];
-    claims.extend(coulomb());
-    claims
+    ]
 }
 
 /// Reason for the tolerance of the spin.
 const OF_SPIN: &str = "rounding of the spin, at most 1.5 times its change, and of the sum, by ε per step";
 
-/// Compares the change of the first disc's spin with R/I times an impulse of friction (N s), in units of this value. Friction
-/// turns both discs clockwise.
+/// Compares the change of the first disc's spin with −R/I times an impulse of friction (N s), in units of this value.
 fn spin_of_friction(done: &FinishedRun, impulse: f64) -> Result<Measurement, MissingData> {
     let grain = &done.scene.grains[0];
     Ok(Measurement::relative(done.last("a.omega")? - grain.spin.z, -impulse * grain.radius / grain.inertia))
 }
 
-/// Returns the claim on the spin of the first disc in the oblique impact, in which friction is at the Coulomb limit in
-/// each step. In Cundall & Strack (1979), the limit applies to the spring force alone.
-fn at_the_limit() -> Claim {
-    oblique("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s", "dem:1979")
-        .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
-            let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
-            let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
-            let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
-            spin_of_friction(&done[0], limit)
-        })
-        .within(oblique_rounding(3.0, OF_SPIN))
-        .refuses(Control::without(Effect::Friction))
-}
-
-/// Returns the claims that our solver satisfies Coulomb's law |F_s| ≤ μ F_n with the total F_n, and has no friction
-/// while F_n pulls.
-fn coulomb() -> Vec<Claim> {
-    vec![
+/// Returns the claims on friction in the oblique impact, in which it is at the Coulomb limit in each step. In Cundall &
+/// Strack (1979), the limit applies to the spring force alone; in our solver, to the total F_n if it pushes.
+fn friction() -> [Claim; 3] {
+    [
+        oblique("spin that friction gives the first disc, against R μ Σ k_n overlap Δt/I", "rad/s", "dem:1979")
+            .equals(Source::Derived("Coulomb's limit at every step (derivation)"), |done| {
+                let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();
+                let overlap: f64 = done[0].column("contact.overlap")?.iter().sum();
+                let limit = law.friction * law.normal_stiffness() * overlap * done[0].record.provenance.time_step;
+                spin_of_friction(&done[0], limit)
+            })
+            .within(oblique_rounding(3.0, OF_SPIN))
+            .refuses(Control::without(Effect::Friction)),
         oblique("|F_s| − μ F_n where it pushes, largest over the impact, over the largest μ F_n", "1", "dem")
             .at_most(0.0, Source::Derived("Coulomb's law, |F_s| ≤ μ max(F_n, 0) (derivation)"), |done| {
                 let law = done[0].scene.laws.iter().flatten().next().copied().unwrap_or_default();

@@ -69,8 +69,7 @@ fn in_contact(stiffness: f64) -> f64 {
 /// Student's t of 23 degrees of freedom at 99 %.
 const STUDENT: f64 = 2.807;
 
-/// Returns the 99 % interval of the difference between one run and the mean of the prototype's 24 runs, relative to the
-/// cooling rate.
+/// Returns the 99 % interval between one run and the mean of the prototype's 24 runs, relative to the cooling rate.
 fn interval() -> f64 {
     STUDENT * SPREAD.value / COOLING_RATE.value * (1.0 + 1.0 / 24.0_f64).sqrt()
 }
@@ -87,29 +86,19 @@ fn as_hard_discs(run: Run, stiffness: f64) -> Claim {
         .refuses(deader())
 }
 
-/// Name of the negative control in the comparisons with LAMMPS and LIGGGHTS.
-const LIVELIER: &str = "dashpots of e = .92 for .9";
-
-/// Returns the negative control of claims without LAMMPS and LIGGGHTS. Claims on the same run share one run of the
-/// control.
+/// Returns the negative control of claims without LAMMPS and LIGGGHTS. Claims on one run share one control run.
 fn deader() -> Control {
-    Control::scene("dashpots of e = .86 for .9", |scene| {
-        damp(scene, 0.86);
+    Control::scene("dashpots of e = .86 for .9", damped(0.86))
+}
+
+/// Returns a change of the coefficient of restitution. It also shortens the run, which still shows the wrong slope.
+fn damped(restitution: f64) -> impl Fn(&mut Scene) + Send + Sync + 'static {
+    move |scene| {
+        // ζ = −ln e/√(π² + ln² e).
+        let ratio = -restitution.ln() / PI.hypot(restitution.ln());
+        scene.change_laws(|law| law.damping_ratio = ratio);
         scene.duration = Duration::Seconds(CONTROL_END);
-    })
-}
-
-/// Changes the dashpots to e = 0.92 and shortens the run, which remains long enough to detect the wrong slope.
-fn livelier(scene: &mut Scene) {
-    damp(scene, 0.92);
-    scene.duration = Duration::Seconds(CONTROL_END);
-}
-
-/// Sets the dashpots to a coefficient of restitution.
-fn damp(scene: &mut Scene, restitution: f64) {
-    // ζ = −ln e/√(π² + ln² e).
-    let ratio = -restitution.ln() / PI.hypot(restitution.ln());
-    scene.change_laws(|law| law.damping_ratio = ratio);
+    }
 }
 
 fn claims() -> Vec<Claim> {
@@ -133,8 +122,9 @@ fn claims() -> Vec<Claim> {
             STUDENT * SPREAD.value / COOLING_RATE.value * 2.0_f64.sqrt(),
             "the 99 % interval of the difference of two runs, t s √2 with s of 24 seeds",
         );
-        let runs = pair.map(|solver| run(PLAIN, solver));
-        claims.push(row("cooling rate", "1/(s √J)", allowed, runs, Control::ours(LIVELIER, livelier), |done| {
+        let runs = || pair.map(|solver| run(PLAIN, solver));
+        let control = Control::ours("dashpots of e = .92 for .9", damped(0.92));
+        claims.push(row("cooling rate", "1/(s √J)", allowed, runs(), control, |done| {
             let theirs = cooling_rate(&done[1])?;
             Ok(Measurement::relative(cooling_rate(&done[0])?, theirs))
         }));
@@ -147,9 +137,8 @@ fn claims() -> Vec<Claim> {
             scene.change_laws(|law| law.damping_ratio *= 1.001);
             scene.duration = Duration::Seconds(FORETOLD);
         });
-        let runs = pair.map(|solver| run(PLAIN, solver));
         let quantity = format!("kinetic energy over the first {FORETOLD} s, worst");
-        claims.push(row(&quantity, "J", allowed, runs, control, |done| {
+        claims.push(row(&quantity, "J", allowed, runs(), control, |done| {
             let (ours, theirs) = (done[0].column(ENERGY)?, done[1].column(ENERGY)?);
             let times = &done[1].series().time;
             let known = times.iter().take_while(|time| **time <= FORETOLD).count();

@@ -2,9 +2,8 @@
 //! rounding.
 
 use super::{DRUM, EARLY, ZONES, beside, counted, course, of_paper, published};
-use grainbench_harness::data::{Data, SceneDataError};
+use grainbench_harness::data::Data;
 use grainbench_harness::prelude::*;
-use std::path::Path;
 
 /// Time up to which runs are compared (s).
 const UNTIL: f64 = 0.5;
@@ -15,11 +14,11 @@ const ROUNDED: f64 = 3.000_003e-6;
 /// Twice the time step of the case (s).
 const TWICE: f64 = 6e-6;
 /// Drum of the paper up to the time [`UNTIL`].
-static SHORTER: Data = Data { name: "published-half", needs: super::PUBLISHED.needs, scene: shorter };
-
-fn shorter(folder: &Path) -> Result<Scene, SceneDataError> {
-    Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? })
-}
+static SHORTER: Data = Data {
+    name: "published-half",
+    needs: super::PUBLISHED.needs,
+    scene: |folder| Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? }),
+};
 
 fn with(step: f64) -> Run {
     Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER).read_by(ZONES).long().kept()

@@ -44,8 +44,7 @@ const REBOUND: [f64; 2] = [0.038, 0.050];
 /// Time at which heights of the ball are compared (s after the release of the ball).
 const DEEP: f64 = 0.030;
 
-/// Interval in which the whole path of the ball is compared with the codes (ms). Before this interval, beds differ
-/// mainly in the height of their surface.
+/// Interval of the comparison of paths (ms). Before it, beds differ mainly in the height of their surface.
 const SURE: (f64, f64) = (24.999, 50.001);
 
 /// Reason for the tolerance of one bed.
@@ -55,10 +54,12 @@ const BECAUSE: &str = "our packing is one more random sample: 2 √(s_code² + s
 const BECAUSE_FIVE: &str = "our packings are five more random samples: 2 √(s_code² + s_bed² (1/m + 1/n)), with m = 5 of our \
      beds and n = 10 published beds";
 
-/// Returns the tolerance for the difference of two beds of one code at 30 ms (mm), and its reason.
-fn of_two_beds() -> (f64, &'static str) {
-    let apart = 2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value;
-    (apart, "difference of two random beds, 2 √2 s_bed: only a larger change can be distinguished from another bed")
+/// Returns the tolerance for the difference of two beds of one code at 30 ms (mm).
+fn of_two_beds() -> Tolerance {
+    computed(
+        2.0 * std::f64::consts::SQRT_2 * dosta::HEIGHT_30_BED.value,
+        "difference of two random beds, 2 √2 s_bed: only a larger change can be distinguished from another bed",
+    )
 }
 
 fn on(variant: &'static str) -> Run {
@@ -131,7 +132,8 @@ fn claims() -> Vec<Claim> {
             .within(exactly("required in advance: two deviations contain nineteen of twenty random samples"))
             .refuses(half_the_density()),
         of_beds(on_all(), farthest_point, EACH, dosta::DEEPEST, lowest, deepest).refuses(smooth()),
-        of_beds(on_all(), mean_speed, MEAN, dosta::REBOUND, speed, rebound).refuses(at_rest()),
+        of_beds(on_all(), mean_speed, MEAN, dosta::REBOUND, speed, rebound)
+            .refuses(Control::scene("the ball released at rest", |scene| scene.grains[0].velocity *= 0.0)),
         of_beds(known, farthest_speed, EACH, dosta::REBOUND, speed, rebound).refuses(smooth()),
         claim("deviations that the mean of five beds is off the codes' mean, largest from 25 to 50 ms", "1")
             .runs(on_all())
@@ -151,8 +153,7 @@ fn claims() -> Vec<Claim> {
     [own, programs::claims(), ladders::claims(), hundred_thousand::claims(), shared::claims()].concat()
 }
 
-/// Two functions for several beds. The first combines the values of all beds and the expected value to one value. The
-/// second returns the tolerance.
+/// Functions that combine the values of several beds and the expected value, and that return the tolerance.
 type BedCombination = (fn(&[f64], f64) -> f64, fn(Spread) -> Tolerance);
 
 /// Mean of five beds, with the tolerance of a mean over five beds.
@@ -200,10 +201,6 @@ fn half_the_density() -> Control {
 fn lighten(scene: &mut Scene) {
     let (mass, inertia) = (0.5 * scene.grains[0].mass, 0.5 * scene.grains[0].inertia);
     (scene.grains[0].mass, scene.grains[0].inertia) = (mass, inertia);
-}
-
-fn at_rest() -> Control {
-    Control::scene("the ball released at rest", |scene| scene.grains[0].velocity *= 0.0)
 }
 
 fn smooth() -> Control {

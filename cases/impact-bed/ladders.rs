@@ -34,7 +34,6 @@ pub(super) fn claims() -> Vec<Claim> {
 
 /// Returns the claim that runs agree with their reference runs. Runs and reference runs alternate in `runs`.
 fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> ClaimWithTolerance {
-    let (allowed, because) = of_two_beds();
     claim(quantity, "mm")
         .runs(runs)
         .agrees(Source::Ourselves("the same with the step of the paper, or with steel"), |done| {
@@ -43,7 +42,7 @@ fn beside(quantity: &str, runs: impl IntoIterator<Item = Run>) -> ClaimWithToler
                 pairs.map(|pair| Ok(Measurement::new(at_30_ms(&pair[0])?, at_30_ms(&pair[1])?, 1.0))),
             )
         })
-        .within(computed(allowed, because))
+        .within(of_two_beds())
 }
 
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -6,8 +6,7 @@ use grainbench_reference::round_robin::{IMPACT, Spread};
 /// Number of published beds.
 pub(super) const PUBLISHED: usize = 10;
 
-/// Rows of time (s), mean height of the ball (mm), and standard deviations of the height between codes and between beds
-/// (mm), derived from the published data.
+/// Rows of time (s), mean height of the ball, and standard deviations of this height between codes and beds (mm).
 pub(super) static BEDS: std::sync::LazyLock<Vec<[f64; 4]>> = std::sync::LazyLock::new(|| {
     let mut table = csv::Reader::from_reader(IMPACT.as_bytes());
     let number = |row: &csv::StringRecord, place: usize| row.get(place)?.parse().ok();

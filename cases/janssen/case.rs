@@ -176,17 +176,17 @@ fn mobilised() -> Claim {
             },
         )
         .within(exactly("the limit itself"))
-        .refuses(Control::misread(TWICE, twice))
+        .refuses(twice())
 }
 
-const TWICE: &str = "the friction of the side counted twice";
-
-fn twice(tables: &mut [Table]) {
-    for table in tables {
-        if let Some(place) = table.columns.iter().position(|column| column == "shear") {
-            table.values[place].iter_mut().for_each(|shear| *shear *= 2.0);
+fn twice() -> Control {
+    Control::misread("the friction of the side counted twice", |tables| {
+        for table in tables {
+            if let Some(place) = table.columns.iter().position(|column| column == "shear") {
+                table.values[place].iter_mut().for_each(|shear| *shear *= 2.0);
+            }
         }
-    }
+    })
 }
 
 /// Returns the claim that the load on the floor follows Janssen's law with the measured mobilised friction. The
@@ -200,7 +200,7 @@ fn law(variant: &'static str, about: &str) -> Claim {
             Ok(Measurement::relative(on_floor(&done[0])?, expected))
         })
         .within(required(0.1, "required in advance: K is constant in the law but differs at the ends of the column"))
-        .refuses(Control::misread(TWICE, twice))
+        .refuses(twice())
 }
 
 fn saturates() -> Claim {

@@ -35,8 +35,7 @@ fn begin(scene: &Scene) -> Box<dyn Reader> {
 
 struct Column {
     scene: Scene,
-    /// Sums over snapshots for each slice: Σ Δz F_z, normal force on the side wall, vertical force on the side wall,
-    /// weight.
+    /// Sums over snapshots for each slice: Σ Δz F_z, normal and vertical force on the side wall, weight.
     sums: [[f64; 4]; SLICES],
     snapshots: usize,
 }

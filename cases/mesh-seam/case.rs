@@ -5,6 +5,7 @@ mod floors;
 use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
+use grainbench_scene::scene::WallShape;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 /// Time step (s): 1/65 of the critical time step.
@@ -57,8 +58,7 @@ fn rolls(floor: &'static str) -> Claim {
         .refuses(Control::grains("the inertia of a disc", |grain| grain.inertia *= 1.25))
 }
 
-/// Returns the claim that a flat mesh gives the result of a plane. The whole scene is rotated, so that the coordinates of
-/// the flat mesh have rounding errors.
+/// Returns the claim that a flat mesh, rotated so that its coordinates have rounding errors, is a plane.
 fn as_plane(floor: &'static str) -> Claim {
     let turned_run = |variant| Run::new(variant, "dem:lammps", STEP).adjusted("turned by 20°", floors::turned);
     claim(format!("position on a slant, {floor} and a plane, worst, over R"), "m")
@@ -116,7 +116,7 @@ fn held(at: &'static SeamPosition) -> Claim {
             "rounding of positions near 1 m, 2e-16 in each of three directions, relative to an overlap of 5 mm",
         ))
         .refuses(Control::scene("the plane of the face above for the cube", move |scene| {
-            floors::of_a_plane(scene);
+            scene.walls[0].shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };
             // On the upper face, the plane gives the right force, so the control also raises the sphere by 1e-9 m.
             scene.grains[0].position.z += 1e-9;
         }))

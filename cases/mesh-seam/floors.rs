@@ -18,8 +18,7 @@ fn rebuilt(mesh: &Mesh, change: impl Fn([Vector3<f64>; 3]) -> [Vector3<f64>; 3])
     Surface::new(&facets, reading).map_or_else(|_| mesh.clone(), Mesh::at_rest)
 }
 
-/// Rotates the whole scene including gravity by 20° about an axis that is oblique to the box. The coordinates of flat
-/// floors then have rounding errors.
+/// Rotates scene and gravity by 20° about an oblique axis, so that coordinates of floors have rounding errors.
 pub(super) fn turned(scene: &mut Scene) {
     let axis = Unit::new_normalize(Vector3::new(0.6, 0.7, 0.2));
     let turn = Rotation3::from_axis_angle(&axis, 20.0_f64.to_radians());
@@ -36,8 +35,7 @@ pub(super) fn turned(scene: &mut Scene) {
     }
 }
 
-/// Raises the part of a floor beyond a line on the sphere's path by a thousandth of the sphere's radius, for a negative
-/// control.
+/// Raises the floor beyond a line on the sphere's path by a thousandth of its radius, for a negative control.
 pub(super) fn with_a_step(scene: &mut Scene) {
     let height = 1e-3 * scene.grains[0].radius;
     for wall in &mut scene.walls {
@@ -61,11 +59,4 @@ pub(super) fn of_two_rectangles(scene: &mut Scene) {
     scene.walls[0].shape = half(-1.0 - 1e-6);
     second.shape = half(0.0);
     scene.walls.push(second);
-}
-
-/// Replaces the cube by the plane of its upper face, for a negative control.
-pub(super) fn of_a_plane(scene: &mut Scene) {
-    for wall in &mut scene.walls {
-        wall.shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };
-    }
 }

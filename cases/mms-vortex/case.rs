@@ -22,13 +22,9 @@ const fn level(name: &'static str, cells: f64) -> Level {
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::MMS_VORTEX };
 
-/// Ends the run at 0.5 s, when the rotation is largest.
-fn half(scene: &mut Scene) {
-    scene.duration = Duration::Seconds(0.5);
-}
-
+/// Returns the run up to 0.5 s, when the rotation is largest.
 fn run(solver: &'static str, level: Level) -> Run {
-    Run::new(PLAIN, solver, level.resolution).adjusted("to .5 s", half)
+    Run::new(PLAIN, solver, level.resolution).adjusted("to .5 s", |scene| scene.duration = Duration::Seconds(0.5))
 }
 
 fn claims() -> Vec<Claim> {

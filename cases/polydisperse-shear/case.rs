@@ -49,8 +49,7 @@ fn time_of(scene: &Scene, shear: f64) -> f64 {
     shear * width / speed
 }
 
-/// Ends the run at a mean shear. If `snapshots` is not zero, adds snapshots at the mean shears for which the paper
-/// shows force chains.
+/// Ends the run at a mean shear. If `snapshots` is not zero, adds snapshots at the shears of the paper's force chains.
 fn sheared(scene: &mut Scene, shear: f64, snapshots: u32) {
     scene.duration = Duration::Seconds(time_of(scene, shear));
     scene.snapshots = snapshots;
@@ -69,8 +68,7 @@ fn gained(done: &FinishedRun, name: &str) -> Result<f64, MissingData> {
     Ok(column[column.len() - 1] - column[0])
 }
 
-/// Compares the change of momentum with the impulse of the grains with prescribed motion, in units of the largest
-/// impulse.
+/// Compares the change of momentum with the impulse of the driven grains, in units of the largest impulse.
 fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let budget_column = |name: &str| done.column(&format!("budget.{name}"));
     let (mut worst, mut largest) = (0.0_f64, 0.0_f64);

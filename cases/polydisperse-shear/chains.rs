@@ -114,8 +114,7 @@ mod tests {
     use grainbench_scene::scene::Grain;
     use grainbench_solver::record::{ContactState, GrainState};
 
-    /// Checks that a row of four compressed discs is a chain, and that a disc that leans on the row with a small force
-    /// is not part of it.
+    /// Checks that a row of four compressed discs is a chain, without a disc that leans on it with a small force.
     #[test]
     fn a_pressed_row_is_a_chain() {
         let grain = |id: u32, x: f64, y: f64| {

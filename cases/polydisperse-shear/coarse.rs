@@ -10,13 +10,11 @@ use grainbench_harness::prelude::*;
 const CELLS: f64 = 75.0;
 /// Mean shear of the coarse slab.
 const SHEAR: f64 = 0.08;
-/// Number of steps to the shear [`SHEAR`]. In one step, a wave of 3356 m/s travels 0.4 of a cell, and the side moves at
-/// 100 m/s.
+/// Number of steps to [`SHEAR`]. In a step, a wave of 3356 m/s travels 0.4 of a cell. The side moves at 100 m/s.
 const STEPS: f64 = SHEAR * CELLS * 3356.0 / (0.4 * 100.0);
 /// Mean shear at which two slabs that must agree are compared.
 const BEGINNING: f64 = 0.01;
-/// Shift of all grains along the periodic axis, as a fraction of the period. A third of the period is 25 cells, so the
-/// grains keep their positions relative to the grid.
+/// Shift of all grains in periods: 25 cells, so the grains keep their positions relative to the grid.
 const MOVED: f64 = 1.0 / 3.0;
 
 pub(super) const MAKES_ENERGY: &str = "the 2000 criterion ends contact on separation, which adds energy if grains \
@@ -27,8 +25,7 @@ fn slab(solver: &'static str) -> Run {
     to_shear(Run::new("seed-1", solver, grid(CELLS)), SHEAR, 0).slow()
 }
 
-/// Returns the material and the two constants of its von Mises law (Pa). They belong to the scene of the case, also
-/// under a negative control.
+/// Returns material, yield stress and hardening modulus (Pa) of the case's scene, also under a control.
 fn yielding(done: &FinishedRun) -> Result<(Deformable, f64, f64), MissingData> {
     let deformable = done.scene.deformable.first().copied().flatten();
     match deformable.map(|deformable| (deformable, deformable.constitutive)) {
@@ -44,8 +41,7 @@ fn made_of(change: impl Fn(&mut Deformable) + Copy) -> impl Fn(&mut Scene) + Cop
     move |scene| scene.deformable.iter_mut().flatten().for_each(change)
 }
 
-/// Returns a change of the scene that also shortens the run to 0.4 of its duration, because its effect is visible long
-/// before the end.
+/// Returns a change that also shortens the run to 0.4 of its duration. Its effect is visible long before.
 fn early(change: impl Fn(&mut Scene) + Send + Sync + 'static) -> impl Fn(&mut Scene) + Send + Sync + 'static {
     move |scene| {
         change(scene);
@@ -65,9 +61,8 @@ fn with_yield(
     })
 }
 
-/// Compares the sum of all entries of the energy balance with the work of the walls, in units of this work. Elastic and
-/// plastic energy are computed from the state of each point and the constants of the scene: s:s/4G + σ_m²/2K and Y
-/// ε_p + H ε_p²/2 per volume.
+/// Compares the sum of all energies with the work of the walls, in units of this work. Elastic and plastic energy
+/// follow from the state of each point and the scene: s:s/4G + σ_m²/2K and Y ε_p + H ε_p²/2 per volume.
 fn unaccounted(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let (deformable, yield_stress, hardening) = yielding(done)?;
     let snapshot = measures::end(done)?;
@@ -128,8 +123,7 @@ fn overlaps(done: &FinishedRun) -> Result<[f64; 2], MissingData> {
     Ok([overlaps.iter().copied().fold(0.0, f64::max), overlaps.iter().sum::<f64>() / overlaps.len() as f64])
 }
 
-/// Returns the largest ratio of shear to normal force, over contacts between grains whose normal force exceeds the
-/// mean.
+/// Returns the largest ratio of shear to normal force, over grain contacts with more than the mean normal force.
 fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     let contacts = measures::end(done)?.told_contacts();
     let between = contacts.iter().filter(|contact| matches!(contact.partner, Partner::Grain(_)));
@@ -139,8 +133,7 @@ fn steepest(done: &FinishedRun) -> Result<f64, MissingData> {
     steepest.ok_or_else(|| "contacts between grains".into())
 }
 
-/// Returns the largest ratio of the von Mises stress to the flow stress Y + H ε_p, over points with a plastic strain
-/// above 0.01.
+/// Returns the largest ratio of von Mises stress to flow stress Y + H ε_p, over points with ε_p above 0.01.
 fn on_the_yield_surface(done: &FinishedRun) -> Result<f64, MissingData> {
     let (_, yield_stress, hardening) = yielding(done)?;
     let flowed = measures::end(done)?.points.iter().filter(|point| point.plastic_strain > 0.01);

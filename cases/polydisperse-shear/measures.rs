@@ -3,6 +3,7 @@
 
 use grainbench_fields::overlap::disc_in_box;
 use grainbench_harness::prelude::{FinishedRun, MissingData, mean};
+use grainbench_harness::statistics::mean_and_variance;
 use grainbench_solver::record::{GrainState, PointState, Snapshot};
 use std::collections::HashMap;
 
@@ -61,9 +62,8 @@ fn between(edges: [f64; 2], x: f64, radius: f64) -> f64 {
     disc_in_box(radius, [edges[0] - x, -radius], [edges[1] - x, radius])
 }
 
-/// Returns a pair for each column: its middle divided by the width, and the mean displacement of grains along the slab
-/// divided by the displacement of the moving side. The mean in a column is weighted by the area of grains in the
-/// column.
+/// Returns a pair for each column: its middle over the width, and the mean displacement of grains over that of the
+/// moving side. The mean is weighted by the area of grains in the column.
 pub(crate) fn profile(done: &FinishedRun, snapshot: &Snapshot) -> Vec<(f64, f64)> {
     let (moved, period, width) = (speed(done) * snapshot.time, period(done), width(done));
     let displacements: Vec<f64> = (snapshot.grains.iter().zip(&done.scene.grains))
@@ -174,8 +174,7 @@ pub(crate) fn fluctuation(done: &FinishedRun, force: &str) -> Result<f64, Missin
         blocks.last_mut().into_iter().for_each(|block| block.push(*force));
     }
     let means: Vec<f64> = blocks.iter().filter(|block| !block.is_empty()).map(|block| mean(block)).collect();
-    let mean = mean(&means);
-    let variance = means.iter().map(|force| (force - mean).powi(2)).sum::<f64>() / (means.len() as f64 - 1.0);
+    let (mean, variance) = mean_and_variance(&means);
     Ok(variance.sqrt() / mean.abs())
 }
 

@@ -27,8 +27,7 @@ const SHEAR_RATES: (f64, f64) = (0.0, 2e5);
 /// A slab with a description of its grains.
 pub(super) type Slab = (&'static str, FinishedRun);
 
-/// Returns the slab of grains on springs. In the long tier, also returns the slabs of plastic grains, with friction and
-/// without slip.
+/// Returns the slab of grains on springs, after slabs of plastic grains with and without slip in the long tier.
 pub(super) fn slabs(runner: &Runner) -> Result<Vec<Slab>, RunError> {
     let mut slabs = Vec::new();
     if runner.is_thorough() {
@@ -125,8 +124,7 @@ pub(super) fn figures(all: &[Slab]) -> Vec<Figure> {
     figures
 }
 
-/// Returns figures of averages over cells at a shear of 0.5. The averages have the same definition for points and for
-/// grains.
+/// Returns figures of averages over cells at a shear of 0.5, defined equally for points and for grains.
 fn coarse(slabs: &[Slab]) -> Vec<Figure> {
     const SHEAR: f64 = 0.5;
     let shots: Vec<element_picture::Shot<'_>> = slabs

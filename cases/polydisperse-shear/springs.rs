@@ -8,9 +8,8 @@ use grainbench_harness::prelude::*;
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
 /// Time step of the comparison with LAMMPS and LIGGGHTS at each sample.
 const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
-/// Mean shears up to which our solver is compared with LAMMPS and with LIGGGHTS; up to there, sixteen digits agree.
-/// LIGGGHTS differs once a contact closes again, because it keeps the tangential displacement of opened contacts
-/// (derivation of `plane-shear`).
+/// Mean shears up to which sixteen digits of our solver agree with LAMMPS and LIGGGHTS. LIGGGHTS differs once a contact
+/// closes again, because it keeps the tangential displacement of opened contacts (derivation of `plane-shear`).
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
 
 const ENERGY: &str = "all.kinetic_energy";

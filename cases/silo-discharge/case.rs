@@ -28,16 +28,8 @@ fn of_paper(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).paper_size().kept()
 }
 
-fn low() -> Run {
-    of_filling(LOW)
-}
-
 fn of_filling(variant: &'static str) -> Run {
     Run::new(variant, "dem:liggghts", LEVELS[0].resolution).long().kept()
-}
-
-fn half_the_step() -> Run {
-    Run::new(LOW, "dem:liggghts", LEVELS[1].resolution).long().kept().aside()
 }
 
 /// Returns the time at which the plug is removed and the flow begins (s).
@@ -45,12 +37,10 @@ fn begins(scene: &Scene) -> Option<f64> {
     scene.walls.iter().find_map(|wall| wall.until)
 }
 
-/// Largest time by which a sample may precede the requested time (s). It is more than one step, and its effect on rates
-/// is negligible.
+/// Largest time by which a sample may precede the requested time (s): more than one step, negligible in rates.
 const SLACK: f64 = 1e-5;
 
-/// Returns the number of remaining grains at a time of flow (s), interpolated between samples. The time of flow starts
-/// when the plug is removed.
+/// Returns the number of remaining grains at a time since the plug was removed (s), interpolated between samples.
 fn left(done: &FinishedRun, time: f64) -> Result<f64, MissingData> {
     let begun = begins(&done.scene).ok_or("plug")?;
     let (times, counts) = (&done.series().time, done.column("grains.present")?);
@@ -98,9 +88,11 @@ fn claims() -> Vec<Claim> {
             .equals_cited(dosta::SILO_QUOTED_RATIO, 1.0, |done| Ok(rate(&done[0], BOTH)? / rate(&done[1], BOTH)?))
             .within(required(0.1, "required in advance"))
             .refuses(Control::variant("the large orifice for both", PLAIN)),
-        near(claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").run(low()), dosta::SILO_LARGE_EARLY, |done| {
-            rate(&done[0], EARLY)
-        })
+        near(
+            claim("rate from .2 to .8 s, 40,000 spheres", "1000/s").run(of_filling(LOW)),
+            dosta::SILO_LARGE_EARLY,
+            |done| rate(&done[0], EARLY),
+        )
         .refuses(smooth()),
         bulk::of_packings(
             ("rate from .2 to .8 s, mean of five fillings of 40,000 spheres".to_owned(), "1000/s"),
@@ -112,7 +104,7 @@ fn claims() -> Vec<Claim> {
         )
         .refuses(smooth()),
         claim("rate from .2 to .8 s, 40,000 spheres, with a step of 6e-6 s for 3e-6 s", "1000/s")
-            .runs([low(), half_the_step()])
+            .runs([of_filling(LOW), of_filling(LOW).at(LEVELS[1].resolution).aside()])
             .agrees(Source::Ourselves("half the time step"), |done| {
                 let fine = rate(&done[1], EARLY)?;
                 Ok(Measurement::relative(rate(&done[0], EARLY)?, fine))
@@ -162,7 +154,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Curve::new("large, LIGGGHTS and MUSEN", Stroke::Markers, published),
         Curve::new("small, rate of MUSEN", Stroke::Dashed, vec![small(0.0), small(2.0)]),
     ];
-    let runs = [("large orifice", of_paper(PLAIN)), ("small orifice", of_paper(SMALL)), ("40,000 spheres", low())];
+    let runs =
+        [("large orifice", of_paper(PLAIN)), ("small orifice", of_paper(SMALL)), ("40,000 spheres", of_filling(LOW))];
     for (label, run) in runs {
         let done = runner.run(&run)?;
         let begun = begins(&done.scene).unwrap_or_default();

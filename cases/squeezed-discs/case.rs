@@ -24,8 +24,7 @@ fn squeeze(scene: &Scene) -> f64 {
     phase.velocity.norm() * phase.stop.seconds(f64::NAN)
 }
 
-/// Returns the contact force (N per metre) in closed form. Two opposite walls shorten a row of three diameters by twice
-/// the squeeze.
+/// Returns the contact force (N per metre). Opposite walls shorten three diameters by twice the squeeze.
 fn exact(scene: &Scene) -> f64 {
     PressedDisc::from_scene(scene, 4).map_or(f64::NAN, |disc| disc.force(2.0 / 3.0 * squeeze(scene)))
 }
@@ -61,17 +60,14 @@ fn phases(level: Level) -> [Run; 3] {
     PHASES.map(|solver| Run::new(PLAIN, solver, level.resolution))
 }
 
-/// Returns the mean contact force over the shifts of the grid.
-fn over_phases(done: &[FinishedRun]) -> Result<f64, MissingData> {
-    let forces: Result<Vec<f64>, MissingData> = done.iter().map(mean_force).collect();
-    Ok(forces?.iter().sum::<f64>() / done.len() as f64)
-}
-
 fn claims() -> Vec<Claim> {
     let over_grid_positions = |level: Level, tolerance: Tolerance| {
         claim(format!("contact force, mean over three positions of the grid, {}", level.name), "N/m")
             .runs(phases(level).map(|run| if level.name == "R/12" { run.long() } else { run.slow() }))
-            .equals(SOURCE, |done| Ok(Measurement::relative(over_phases(done)?, exact(&done[0].scene))))
+            .equals(SOURCE, |done| {
+                let forces = done.iter().map(mean_force).collect::<Result<Vec<f64>, _>>()?;
+                Ok(Measurement::relative(mean(&forces), exact(&done[0].scene)))
+            })
             .within(tolerance)
             .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)))
     };

@@ -5,7 +5,7 @@
 use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::prelude::*;
-use grainbench_harness::statistics::{BLOCKS, difference};
+use grainbench_harness::statistics::{BLOCKS, difference, mean_and_variance};
 use grainbench_reference::round_robin::Spread;
 
 /// Returns the claim on the position of the grain that the probe `one` records, in units of the first grain's radius.
@@ -57,8 +57,7 @@ pub(crate) fn of_packings(
         .runs(runs)
         .equals(cited.source(), move |done| {
             let values = done.iter().map(&value).collect::<Result<Vec<f64>, _>>()?;
-            let own = values.iter().sum::<f64>() / values.len() as f64;
-            let variance = values.iter().map(|value| (value - own).powi(2)).sum::<f64>() / (values.len() as f64 - 1.0);
+            let (own, variance) = mean_and_variance(&values);
             let code = half.value * std::f64::consts::SQRT_2;
             let allowed = Spread { mean: cited.value, code, bed: variance.sqrt() }.allowed(values.len(), 1);
             Ok(Measurement::new(own, cited.value, allowed))
