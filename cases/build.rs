@@ -6,8 +6,7 @@ use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
-/// Source folders of each kind of solver, relative to the root of the workspace. For LAMMPS and LIGGGHTS: the source of
-/// the code that writes their input decks.
+/// Source folders of each kind of solver, or of the code that writes the decks of LAMMPS and LIGGGHTS.
 const SOURCES: [(&str, &[&str]); 4] = [
     ("DEM", &["solvers/dem/src", "solvers/scene/src", "solvers/solver/src", "solvers/lanes/src"]),
     ("MPM", &["solvers/mpm/src", "solvers/scene/src", "solvers/solver/src", "solvers/lanes/src"]),
@@ -40,9 +39,9 @@ fn main() -> Result<(), Failure> {
     Ok(())
 }
 
-/// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines and test
-/// modules of Rust sources do not change the hash. A package does not contain these folders. The result is then the package
-/// version, because checksums in the lock file identify the sources.
+/// Returns a hash of the paths and texts of all files in these folders, except files named `tests.rs`. Comment lines
+/// and test modules of Rust sources do not change the hash. A package does not contain these folders. The result is
+/// then the package version, because checksums in the lock file identify the sources.
 fn fingerprint(root: &Path, folders: &[&str]) -> String {
     if folders.iter().any(|folder| !root.join(folder).is_dir()) {
         return format!("package {}", env::var("CARGO_PKG_VERSION").unwrap_or_default());
@@ -71,8 +70,8 @@ fn fingerprint(root: &Path, folders: &[&str]) -> String {
     hasher.finalize().to_hex()[..16].to_owned()
 }
 
-/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation and without the module of
-/// its tests, which ends with a brace at the start of a line.
+/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation and without the module
+/// of its tests, which ends with a brace at the start of a line.
 fn code(file: &Path) -> Vec<u8> {
     let bytes = fs::read(file).unwrap_or_default();
     match (file.extension(), str::from_utf8(&bytes)) {
@@ -107,8 +106,7 @@ fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// Returns the code of the case modules and of the registry. A file `cost.rs` of a case contains a function that returns the
-/// target quantities of the cost study.
+/// Returns the code of the case modules and of the registry. A file `cost.rs` has the targets of the cost study.
 fn registry(root: &Path) -> Result<String, Failure> {
     let [mut code, mut heads, mut cases, mut costs] = [const { String::new() }; 4];
     for name in folders_with(root, "scene.toml")? {
@@ -148,8 +146,7 @@ fn text<'t>(table: &'t toml::Table, key: &str) -> Result<&'t str, Failure> {
     Ok(text.ok_or_else(|| format!("expected a text `{key}`"))?)
 }
 
-/// Returns the fields of a case that a file of its folder states, and its scene and derivation, as Rust code. `None` if
-/// the folder has no such file.
+/// Returns scene, derivation and the fields in a file of a case folder, as Rust code; `None` without this file.
 fn head(folder: &Path, name: &str, file: &str) -> Result<Option<String>, Failure> {
     let file = folder.join(file);
     if !file.is_file() {
@@ -203,8 +200,7 @@ fn estimates(folder: &Path) -> Result<String, Failure> {
 /// Subfolders of the reference folder that contain works.
 const KINDS: [&str; 2] = ["literature", "prototype"];
 
-/// Returns the code of one module for each kind of work. Each contains one module for each work, with the work and its
-/// values.
+/// Returns the code of one module for each kind of work. It has a module for each work with its values.
 fn sources(references: &Path) -> Result<String, Failure> {
     let (mut code, mut all) = (String::new(), String::new());
     for kind in KINDS {
@@ -220,8 +216,7 @@ fn sources(references: &Path) -> Result<String, Failure> {
     Ok(code)
 }
 
-/// Adds the module of one work with its citation and its values. Values whose keys end in `_0`, `_1` and so on are also a
-/// list without this number in its name.
+/// Adds the module of a work. Values whose keys end in `_0`, `_1` and so on are also a list without this number.
 fn work(code: &mut String, kind: &str, name: &str, table: &toml::Table) -> Result<(), Failure> {
     let number = |table: &toml::Table, key: &str| {
         table.get(key).and_then(|value| value.as_float().or(value.as_integer().map(|whole| whole as f64)))

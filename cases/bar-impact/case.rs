@@ -55,8 +55,7 @@ fn width(resolution: Resolution) -> f64 {
     front(0.5 / cells, 1.0)
 }
 
-/// Momentum that the contact has not yet transferred when half of a front of width 1 has arrived, in units of the
-/// width.
+/// Momentum that the contact has yet to transfer when half of a front has arrived, in units of the front's width.
 const LEFT_BEHIND: f64 = 0.446_522_992_649_999_3;
 
 /// Returns the mean stress (Pa) in the middle of the right bar from 0.7 to 1.3 transit times L/c.

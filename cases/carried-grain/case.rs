@@ -45,8 +45,7 @@ impl Motion {
         }
     }
 
-    /// Returns the tolerance of the final position (m). If the axis of rotation is across the contact normals, it
-    /// includes an error due to lever arms.
+    /// Returns the tolerance of the final position (m), for an axis of rotation across or along the contact normals.
     fn off(&self, across: bool) -> f64 {
         let (rate, distance) = (self.spin.norm(), self.start.norm());
         let phase = 0.25 * self.frequency * self.time;

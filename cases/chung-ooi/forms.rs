@@ -17,7 +17,7 @@ pub(super) struct ImpactParameters {
     pub(super) restitution: f64,
     /// Coefficient of restitution e′ of a contact that ends as soon as its force is zero.
     pub(super) early: f64,
-    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over that of the spring's Coulomb limit.
+    /// ρ = 6 G* s/(μ E* v_n): growth rate of the tangential spring force over the rate of the spring's limit.
     pub(super) steepness: f64,
 }
 

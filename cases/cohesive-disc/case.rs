@@ -28,8 +28,7 @@ fn with_cohesion(factor: f64) -> Run {
     })
 }
 
-/// Compares the growth rate of the surface's slip velocity, d(v − ΩR)/dt, with the exact rate, in units of g sin θ. The
-/// rate is measured over the second half of the run.
+/// Compares the rate d(v − ΩR)/dt of slip in the second half of the run with the exact rate, in units of g sin θ.
 fn slip(done: &FinishedRun) -> Result<Measurement, MissingData> {
     let scene = &done.scene;
     let grain = OneGrain::from_scene(scene);

@@ -51,8 +51,7 @@ fn claims() -> Vec<Claim> {
     vec![conserved, kept_in, rigid::refuses_cycles(PLAIN), by_impulses()]
 }
 
-/// Returns the claim on the energy with the solver `rigid`. The duration of the scene is a number of cycles, which `rigid`
-/// does not support.
+/// Returns the claim on the energy with the solver `rigid`, which does not support a duration in cycles.
 fn by_impulses() -> Claim {
     let run = Run::new(PLAIN, "rigid", rigid::DEFAULT).adjusted("9 s", |scene| scene.duration = Duration::Seconds(9.0));
     claim("total energy over 9 s, worst", "J")

@@ -60,8 +60,7 @@ fn duration(scene: &Scene) -> f64 {
     scene.duration.seconds().unwrap_or(f64::NAN)
 }
 
-/// Returns the run with a thousandth of the striker's speed, so that the geometry hardly changes, as the modal solution
-/// assumes.
+/// Returns the run with a thousandth of the striker's speed. The modal solution neglects changes of geometry.
 fn gentle(variant: &'static str) -> Run {
     Run::new(variant, "dem", STEP.resolution).adjusted("striker at a thousandth of its speed", |scene| {
         scene.walls[0].motion.phases[0].velocity *= 1e-3;

@@ -88,8 +88,7 @@ impl Modes {
         spring.map_or(f64::NAN, |spring| spring.stiffness * spring.overlap(&displacement, self.speed * time))
     }
 
-    /// Returns the time at which a contact of the assembly first pulls and opens (s), within `until` (s). NaN if no
-    /// contact opens.
+    /// Returns the time at which a contact first pulls and opens (s), within `until` (s). NaN if no contact opens.
     pub(super) fn first_opening(&self, until: f64) -> f64 {
         let pull = |time: f64| {
             let displacement = self.displacement(time);
@@ -115,8 +114,7 @@ impl Modes {
     }
 }
 
-/// Returns the time at which a function of time first exceeds a threshold, by a scan and bisection. NaN if it does not
-/// up to `until` (s).
+/// Returns the first time up to `until` (s) at which a function exceeds a threshold, by bisection; NaN if there is none.
 fn first_above(value: impl Fn(f64) -> f64, threshold: f64, until: f64) -> f64 {
     const SCAN: usize = 1000;
     let time = |step: usize| until * step as f64 / SCAN as f64;

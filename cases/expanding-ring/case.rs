@@ -116,8 +116,7 @@ impl Mode {
     }
 }
 
-/// Returns the radial displacement of the middle of the ring (m): the mean of a point along an axis and a point at the
-/// corner of a cell.
+/// Returns the radial displacement in the middle of the ring (m): the mean of points on an axis and at a cell corner.
 fn radial(done: &FinishedRun) -> Result<Vec<f64>, MissingData> {
     let [side, x, y] = ["side.ux", "corner.ux", "corner.uy"].map(|column| done.column(column));
     let corner = x?.iter().zip(y?).map(|(x, y)| (x + y) * FRAC_1_SQRT_2);
@@ -145,8 +144,7 @@ fn softer() -> Control {
     Control::scene("four per cent softer", |scene| stiffen(scene, 0.96))
 }
 
-/// Returns a negative control without transverse contraction. E then replaces E/(1 − ν²), which reduces the frequency
-/// by 4.6 %.
+/// Returns a control without transverse contraction: E replaces E/(1 − ν²), and the frequency falls by 4.6 %.
 fn no_contraction() -> Control {
     Control::scene("no contraction across: E in place of E/(1 − ν²)", |scene| {
         for material in scene.deformable.iter_mut().flatten() {

@@ -73,8 +73,7 @@ fn strip(scene: &Scene) -> Option<[f64; 3]> {
     Some([length, thickness, beam.density * -scene.gravity.y * length.powi(3) / stiffness])
 }
 
-/// Returns the tolerance, relative to the deflection: the effects of the strip's thickness and of the spacing of
-/// material points at the tip.
+/// Returns the tolerance relative to the deflection: effects of the thickness and of the spacing of points at the tip.
 fn allowed(level: Level) -> f64 {
     let Resolution::Grid { cells, points, .. } = level.resolution else { return f64::NAN };
     let (thickness, Elastica { curvature, sinking, angle, .. }) = (0.05, Elastica::under(10.0));

@@ -15,9 +15,8 @@ const BEADS: f64 = 40.0;
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::HERTZ_CHAIN };
 
-/// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave. The time
-/// step is adapted to the contact stiffness at the overlap of the wave: Δt ∝ v^{-1/5}. The critical time step refers to
-/// the larger overlap R/100.
+/// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave, the time step
+/// with the stiffness at the overlap of the wave, Δt ∝ v^{-1/5}. The critical time step refers to the overlap R/100.
 fn strike(speed: f64) -> Run {
     let resolution = Resolution::CriticalFraction(0.02 * speed.powf(-0.2));
     Run::new(PLAIN, "dem", resolution).adjusted(&format!("striker at {speed} m/s"), move |scene| {
@@ -132,9 +131,8 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
 mod tests {
     use super::*;
 
-    /// Returns the wave speed in sites per unit of time, for a wave with the largest force 1 and k = m = 1. Its overlap
-    /// r(ξ) obeys c² r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1. The equation is solved by iteration with
-    /// `cells` points per site.
+    /// Returns the wave speed in sites per time for a largest force 1 and k = m = 1, by iteration with `cells` points
+    /// per site. The overlap r(ξ) obeys c² r(ξ) = ∫ (1 − |s|) r(ξ + s)^{3/2} ds over |s| < 1.
     fn sites_per_time(cells: usize) -> f64 {
         let step = 1.0 / cells as f64;
         let mut overlap: Vec<f64> = (0..=6 * cells).map(|at| (-(at as f64 * step).powi(2)).exp()).collect();
@@ -152,8 +150,7 @@ mod tests {
         square.sqrt()
     }
 
-    /// Checks the coefficient of the wave speed V = 2R c (k^{2/3} F^{1/3}/m)^{1/2} with k = (4/3) E* √(R/2), which is
-    /// .76053 c.
+    /// Checks the coefficient of V = 2R c (k^{2/3} F^{1/3}/m)^{1/2}, k = (4/3) E* √(R/2), which is .76053 c.
     #[test]
     fn the_travelling_wave_has_the_coefficient() {
         let [coarse, fine] = [10, 20].map(sites_per_time);

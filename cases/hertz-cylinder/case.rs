@@ -12,8 +12,7 @@ const COARSEST: [f64; 2] = [0.15, 0.12];
 const NO_HALF_SPACE: f64 = 1.0 / 64.0;
 /// Material points per cell and axis.
 const POINTS: u32 = 2;
-/// Solver with APIC, in which material points come to rest. In `mpm`, points keep their own velocities, so points and
-/// their stresses oscillate under a static load.
+/// Solver with APIC, in which material points come to rest. In `mpm` they oscillate under a static load.
 const SOLVER: &str = "mpm+apic";
 const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");
@@ -62,8 +61,7 @@ struct PressurePoint {
     pressure: f64,
 }
 
-/// Returns the material points of the block at the end of the run. These points had an initial depth of `from` to `to`
-/// cells and are less than 1.5 b from the middle.
+/// Returns the material points, initially `from` to `to` cells deep, less than 1.5 b from the middle at the end.
 fn pressed(done: &FinishedRun, from: f64, to: f64) -> Result<Vec<PressurePoint>, MissingData> {
     let snapshots = &done.record.snapshots;
     let block = |point: &&PointState| matches!(point.owner, Owner::Body(_));

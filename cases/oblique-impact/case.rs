@@ -72,9 +72,8 @@ fn friction(scene: &Scene) -> f64 {
     scene.laws[0].map_or(f64::NAN, |law| law.friction)
 }
 
-/// Returns the tolerance for finite steps. Contact begins and ends within a step, and each time half a step of the
-/// dashpot's force is added or lost. The dashpot is half a step late, as in the collision of two discs. The remainder
-/// is of second order.
+/// Returns the tolerance for finite steps. Half a step of the dashpot's force is added or lost at start and end of
+/// contact, and the dashpot is half a step late, as in the collision of two discs. The remainder is of second order.
 fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
     let step_error = |scene: &Scene| {
         let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
@@ -156,8 +155,8 @@ fn claims() -> Vec<Claim> {
     claims
 }
 
-/// Returns the claims that velocity and wall force agree with LAMMPS or LIGGGHTS. Velocities are in units of the initial
-/// speed, and forces in units of the largest spring force.
+/// Returns the claims that velocity and wall force agree with LAMMPS or LIGGGHTS. Velocities are in units of the
+/// initial speed, and forces in units of the largest spring force.
 fn beside(variant: &'static str, pair: [&'static str; 2]) -> [Claim; 2] {
     let runs = || pair.map(|solver| Run::new(variant, solver, LEVELS[1].resolution));
     let control = || Control::our_contact_law("friction ×1.001 in ours", |law| law.friction *= 1.001);

@@ -40,8 +40,7 @@ const TABLES: [&[&str]; 3] = [
     &[PLAIN, "seed-2", "seed-3", "seed-4", "seed-5", "seed-6", "seed-7", "seed-8", "seed-9", "seed-11"],
     &["table-3", "table-3-seed-2", "table-3-seed-3", "table-3-seed-4", "table-3-seed-8", "table-3-seed-9"],
 ];
-/// F_H/F_V that the paper prints for stage B with the parameters of Tables 1 and 2. The value of Table 3 is not
-/// compared, because its stage A is already at 0.46.
+/// F_H/F_V that the paper prints for stage B with Tables 1 and 2. With Table 3, its stage A is already at 0.46.
 const PRINTED: [CitedNumber; 2] = [paper::RATIO_B_1, paper::RATIO_B_2];
 const IMPOSED: &str = "imposed by the motion of the walls (derivation)";
 const FOUND: &str = "convergence limit of the search for the motion of the walls";
@@ -62,8 +61,7 @@ fn stages(done: &FinishedRun) -> Result<[Stage; 2], MissingData> {
 /// Function that reads a value from the stages of a packing.
 type StageReader = fn(&[Stage; 2]) -> f64;
 
-/// Returns the value of `read` for the packing in which it differs most from `from`. NaN counts as the largest
-/// difference.
+/// Returns the value of `read` for the packing in which it differs most from `from`. NaN differs most.
 fn farthest(done: &[FinishedRun], from: f64, read: StageReader) -> Result<f64, MissingData> {
     let found = done.iter().map(|done| Ok(Measurement::new(read(&stages(done)?), from, 1.0)));
     Ok(Measurement::worst_read(found)?.value)
@@ -110,8 +108,7 @@ fn of_packings(packings: &[Run], words: &str) -> Vec<Claim> {
     claims
 }
 
-/// Returns a measurement of a quantity against its imposed value, in units of a scale. The packing with the largest
-/// error decides.
+/// Compares a quantity of the packing with the largest error with its imposed value, in units of a scale.
 fn held(expected: f64, scale: f64, read: StageReader) -> impl Fn(&[FinishedRun]) -> Result<Measurement, MissingData> {
     move |done| Ok(Measurement::new(farthest(done, expected, read)?, expected, scale))
 }
@@ -195,8 +192,7 @@ fn step() -> Claim {
 const PARTING: DivergenceColumns =
     &["all.kinetic_energy", "left.force_x", "right.force_x", "bottom.force_y", "top.force_y"];
 
-/// Predictability horizon (steps). The horizon is late, because discs that come into contact separate and touch many
-/// times before they carry force.
+/// Predictability horizon (steps). It is late, because discs touch many times before they carry force.
 const HORIZON: u64 = 620;
 
 /// Reason why our solver cannot follow LIGGGHTS in each digit.
@@ -264,8 +260,7 @@ fn ratio_in(done: &FinishedRun, parts: u64) -> Result<f64, MissingData> {
     Ok((right? - left?) / (top? - bottom?))
 }
 
-/// Returns the vertical strain of the box at a time (s): the inward displacement of top and bottom divided by the
-/// initial height.
+/// Returns the vertical strain of the box at a time (s): displacement of top and bottom over the initial height.
 fn vertical_strain(done: &FinishedRun, time: f64) -> f64 {
     let [_, _, bottom, top] = &done.scene.walls[..] else { return f64::NAN };
     let moved = |wall: &grainbench_scene::scene::Wall| wall.motion.displacement(time, 0.0).translation.y;

@@ -14,8 +14,7 @@ pub(super) const BULK: Reading = Reading { name: "bulk of a sheared layer", begi
 /// stress, and the instantaneous shear stress without tangential forces.
 const COLUMNS: [&str; 7] = ["time", "packing", "rate", "normal", "shear", "instant", "frictionless"];
 
-/// Lower and upper limit of the bulk, as fractions of the initial height. Near the walls, the grains are ordered in
-/// layers.
+/// Limits of the bulk, as fractions of the initial height. Near the walls, the grains are ordered in layers.
 const HEIGHTS: [f64; 2] = [0.25, 0.7];
 
 fn begin(scene: &Scene) -> Box<dyn Reader> {

@@ -27,8 +27,7 @@ const PACKINGS: &str = include_str!("packings.csv");
 const BECAUSE: &str =
     "a sheared packing is a random sample: 99 % interval of the difference of two packings, from four seeds";
 
-/// Fraction of the run after which the flow is steady. By then the moving walls have accelerated the middle of the
-/// layer (derivation).
+/// Fraction of the run after which the flow is steady in the middle of the layer (derivation).
 const STEADY: f64 = 0.25;
 
 /// Factor by which the pressure of the lid is increased in the comparison runs. The wall speed is larger by the square
@@ -240,8 +239,7 @@ fn beside(variant: &'static str, about: &str, (name, read): Quantity) -> Claim {
     })
 }
 
-/// Returns a tolerance and the mean of a quantity over the packings. The tolerance follows from the spread, in units of
-/// the mean.
+/// Returns mean and tolerance of a quantity from several packings. The tolerance is in units of the mean.
 fn of_draws(quantity: &str) -> (Tolerance, f64) {
     let mean = mean_of(PACKINGS, quantity);
     (computed(apart(PACKINGS, quantity) / mean, format!("{BECAUSE}; in units of the mean of the packings")), mean)

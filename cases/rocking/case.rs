@@ -80,8 +80,7 @@ fn way() -> Claim {
         .fair_to_any_springs()
 }
 
-/// Returns the frequency of the disc's rocking between two other discs (rad/s), and the largest relative error of the
-/// spin.
+/// Returns the frequency of the disc's rocking between two discs (rad/s), and the largest relative error of the spin.
 fn rocks(scene: &Scene) -> [f64; 2] {
     let (grain, law) = (&scene.grains[0], scene.laws[0].unwrap_or_default());
     let each = |other: &Grain| {

@@ -92,8 +92,7 @@ fn off(variant: &str, times: f64) -> Tolerance {
     )
 }
 
-/// Returns the claim that the rough ball leaves at cos θ = (10/17) cos θ₀. The spin gives the angle, because ω²R² = g d
-/// cos θ.
+/// Returns the claim on the angle cos θ = (10/17) cos θ₀ of separation, from the spin: ω²R² = g d cos θ.
 fn angle() -> Claim {
     claim("cosine of the angle at which the rough ball leaves, from its spin", "1")
         .run(Run::new("rough", "dem", STEP.resolution))

@@ -12,8 +12,7 @@ pub(crate) static CASE: Case =
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement of the converged elastic disc on a rigid plane, divided by the displacement of a rigid disc, minus
-    /// one.
+    /// Displacement of the converged elastic disc on a rigid plane over the rigid disc's displacement, minus one.
     reference: CitedNumber,
     /// Largest deviations at each level, required before the solver existed.
     allowed: [f64; 3],

@@ -22,7 +22,7 @@ pub(crate) static CASE: Case =
 #[derive(Clone, Copy)]
 struct Slope {
     variant: &'static str,
-    /// Displacement after 1 s of the converged elastic sphere on a rigid plane over that of a rigid sphere, minus one.
+    /// Displacement after 1 s of the converged elastic sphere on a rigid plane over the rigid sphere's, minus one.
     reference: CitedNumber,
     /// Largest deviations at cells of R/4 and R/8.
     allowed: [f64; 2],

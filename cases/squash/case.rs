@@ -7,8 +7,7 @@ use crate::rows::rigid;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05)];
-/// Rounding error of forces, in units of k v Δt. It is the rounding error of positions up to 4 R, divided by the
-/// displacement of a wall in a step, 1e-3 R.
+/// Rounding error of forces, in units of k v Δt: error of positions up to 4 R, over the wall's step of 1e-3 R.
 const ROUNDING: f64 = 4.0 * f64::EPSILON / 1e-3;
 
 const FORCES: ClaimFigure = ClaimFigure {

@@ -45,10 +45,7 @@ pub fn read_grains(path: &Path) -> Result<Vec<FileGrain>, SceneError> {
 }
 
 /// Returns the scene of a source that reads its grains from LAMMPS data files. `files` contains the name and the text of
-/// each data file.
-///
-/// # Errors
-/// When the scene or a data file is invalid, or `files` lacks a data file. The message gives the place in the file.
+/// each data file. An error gives the place in the scene or in a data file, or the data file that `files` lacks.
 pub(crate) fn made_of(source: &SceneSource, files: &[(&str, String)]) -> Result<Scene, String> {
     let read = |path: &Path| {
         let named = files.iter().find(|(name, _)| path.ends_with(name));

@@ -3,13 +3,11 @@
 use grainbench_solver::record::{ContactState, Partner, Snapshot, WallState};
 use nalgebra::Vector3;
 
-/// Tolerance of the search for the wall motion of `photoelastic-packing`: largest deviation of F_H/F_V from its target
-/// at stage A.
+/// Largest deviation of F_H/F_V at stage A in the search for the wall motion of `photoelastic-packing`.
 pub const NEAR_IN_RATIO: f64 = 0.004;
-/// Tolerance of the search for the wall motion: largest deviation of mean overlap / mean radius from its target at
-/// stage A.
+/// Largest deviation of mean overlap / mean radius at stage A in this search.
 pub const NEAR_IN_OVERLAP: f64 = 8e-6;
-/// Tolerance of the search for the wall motion: largest deviation of F_V at stage B / F_V at stage A from its target.
+/// Largest deviation of F_V at stage B / F_V at stage A in this search.
 pub const NEAR_IN_GROWTH: f64 = 1e-4;
 
 /// Sums over walls and contacts of one snapshot. The walls are planes normal to the axes.

@@ -89,8 +89,7 @@ fn softness(scene: &Scene) -> f64 {
     1.0 / law.tangential_stiffness() + radius * radius / rolling
 }
 
-/// Returns the largest error of the disc's position divided by Rφ, due to lever arms and the oscillation on the
-/// springs.
+/// Returns the largest error of the disc's position over Rφ, due to lever arms and vibration on the springs.
 fn tray_off(scene: &Scene) -> f64 {
     let grain = &scene.grains[0];
     let (weight, angle) = (grain.mass * scene.gravity.norm(), turned(scene));

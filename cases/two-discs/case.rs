@@ -11,8 +11,7 @@ const TOUCH: f64 = 3.0 - SQRT_2;
 pub(crate) static CASE: Case =
     Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::TWO_DISCS };
 
-/// Courant number: time step divided by the transit time of a wave through a cell. It is smaller than usual because of
-/// the contact springs and the waves of an impact.
+/// Courant number, smaller than usual because of the contact springs and the waves of an impact.
 const COURANT: f64 = 0.3;
 
 const fn grid(cells: f64) -> Resolution {
@@ -132,8 +131,7 @@ fn momentum(done: &FinishedRun) -> Result<Measurement, MissingData> {
     Ok(Measurement::new(f64::hypot(x, y), 0.0, scale))
 }
 
-/// Returns the claims on three discs that collide at one point. Contacts must act in pairs, independent of the number of
-/// bodies at a node.
+/// Returns the claims on three discs that collide at one point. Contacts must act in pairs.
 fn three() -> Vec<Claim> {
     let momentum_claim = |run: Run, control| {
         claim("momentum in the end, three discs at one point", "kg m/s")

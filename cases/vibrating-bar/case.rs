@@ -51,8 +51,7 @@ pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
     (wave.0 * (material / bar.density).sqrt(), 2.0 / PI * wave.1)
 }
 
-/// Returns the small parameters of the tolerances: (kh)² of the mode at a resolution, with k = π/2L and the cell h, and
-/// the largest strain v₀√(ρ/E).
+/// Returns (kh)² of the mode at a resolution, k = π/2L with the cell h, and the largest strain v₀√(ρ/E).
 fn small(resolution: Resolution) -> (f64, f64) {
     let strain = CASE.variant(PLAIN).ok().and_then(|scene| {
         let wave = scene.bodies[0].wave?;
@@ -66,8 +65,7 @@ fn cells_of(resolution: Resolution) -> f64 {
     if let Resolution::Grid { cells, .. } = resolution { cells } else { f64::NAN }
 }
 
-/// Returns the relative decrease of a mode's frequency on the grid (derivation): (1/4 + 1/96)(kh)², minus (ωΔt)²/24 of
-/// the time step.
+/// Returns the relative decrease of a mode's frequency on the grid: (1/4 + 1/96)(kh)² − (ωΔt)²/24 (derivation).
 fn slower(wave_number_squared: f64) -> f64 {
     (25.0 / 96.0 - Resolution::COURANT.powi(2) / 24.0) * wave_number_squared
 }

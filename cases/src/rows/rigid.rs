@@ -47,7 +47,7 @@ fn rest_overlap(grain: &OneGrain) -> f64 {
     grain.onto / (TAU * Settings::default().wall_frequency).powi(2)
 }
 
-/// Returns the claims on displacement, velocity and spin at 1 s. The first control is that of the displacement.
+/// Returns the claims on displacement, velocity and spin at 1 s. The first control belongs to the displacement.
 pub(crate) fn against(
     variant: &'static str,
     source: Source,
