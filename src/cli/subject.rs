@@ -72,6 +72,7 @@ impl<'a> Variant<'a> {
 }
 
 /// Variants of a case that the user names; none stands for all variants.
+#[derive(Default)]
 pub(crate) struct SelectedVariants<'a>(Vec<Option<&'a str>>);
 
 impl<'a> SelectedVariants<'a> {

@@ -6,7 +6,6 @@ use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
 use crate::cli::subject::{SelectedVariants, selected};
 use grainbench::cases::solvers::Registry;
-use grainbench::harness::case::Case;
 use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::effects::Entry;
@@ -28,10 +27,16 @@ pub(crate) struct EffectStudy {
 
 impl EffectStudy {
     pub(crate) fn new(arguments: &Arguments) -> Result<Self, Fault> {
+        let cases = match own::folder(&arguments.cases)? {
+            Some(case) => vec![(case, SelectedVariants::default())],
+            None => selected(&arguments.cases)?,
+        };
         let (mut ledgers, mut pieces) = (Vec::new(), Vec::new());
-        for (number, (ledger, of_case)) in case_ledgers(&arguments.cases)?.into_iter().enumerate() {
+        for (number, (case, variants)) in cases.into_iter().enumerate() {
+            let ledger = Ledger::new(case, Arc::new(Registry));
+            let of_case = ledger.pieces().into_iter().filter(|piece| variants.contain(piece.variant));
+            pieces.extend(of_case.map(|piece| (number, piece)));
             ledgers.push(ledger);
-            pieces.extend(of_case.into_iter().map(|piece| (number, piece)));
         }
         Ok(Self { ledgers, pieces, arguments: arguments.clone() })
     }
@@ -75,19 +80,4 @@ impl Study for EffectStudy {
         study.ledger.extend(results.into_iter().flatten().flatten());
         how.publish(study, has_crash)
     }
-}
-
-/// Returns the study of each named case, with the effects to test.
-fn case_ledgers(names: &[String]) -> Result<Vec<(Ledger, Vec<SceneEffect>)>, Fault> {
-    if let Some(case) = own::folder(names)? {
-        let ledger = Ledger::new(case, Arc::new(Registry));
-        let pieces = ledger.pieces();
-        return Ok(vec![(ledger, pieces)]);
-    }
-    let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
-        let ledger = Ledger::new(case, Arc::new(Registry));
-        let pieces = ledger.pieces().into_iter().filter(|piece| variants.contain(piece.variant)).collect();
-        (ledger, pieces)
-    };
-    Ok(selected(names)?.into_iter().map(of_case).collect())
 }
