@@ -47,32 +47,26 @@ pub(crate) struct Arguments {
     study: StudyOptions,
 }
 
-impl Arguments {
-    /// Returns the arguments of the study.
-    fn planned(&self) -> Planned {
-        Planned {
-            what: "cost".to_owned(),
-            cases: self.cases.clone(),
-            solver: self.solver.clone(),
-            levels: if self.levels == "all" { vec![self.levels.clone()] } else { Vec::new() },
-            prices: self.prices,
-            counts: self.counts,
-            out: self.out.clone(),
-            ..Planned::default()
-        }
-    }
-}
-
 /// Studies the named cases, or the scene of the user's that the arguments name.
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
-    let Arguments { cases, solver, quantity, window, own, study, .. } = arguments;
+    let Arguments { cases, solver, levels, quantity, window, own, study, out, .. } = arguments;
     let path = own::scene(cases)?;
     let has_claims = own::folder(cases)?.is_some_and(|case| !registry::subjects(case).is_empty());
     let Some(path) = path.filter(|_| !has_claims) else {
         own.refuse_for_cases(!quantity.is_empty() || window.is_some())?;
-        return plan_or_perform(&arguments.planned(), study, arguments.against.as_deref());
+        let planned = Planned {
+            what: "cost".to_owned(),
+            cases: cases.clone(),
+            solver: solver.clone(),
+            levels: if levels == "all" { vec![levels.clone()] } else { Vec::new() },
+            prices: arguments.prices,
+            counts: arguments.counts,
+            out: out.clone(),
+            ..Planned::default()
+        };
+        return plan_or_perform(&planned, study, arguments.against.as_deref());
     };
-    if arguments.levels != "default" || arguments.prices || study.plan.is_given() {
+    if levels != "default" || arguments.prices || study.plan.plan.is_some() {
         refuse!("{path}: expected `--budget`, found `--levels`, `--prices` or `--plan`");
     }
     let input = own::Input {
@@ -82,7 +76,8 @@ pub(crate) fn cost(arguments: &Arguments) -> Outcome {
         quantities: quantity,
         window: *window,
         study,
-        out: &arguments.out,
+        out,
+        budget: own.budget(),
     };
-    own::cost(&input, own)
+    own::cost(&input)
 }

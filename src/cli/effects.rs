@@ -84,18 +84,11 @@ impl SceneOptions {
     }
 }
 
-impl Arguments {
-    /// Returns the arguments of the study of cases.
-    fn planned(&self) -> Planned {
-        Planned { what: "effects".to_owned(), cases: self.cases.clone(), out: self.out.clone(), ..Planned::default() }
-    }
-}
-
 /// Tests the effects in the named cases, of a scene file, or of the scene of a folder without claims.
 pub(crate) fn effects(arguments: &Arguments) -> Outcome {
     let named = if own::folder(&arguments.cases)?.is_some() { None } else { own::scene(&arguments.cases)? };
     if let Some(scene) = named {
-        if arguments.study.plan.is_given() {
+        if arguments.study.plan.plan.is_some() {
             refuse!("{scene}: expected cases with `--plan`, found a scene file");
         }
         return of_scene(&scene, arguments);
@@ -106,7 +99,9 @@ pub(crate) fn effects(arguments: &Arguments) -> Outcome {
             "--solver, --time-step, --time-step-fraction, --matters, --budget: expected a scene file with them, {found}"
         );
     }
-    plan_or_perform(&arguments.planned(), &arguments.study, None)
+    let Arguments { cases, out, study, .. } = arguments;
+    let planned = Planned { what: "effects".to_owned(), cases: cases.clone(), out: out.clone(), ..Planned::default() };
+    plan_or_perform(&planned, study, None)
 }
 
 /// Tests the effects of a scene file. Finished effects are stored, so that a stopped study continues.

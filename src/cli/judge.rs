@@ -32,7 +32,7 @@ pub(crate) fn judge(arguments: Arguments) -> Outcome {
     if !is_function(&solver) {
         return judge_by(&cases, vec![solver], rest);
     }
-    if rest.is_planned() {
+    if rest.plan.plan.is_some() {
         let found = format!("--plan: expected a manifest or the name of a solver, found the function `{solver}`");
         return Err(Fault::input(found));
     }

@@ -58,7 +58,8 @@ impl Options {
         ))
     }
 
-    fn budget(&self) -> Duration {
+    /// Returns the time budget.
+    pub(crate) fn budget(&self) -> Duration {
         self.budget.unwrap_or(BUDGET)
     }
 }
@@ -77,6 +78,8 @@ pub(crate) struct Input<'a> {
     pub(crate) window: Option<(f64, f64)>,
     pub(crate) study: &'a StudyOptions,
     pub(crate) out: &'a Path,
+    /// Time budget of the study.
+    pub(crate) budget: Duration,
 }
 
 impl Input<'_> {
@@ -94,13 +97,35 @@ impl Input<'_> {
     }
 
     /// Returns the words of the command for the report.
-    fn words(&self, command: &str, budget: Duration) -> Vec<String> {
+    fn words(&self, command: &str) -> Vec<String> {
         let mut words = vec![command.to_owned()];
         words.extend(self.names.iter().chain(self.solvers).cloned());
         words.extend(self.quantities.iter().map(|quantity| format!("--quantity {quantity}")));
         words.extend(self.window.map(|(from, to)| format!("--window {from}..{to}")));
-        words.push(format!("--budget {}s", budget.as_secs_f64()));
+        words.push(format!("--budget {}s", self.budget.as_secs_f64()));
         words
+    }
+
+    /// Returns the study of a scene with the named solvers, or with the usual ones if none is named.
+    fn scene_study<'s>(
+        &self,
+        scene: &'s Scene,
+        (solvers, named): (&'s NamedSolvers, Vec<String>),
+        cache: &'s Directory,
+        stop: &'s (dyn Fn() -> bool + Sync),
+    ) -> SceneStudy<'s> {
+        SceneStudy {
+            name: self.path.clone(),
+            scene,
+            names: if named.is_empty() { DEFAULT.map(str::to_owned).into() } else { named },
+            solvers,
+            quantities: self.quantities.to_vec(),
+            window: self.window,
+            budget: self.budget,
+            cache,
+            program: key::of_this_program(),
+            stop,
+        }
     }
 }
 
@@ -157,22 +182,17 @@ fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
     Ok(scene)
 }
 
-/// Returns the names of the solvers of a study: the named ones, or the usual ones.
-fn solver_names(named: Vec<String>) -> Vec<String> {
-    if named.is_empty() { DEFAULT.map(str::to_owned).into() } else { named }
-}
-
 /// Measures cost, stability and effects of a scene within the budget, and writes one report.
-pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
+pub(crate) fn cost(input: &Input<'_>) -> Outcome {
     let scene = read(&input.path, input.quantities)?;
     let input = &input.within(&scene)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
     let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
-    let words = input.words("cost", options.budget());
+    let words = input.words("cost");
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
-    let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
+    let study = input.scene_study(&scene, (&solvers, named), &cache, &stop);
     let mut follower = Follower::new(&study, input.out, &words);
     let mut measured = Measurement::new(&study);
     measured.levels(&mut follower)?;
@@ -187,35 +207,12 @@ pub(crate) fn cost(input: &Input<'_>, options: &Options) -> Outcome {
     result.notes.extend(skipped);
     let is_stopped = stop();
     let study = follower.study(result, is_stopped);
+    drop(follower);
     if is_stopped {
-        drop(follower);
         write_study(input.out, &study)?;
         return Err(stopped());
     }
-    drop(follower);
     publish_study(&study, Output::new(input.out, input.study.json, false))
-}
-
-/// Returns the study of a scene.
-fn scene_study<'a>(
-    input: &Input<'_>,
-    scene: &'a Scene,
-    (solvers, named): (&'a NamedSolvers, Vec<String>),
-    cache: &'a Directory,
-    (options, stop): (&Options, &'a (dyn Fn() -> bool + Sync)),
-) -> SceneStudy<'a> {
-    SceneStudy {
-        name: input.path.clone(),
-        scene,
-        names: solver_names(named),
-        solvers,
-        quantities: input.quantities.to_vec(),
-        window: input.window,
-        budget: options.budget(),
-        cache,
-        program: key::of_this_program(),
-        stop,
-    }
 }
 
 /// Returns the error of a study that the user stops.
@@ -244,14 +241,14 @@ fn limits(
 }
 
 /// Finds the largest stable step of each solver in a scene, and writes the report.
-pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
+pub(crate) fn stability(input: &Input<'_>) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
     let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
-    let study = scene_study(input, &scene, (&solvers, named), &cache, (options, &stop));
+    let study = input.scene_study(&scene, (&solvers, named), &cache, &stop);
     let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
     let mut bar = Bar::new(budget);
     // The bisection may use the whole budget.
@@ -261,7 +258,7 @@ pub(crate) fn stability(input: &Input<'_>, options: &Options) -> Outcome {
     if stop() {
         return Err(stopped());
     }
-    let mut written = Study::new(provenance(input.words("stability", options.budget()), start.elapsed().as_secs_f64()));
+    let mut written = Study::new(provenance(input.words("stability"), start.elapsed().as_secs_f64()));
     written.limits = limits;
     written.sources = sources(&study.names);
     publish_study(&written, Output::new(input.out, input.study.json, false))

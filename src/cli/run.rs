@@ -42,7 +42,7 @@ pub(super) struct RunOptions {
     #[command(flatten)]
     options: ClaimOptions,
     #[command(flatten)]
-    plan: PlanOptions,
+    pub(super) plan: PlanOptions,
     /// Run the unfinished tasks of the plan in DIR.
     #[arg(
         long,
@@ -52,13 +52,6 @@ pub(super) struct RunOptions {
     resume: Option<PathBuf>,
     #[command(flatten)]
     work: WorkOptions,
-}
-
-impl RunOptions {
-    /// Returns true if a plan is written instead of a run.
-    pub(super) const fn is_planned(&self) -> bool {
-        self.plan.plan.is_some()
-    }
 }
 
 /// Runs the cases, writes a plan, or runs the tasks of a plan.

@@ -24,29 +24,24 @@ pub(crate) struct Arguments {
     study: StudyOptions,
 }
 
-impl Arguments {
-    /// Returns the arguments of the study.
-    fn planned(&self) -> Planned {
-        Planned {
-            what: "stability".to_owned(),
-            cases: self.cases.clone(),
-            solver: self.solver.clone(),
-            out: self.out.clone(),
-            ..Planned::default()
-        }
-    }
-}
-
 /// Studies the named cases, or the scene of the user's that the arguments name.
 pub(crate) fn stability(arguments: &Arguments) -> Outcome {
     let Arguments { cases, solver, out, own, study } = arguments;
     let Some(path) = own::scene(cases)? else {
         own.refuse_for_cases(false)?;
-        return plan_or_perform(&arguments.planned(), study, None);
+        let planned = Planned {
+            what: "stability".to_owned(),
+            cases: cases.clone(),
+            solver: solver.clone(),
+            out: out.clone(),
+            ..Planned::default()
+        };
+        return plan_or_perform(&planned, study, None);
     };
-    if study.plan.is_given() {
+    if study.plan.plan.is_some() {
         refuse!("{path}: expected cases with `--plan`, found a scene file");
     }
-    let input = own::Input { path, names: cases, solvers: solver, quantities: &[], window: None, study, out };
-    own::stability(&input, own)
+    let budget = own.budget();
+    let input = own::Input { path, names: cases, solvers: solver, quantities: &[], window: None, study, out, budget };
+    own::stability(&input)
 }

@@ -45,11 +45,6 @@ pub(crate) struct PlanOptions {
 }
 
 impl PlanOptions {
-    /// Returns true if a plan is written.
-    pub(crate) const fn is_given(&self) -> bool {
-        self.plan.is_some()
-    }
-
     /// Returns the arguments of the plan; none without `--plan`.
     pub(crate) fn planned(&self, arguments: &Arguments) -> Option<Arguments> {
         let out = self.plan.clone()?;
