@@ -4,7 +4,6 @@
 //! used if another user owns it, or if every user can write it.
 
 use super::exit;
-use grainbench::cases::solvers::Registry;
 use grainbench::harness::solvers::Solvers;
 use grainbench::studies::run_cache::{CachingSolvers, RunCache};
 use std::env;
@@ -79,11 +78,6 @@ fn owner(folder: &Path) -> Option<String> {
 #[cfg(not(unix))]
 const fn owner(_: &Path) -> Option<String> {
     None
-}
-
-/// Returns the solvers of the registry, which use the cache if there is one.
-pub(crate) fn solvers(cache: Option<&Arc<RunCache>>) -> Arc<dyn Solvers> {
-    with(Registry, cache)
 }
 
 /// Returns the given solvers, which use the cache if there is one.

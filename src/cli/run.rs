@@ -108,14 +108,12 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let sections = tasks.sections(results);
     let mut words = tasks.words.clone();
     if left > 0 {
-        let kept = if tasks.cache().is_some() { ", and the next run continues with the finished runs" } else { "" };
+        let kept = if tasks.cache.is_some() { ", and the next run continues with the finished runs" } else { "" };
         let what = format!("interrupted: {left} checks were omitted; the report contains the finished checks{kept}");
         exit::say("warning", &what);
         words.push(interrupted(left));
     }
-    if let Some(cache) = tasks.cache() {
-        words.extend(cache::words(cache));
-    }
+    words.extend(tasks.cache.as_deref().and_then(cache::words));
     let provenance = provenance(words, start.elapsed().as_secs_f64());
     let mut report = report(provenance, sections, tasks.is_whole)?;
     if let Some(program) = keeping {

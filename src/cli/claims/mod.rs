@@ -137,15 +137,8 @@ pub(crate) fn words(cases: &[String], options: &ClaimOptions) -> Vec<String> {
     if !options.levels.is_empty() {
         words.push(format!("--levels {}", options.levels.join(",")));
     }
-    if options.live {
-        words.push("--live".to_owned());
-    }
-    if options.no_controls {
-        words.push("--no-controls".to_owned());
-    }
-    if options.data.is_some() {
-        words.push("--data".to_owned());
-    }
+    let given = [("--live", options.live), ("--no-controls", options.no_controls), ("--data", options.data.is_some())];
+    words.extend(given.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name.to_owned()));
     words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
     if options.retry_failed {
         words.push("--retry-failed".to_owned());

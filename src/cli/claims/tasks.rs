@@ -19,7 +19,6 @@ use grainbench::cases::{folder, stored};
 use grainbench::harness::case::Case;
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course;
-use grainbench::harness::figure::Figure;
 use grainbench::harness::mistake;
 use grainbench::harness::run::{FinishedRun, Run, Set};
 use grainbench::harness::runner::{Runner, RunnerOptions};
@@ -30,7 +29,6 @@ use grainbench::jobs::plan::Plan;
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::{RunCost, Section};
 use grainbench::solver::Solver;
-use grainbench::solver::failure::RunError;
 use grainbench::store::key;
 use grainbench::store::log::State;
 use grainbench::studies::cost::knobs::nominal_seconds;
@@ -69,7 +67,8 @@ pub(crate) struct ClaimTasks {
     threads: usize,
     /// All tasks in the order of the report.
     all: Vec<ClaimTask>,
-    cache: Option<Arc<RunCache>>,
+    /// Cache of finished runs, if there is one.
+    pub(crate) cache: Option<Arc<RunCache>>,
     solvers: Arc<dyn Solvers>,
     runners: Vec<OnceLock<Runner>>,
 }
@@ -150,18 +149,13 @@ impl ClaimTasks {
             data: None,
             threads: 1,
             cache: None,
-            solvers: cache::solvers(None),
+            solvers: Arc::new(Registry),
         }
     }
 
     /// Sets the cache of finished runs.
     pub(crate) fn cached(self, cache: Option<Arc<RunCache>>) -> Self {
-        Self { solvers: cache::solvers(cache.as_ref()), cache, ..self }
-    }
-
-    /// Returns the cache of finished runs.
-    pub(crate) const fn cache(&self) -> Option<&Arc<RunCache>> {
-        self.cache.as_ref()
+        Self { solvers: cache::with(Registry, cache.as_ref()), cache, ..self }
     }
 
     /// Returns the indices of all tasks in the order of their execution. Claims that need a new run come first, and claims
@@ -185,31 +179,21 @@ impl ClaimTasks {
         order
     }
 
-    /// Returns the name of the case or solver to which a task belongs.
-    fn name(&self, task: ClaimTask) -> String {
-        match task {
-            ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => self.selected[case].case.name.to_owned(),
-            ClaimTask::Conformance(solver) => self.conforming[solver].solver.name(),
-        }
-    }
-
     /// Returns a runner for the selected case with index `case`, set up by the command's options.
     fn runner(&self, case: usize) -> &Runner {
-        self.runners[case].get_or_init(|| self.new_runner(case))
-    }
-
-    fn new_runner(&self, case: usize) -> Runner {
-        let selected = &self.selected[case];
-        let stranger = selected.stranger.as_ref().map(|stranger| Arc::clone(stranger) as Arc<dyn Solver>);
-        Runner::new(selected.case, Arc::clone(&self.solvers)).with(RunnerOptions {
-            stranger,
-            live: self.live,
-            thorough: self.thorough,
-            controlled: self.controls,
-            threads: self.threads,
-            // With all levels, runs with stored results are repeated too.
-            afresh: self.thorough.then_some(Set::Paper),
-            data: self.data.clone(),
+        self.runners[case].get_or_init(|| {
+            let selected = &self.selected[case];
+            let stranger = selected.stranger.as_ref().map(|stranger| Arc::clone(stranger) as Arc<dyn Solver>);
+            Runner::new(selected.case, Arc::clone(&self.solvers)).with(RunnerOptions {
+                stranger,
+                live: self.live,
+                thorough: self.thorough,
+                controlled: self.controls,
+                threads: self.threads,
+                // With all levels, runs with stored results are repeated too.
+                afresh: self.thorough.then_some(Set::Paper),
+                data: self.data.clone(),
+            })
         })
     }
 
@@ -263,7 +247,10 @@ impl TaskList for ClaimTasks {
 
     fn perform(&self, place: usize, sink: &ResultSink<'_, Section>) -> (State, Section) {
         let task = self.all[place];
-        sink.now(&self.name(task));
+        match task {
+            ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => sink.now(self.selected[case].case.name),
+            ClaimTask::Conformance(solver) => sink.now(&self.conforming[solver].solver.name()),
+        }
         match task {
             ClaimTask::Claim(case, claim) => self.claim(case, claim),
             ClaimTask::Figures(case) => self.figures(case),
@@ -386,21 +373,27 @@ impl ClaimTasks {
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
         let keys: HashSet<String> = claim.runs.iter().map(Run::key).collect();
         let (verdicts, controls) = (vec![verdict], control.into_iter().collect());
-        let runs = runs(runner, |key| keys.contains(key));
+        let runs = runs(runner).filter(|run| keys.contains(&run.key)).collect();
         (
             if is_failed { State::Failed } else { State::Done },
             Section { verdicts, controls, runs, ..Section::default() },
         )
     }
 
+    /// Draws the figures of a case for its selected claims.
     fn figures(&self, case: usize) -> (State, Section) {
-        let runner = self.runner(case);
-        let (figures, omitted) = match draw(&self.selected[case], runner) {
+        let (selected, runner) = (&self.selected[case], self.runner(case));
+        // The case's own figures may need runs that none of the selected claims uses.
+        let drawn = match selected.stranger.is_some() || selected.is_part {
+            true => course::figures(runner, &selected.claims),
+            false => course::of_case(selected.case, runner, &selected.claims),
+        };
+        let (figures, omitted) = match drawn {
             Ok(figures) => (figures, None),
             Err(error) => (Vec::new(), Some(error.to_string())),
         };
         let state = if omitted.is_some() { State::Failed } else { State::Done };
-        (state, Section { figures, omitted, runs: runs(runner, |_| true), ..Section::default() })
+        (state, Section { figures, omitted, runs: runs(runner).collect(), ..Section::default() })
     }
 }
 
@@ -412,22 +405,9 @@ fn files_of(selected: &CaseSelection) -> Result<Vec<PathBuf>, Fault> {
     Ok(folder::files(&selected.case.directory())?)
 }
 
-/// Returns the cost of the finished runs that `is_meant` selects by their keys.
-fn runs(runner: &Runner, is_meant: impl Fn(&str) -> bool) -> Vec<RunCost> {
-    let runs = runner.done().into_iter().map(|(run, done)| cost(&run, &done));
-    runs.filter(|run| is_meant(&run.key)).collect()
-}
-
-/// Draws the figures of a case for the selected claims.
-///
-/// # Errors
-/// When a run of a figure fails.
-fn draw(selected: &CaseSelection, runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    if selected.stranger.is_some() || selected.is_part {
-        // The case's own figures may need runs that none of the selected claims uses.
-        return course::figures(runner, &selected.claims);
-    }
-    course::of_case(selected.case, runner, &selected.claims)
+/// Returns the cost of the finished runs of a runner.
+fn runs(runner: &Runner) -> impl Iterator<Item = RunCost> {
+    runner.done().into_iter().map(|(run, done)| cost(&run, &done))
 }
 
 /// Returns the section of a case before any result is added.
