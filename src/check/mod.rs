@@ -32,7 +32,6 @@ use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reference::outputs::{Outputs, steps_in_words};
 use grainbench_reports::Section;
-use grainbench_scene::scene::Scene;
 use grainbench_solver::resolution::Resolution;
 use horizon::OwnRuns;
 use judgement::is_outside;
@@ -99,7 +98,12 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
     matching.sort_by(|a, b| distance(a).total_cmp(&distance(b)));
     if let Some((candidate, observed)) = matching.first_mut() {
         let covered = Coverage::new(candidate, outputs.time_step(), observed, options.partial);
-        refuse_unstable(&candidate.scene, outputs, options)?;
+        // At or above the critical time step, our own solvers would be unstable.
+        let is_unstable = |step: &f64| candidate.scene.is_unstable_at(*step) && !options.allow_unstable;
+        if let Some(step) = outputs.time_step().filter(is_unstable) {
+            let critical = candidate.scene.critical_time_step();
+            return Err(CheckError::Unstable { file: outputs.name(), critical, step });
+        }
         let open = open(subject, candidate, outputs);
         let output = CheckedOutput { candidate, outputs, observed, covered, open };
         let mut section = section(subject, &output, options);
@@ -118,17 +122,6 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         expected: "a variant with a scene".to_owned(),
         found: "none".to_owned(),
     }))
-}
-
-/// Rejects time steps at or above the critical one, because our own solvers would be unstable.
-fn refuse_unstable(scene: &Scene, outputs: &Outputs, options: Options) -> Result<(), CheckError> {
-    let critical = scene.critical_time_step();
-    match outputs.time_step() {
-        Some(step) if scene.is_unstable_at(step) && !options.allow_unstable => {
-            Err(CheckError::Unstable { file: outputs.name(), critical, step })
-        }
-        _ => Ok(()),
-    }
 }
 
 /// Returns a result without a quantity, for the files and the scene to which they belong.

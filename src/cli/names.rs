@@ -5,11 +5,6 @@ use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::run::Run;
 
-/// Returns the first run of a claim. Its variant and solver identify the result.
-pub(crate) fn row(claim: &Claim) -> Option<&Run> {
-    claim.runs.first()
-}
-
 /// Returns the name of a run's level: the name in the case, or the resolution in words.
 pub(crate) fn level_of(case: &Case, run: &Run) -> String {
     let level = case.levels.iter().find(|level| level.resolution == run.resolution);
@@ -28,7 +23,7 @@ pub(crate) fn levels(case: &Case, claims: &[Claim]) -> Vec<String> {
 /// Returns the names of the variants of a case. The plain scene is included if the result of a claim uses it.
 pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fault> {
     let mut names = case.variants()?;
-    if claims.iter().filter_map(row).any(|run| run.variant == PLAIN) {
+    if claims.iter().filter_map(|claim| claim.runs.first()).any(|run| run.variant == PLAIN) {
         push_new(&mut names, PLAIN.to_owned());
     }
     Ok(names)
@@ -37,7 +32,7 @@ pub(crate) fn variants(case: &Case, claims: &[Claim]) -> Result<Vec<String>, Fau
 /// Returns the solvers that identify results, followed by the programs with which they are compared. Each name occurs once.
 pub(crate) fn solvers(claims: &[Claim]) -> Vec<&'static str> {
     let mut names = Vec::new();
-    for run in claims.iter().filter_map(row) {
+    for run in claims.iter().filter_map(|claim| claim.runs.first()) {
         push_new(&mut names, run.solver);
     }
     let programs = claims.iter().flat_map(|claim| &claim.runs);

@@ -1,7 +1,7 @@
 //! Selection of claims by the command line.
 
 use super::exit::{Fault, refuse};
-use super::names::{level_of, levels, push_new, row, solvers};
+use super::names::{level_of, levels, push_new, solvers};
 use super::pattern;
 use super::solver;
 use super::subject::{SelectedVariants, Variant, by_case};
@@ -61,7 +61,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     let named = cases.iter().map(|name| Variant::read_with_folders(name)).collect::<Result<Vec<_>, _>>()?;
     let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
         let mut claims = (case.claims)();
-        claims.retain(|claim| row(claim).is_some_and(|run| variants.contain(run.variant)));
+        claims.retain(|claim| claim.runs.first().is_some_and(|run| variants.contain(run.variant)));
         CaseSelection { case, claims, stranger: None, is_part: false }
     };
     let mut selected: Vec<CaseSelection> = by_case(&named).into_iter().map(of_case).collect();
@@ -72,7 +72,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
             // The name of a program also selects the claims that compare our solver with it.
             let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
-            claims.retain(|claim| row(claim).is_some_and(wanted) || claim.runs.iter().any(asked));
+            claims.retain(|claim| claim.runs.first().is_some_and(wanted) || claim.runs.iter().any(asked));
         }
         match &levels {
             Levels::Default => claims.retain(|claim| claim.set() == Set::Main),

@@ -14,8 +14,8 @@ use grainbench::jobs::execute::{ResultSink, TaskList};
 use grainbench::jobs::task::{Id, Task};
 use grainbench::reports::study::load::Load;
 use grainbench::reports::study::point::{Point, PointStatus};
+use grainbench::reports::study::points_of;
 use grainbench::reports::study::step::Model;
-use grainbench::reports::study::{Study as Report, points_of};
 use grainbench::store::key;
 use grainbench::store::log::State;
 use grainbench::studies::cost::against::{compare, shared};
@@ -23,7 +23,6 @@ use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
-use std::path::Path;
 
 /// Expected durations (s) of measuring the cost of the parts of a step, and of a step with one and with 10,000 grains.
 const BESIDE: [(&str, f64); 2] = [("prices", 40.0), ("loads", 90.0)];
@@ -77,16 +76,6 @@ impl CostStudy {
     fn beside(&self) -> usize {
         if self.prices { BESIDE.len() } else { 0 }
     }
-
-    /// Returns the index of the target quantity of a task, and the index of its point.
-    fn place(&self, place: usize) -> Option<(usize, usize)> {
-        self.places.get(place.checked_sub(self.beside())?).copied()
-    }
-}
-
-/// Returns the duration of all repetitions of a point (s).
-fn seconds_of(point: &Point) -> f64 {
-    point.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum()
 }
 
 impl Tasks for CostStudy {
@@ -142,7 +131,8 @@ impl TaskList for CostStudy {
     }
 
     fn perform_group(&self, places: &[usize], sink: &ResultSink<'_, Measured>) {
-        let found: Vec<(usize, usize)> = places.iter().filter_map(|place| self.place(*place)).collect();
+        let of_point = |place: &usize| self.places.get(place.checked_sub(self.beside())?).copied();
+        let found: Vec<(usize, usize)> = places.iter().filter_map(of_point).collect();
         let Some(&(number, first)) = found.first() else { return self.perform_each(places, sink) };
         let points: Vec<usize> = found.iter().map(|(_, point)| *point).collect();
         // The tasks of a target quantity are consecutive.
@@ -150,7 +140,8 @@ impl TaskList for CostStudy {
         self.sets[number].measure(&points, &|name| sink.now(name), &mut |point, measured| {
             let is_failed = matches!(measured.standing, PointStatus::Failed | PointStatus::NotAvailable);
             let state = if is_failed { State::Failed } else { State::Done };
-            sink.leave(start + point, state, seconds_of(&measured), Ok(Measured::Point(Box::new(measured))));
+            let seconds = measured.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum();
+            sink.leave(start + point, state, seconds, Ok(Measured::Point(Box::new(measured))));
         });
     }
 }
@@ -185,18 +176,13 @@ impl Study for CostStudy {
         }
         study.diagrams.retain(|diagram| !diagram.points.is_empty());
         if let (Some(old), Some(path)) = (&old, how.against) {
-            set_against(&mut study, old, path);
+            let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
+            study.changes = compare(old, &new);
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            study.against = Some(format!("{name}, {} of {} points compared", shared(old, &new), new.len()));
         }
         how.publish(study, has_crash)
     }
-}
-
-/// Compares a study with the points of an earlier study, and names the file `path` of that study in the report.
-fn set_against(study: &mut Report, old: &[Point], path: &Path) {
-    let new: Vec<Point> = study.diagrams.iter().flat_map(|diagram| diagram.points.clone()).collect();
-    study.changes = compare(old, &new);
-    let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
-    study.against = Some(format!("{name}, {} of {} points compared", shared(old, &new), new.len()));
 }
 
 /// Returns the target quantities of the named cases, in the order of the registry.
