@@ -33,6 +33,11 @@ impl Fault {
         Self::expected(format_args!("{}:{}", path.display(), line + 1), expected, found)
     }
 
+    /// Returns an input error whose place is a key of a file.
+    pub fn at_key(path: &Path, key: impl Display, expected: impl Display, found: impl Display) -> Self {
+        Self::expected(format_args!("{}: {key}", path.display()), expected, found)
+    }
+
     /// Returns an input error whose place is a file.
     pub fn in_file(path: &Path, expected: impl Display, found: impl Display) -> Self {
         Self::expected(path.display(), expected, found)

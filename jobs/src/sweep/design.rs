@@ -15,52 +15,40 @@ pub const MOST: usize = 10_000_000;
 /// # Errors
 /// When a factor is invalid or does not fit the design. The error names the key, the expected and the actual content.
 pub(super) fn points(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
-    let wrong = |key: String, expected: &str, found: String| {
-        Err(Fault::expected(format!("{}: {key}", path.display()), expected, found))
-    };
     if let (Design::Grid, Some(points)) = (file.design, file.points) {
-        return wrong(
-            "points".to_owned(),
-            "no `points` for a grid, because its factors set the number of points",
-            points.to_string(),
-        );
+        let expected = "no `points` for a grid, because its factors set the number of points";
+        return Err(Fault::at_key(path, "points", expected, points));
     }
     for (name, factor) in &file.factors {
         let is_range = factor.from.is_some() || factor.to.is_some() || factor.count.is_some();
-        let key = format!("factors.{name}");
+        let wrong = |key: &str, expected: &str, found: String| {
+            Err(Fault::at_key(path, format_args!("factors.{name}{key}"), expected, found))
+        };
         if factor.values.is_some() == is_range {
-            return wrong(key, "`values`, or `from` and `to`", if is_range { "both" } else { "neither" }.to_owned());
+            return wrong("", "`values`, or `from` and `to`", if is_range { "both" } else { "neither" }.to_owned());
         }
         if let Some(values) = &factor.values {
             if values.is_empty() {
-                return wrong(key + ".values", "at least one value", "none".to_owned());
+                return wrong(".values", "at least one value", "none".to_owned());
             }
-            if let Some(value) = values.iter().enumerate().find(|(at, value)| values[..*at].contains(value)) {
-                return wrong(key + ".values", "each value once", format!("{} again", value.1));
+            if let Some((_, value)) = values.iter().enumerate().find(|(at, value)| values[..*at].contains(value)) {
+                return wrong(".values", "each value once", format!("{value} again"));
             }
             continue;
         }
         match (factor.from, factor.to) {
             (Some(from), Some(to)) if from.is_finite() && to.is_finite() && from < to => {
                 if factor.spacing == Spacing::Log && from <= 0.0 {
-                    return wrong(
-                        key + ".from",
-                        "a number above zero, because the spacing is logarithmic",
-                        from.to_string(),
-                    );
+                    return wrong(".from", "a number above zero, because the spacing is logarithmic", from.to_string());
                 }
             }
-            (from, to) => return wrong(key, "`from` below `to`", format!("{from:?} and {to:?}")),
+            (from, to) => return wrong("", "`from` below `to`", format!("{from:?} and {to:?}")),
         }
         match (file.design, factor.count) {
             (Design::Grid, Some(2..)) | (Design::Random | Design::LatinHypercube, None) => {}
-            (Design::Grid, count) => return wrong(key + ".count", "at least two values", format!("{count:?}")),
+            (Design::Grid, count) => return wrong(".count", "at least two values", format!("{count:?}")),
             (_, Some(count)) => {
-                return wrong(
-                    key + ".count",
-                    "no `count`, because `points` sets the number of values",
-                    count.to_string(),
-                );
+                return wrong(".count", "no `count`, because `points` sets the number of values", count.to_string());
             }
         }
     }
@@ -127,8 +115,8 @@ fn by_lot(path: &Path, file: &File) -> Result<Vec<Vec<Value>>, Fault> {
     let count = match file.points {
         Some(count) if count > 0 && count as usize <= MOST => count as usize,
         found => {
-            let place = format!("{}: points", path.display());
-            return Err(Fault::expected(place, format!("a whole number from 1 to {MOST}"), format!("{found:?}")));
+            let expected = format!("a whole number from 1 to {MOST}");
+            return Err(Fault::at_key(path, "points", expected, format!("{found:?}")));
         }
     };
     let mut lot = Pcg64Mcg::seed_from_u64(file.seed);

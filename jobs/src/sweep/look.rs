@@ -54,13 +54,9 @@ impl EvaluatedQuantity {
         gate: &SweepClaim,
         (case, variant): (Option<&'static Case>, &str),
     ) -> Result<Self, Fault> {
-        let place = format!("{}: gates", path.display());
         let Some(case) = case else {
-            return Err(Fault::expected(
-                place,
-                "a case as `scene`, because only cases have claims",
-                "a scene that is not a case",
-            ));
+            let expected = "a case as `scene`, because only cases have claims";
+            return Err(Fault::at_key(path, "gates", expected, "a scene that is not a case"));
         };
         let elsewhere = |claim: &Claim| claim.elsewhere.as_ref().map(|elsewhere| elsewhere.quantity);
         let mut claims = (case.claims)();
@@ -79,39 +75,37 @@ impl EvaluatedQuantity {
             }
             let help = did_you_mean(&gate.quantity, known.iter().copied()).map(|help| format!(" ({help})"));
             let expected = format!("a claim of {} about a single run, one of {}", case.name, known.join("; "));
-            return Err(Fault::expected(place, expected, format!("`{}`{}", gate.quantity, help.unwrap_or_default())));
+            let found = format!("`{}`{}", gate.quantity, help.unwrap_or_default());
+            return Err(Fault::at_key(path, "gates", expected, found));
         };
         if gate.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
-            return Err(Fault::expected(place + ".allowed", "a number of zero or more", "another"));
+            return Err(Fault::at_key(path, "gates.allowed", "a number of zero or more", "another"));
         }
         Ok(Self::Gate(Box::new((*claim).clone()), gate.allowed))
     }
 
     /// Reads a quantity of the sweep file.
     pub(super) fn own(path: &Path, recorded: &QuantityEntry) -> Result<Self, Fault> {
-        let place = |key: &str| format!("{}: record ({}): {key}", path.display(), recorded.quantity);
+        let wrong = |key: &str, expected: &str, found: &str| {
+            Fault::at_key(path, format_args!("record ({}): {key}", recorded.quantity), expected, found)
+        };
         let read = |key: &str, text: &str| {
-            Expression::read(text)
-                .map_err(|error| Fault::expected(place(key), "arithmetic", format!("`{text}`: {error}")))
+            Expression::read(text).map_err(|error| wrong(key, "arithmetic", &format!("`{text}`: {error}")))
         };
         if recorded.at.is_some() && recorded.over.is_some() {
-            return Err(Fault::expected(place("at"), "only one of `at` and `over`", "both"));
+            return Err(wrong("at", "only one of `at` and `over`", "both"));
         }
         if recorded.over == Some(SampleReduction::Course) {
-            return Err(Fault::expected(place("over"), "`max`, `min` or `mean`", "`course`"));
+            return Err(wrong("over", "`max`, `min` or `mean`", "`course`"));
         }
         if recorded.allowed.is_some_and(|allowed| !(allowed.is_finite() && allowed >= 0.0)) {
-            return Err(Fault::expected(place("allowed"), "a number of zero or more", "another"));
+            return Err(wrong("allowed", "a number of zero or more", "another"));
         }
         if recorded.allowed.is_some() && recorded.equals.is_none() {
-            return Err(Fault::expected(
-                place("equals"),
-                "an expected value, because `allowed` is its tolerance",
-                "none",
-            ));
+            return Err(wrong("equals", "an expected value, because `allowed` is its tolerance", "none"));
         }
         if recorded.equals.is_some() && recorded.allowed.is_none() {
-            return Err(Fault::expected(place("allowed"), "a tolerance, because `equals` is set", "none"));
+            return Err(wrong("allowed", "a tolerance, because `equals` is set", "none"));
         }
         Ok(Self::Own(Box::new(SweepQuantity {
             quantity: recorded.quantity.clone(),

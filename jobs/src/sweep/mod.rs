@@ -125,24 +125,19 @@ impl Sweep {
             let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
             Fault::expected(format!("{}:{line}", path.display()), &expected, found)
         })?;
-        let wrong = |key: &str, expected: &str, found: String| {
-            Fault::expected(format!("{}: {key}", path.display()), expected, found)
-        };
         let (source, case, scene_file) = scene(path, &file)?;
         let points = design::points(path, &file)?;
         if file.solvers.is_empty() {
-            return Err(wrong("solvers", "at least one solver with its levels", "none".to_owned()));
+            return Err(Fault::at_key(path, "solvers", "at least one solver with its levels", "none"));
         }
         if !(1..=1000).contains(&file.repetitions) {
-            return Err(wrong("repetitions", "a whole number from 1 to 1000", file.repetitions.to_string()));
+            return Err(Fault::at_key(path, "repetitions", "a whole number from 1 to 1000", file.repetitions));
         }
         if file.repetitions > 1 && !file.timed {
-            return Err(wrong("repetitions", "1, unless `timed = true`", file.repetitions.to_string()));
+            return Err(Fault::at_key(path, "repetitions", "1, unless `timed = true`", file.repetitions));
         }
-        for name in file.map.iter().flatten() {
-            if !file.factors.contains_key(name) {
-                return Err(wrong("map", "a factor", format!("`{name}`")));
-            }
+        if let Some(name) = file.map.iter().flatten().find(|name| !file.factors.contains_key(*name)) {
+            return Err(Fault::at_key(path, "map", "a factor", format_args!("`{name}`")));
         }
         let mut levels = Vec::new();
         for (place, asked) in file.solvers.iter().enumerate() {
@@ -156,7 +151,7 @@ impl Sweep {
         let own = file.record.iter().map(|recorded| EvaluatedQuantity::own(path, recorded));
         let looks = gates.chain(own).collect::<Result<Vec<_>, _>>()?;
         if looks.is_empty() {
-            return Err(wrong("gates, record", "at least one entry of `gates` or `record`", "neither".to_owned()));
+            return Err(Fault::at_key(path, "gates, record", "at least one entry of `gates` or `record`", "neither"));
         }
         let name = path.display().to_string();
         let line = read_line(path, &file)?;
@@ -397,17 +392,16 @@ impl Sweep {
 /// Reads the curve on the map.
 fn read_line(path: &Path, file: &File) -> Result<Option<Expression>, Fault> {
     let Some(line) = &file.line else { return Ok(None) };
-    let place = format!("{}: line", path.display());
     let Some(axes) = &file.map else {
-        return Err(Fault::expected(place, "`map`, because the figure needs it", "none"));
+        return Err(Fault::at_key(path, "line", "`map`, because the figure needs it", "none"));
     };
-    let formula_fault =
-        |error| Fault::expected(format!("{place}.formula"), "arithmetic", format!("`{}`: {error}", line.formula));
-    let formula = Expression::read(&line.formula).map_err(formula_fault)?;
+    let wrong = |expected: &str, found: String| Fault::at_key(path, "line.formula", expected, found);
+    let formula =
+        Expression::read(&line.formula).map_err(|error| wrong("arithmetic", format!("`{}`: {error}", line.formula)))?;
     match formula.names().into_iter().find(|name| *name != axes[0]) {
         Some(unknown) => {
             let expected = format!("arithmetic over `{}`, the first factor of the map", axes[0]);
-            Err(Fault::expected(format!("{place}.formula"), expected, format!("`{unknown}`")))
+            Err(wrong(&expected, format!("`{unknown}`")))
         }
         None => Ok(Some(formula)),
     }
@@ -441,18 +435,20 @@ fn words(value: &Value) -> String {
 
 /// Reads the resolution levels of a solver.
 fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) -> Result<Vec<Level>, Fault> {
-    let key = format!("{}: solvers ({})", path.display(), asked.solver);
+    let wrong = |key: &str, expected: &str, found: &str| {
+        Fault::at_key(path, format_args!("solvers ({}): {key}", asked.solver), expected, found)
+    };
     if asked.levels.is_empty() {
-        return Err(Fault::expected(format!("{key}: levels"), "at least one", "none"));
+        return Err(wrong("levels", "at least one", "none"));
     }
     let mut formulas = Vec::new();
     for (name, value) in flat(&file.formulas).into_iter().chain(flat(&asked.formulas)) {
-        let place = || format!("{key}: formulas.{name}");
-        let formula = Formula::read(&value).map_err(|found| Fault::expected(place(), "arithmetic", found))?;
+        let key = format!("formulas.{name}");
+        let formula = Formula::read(&value).map_err(|found| wrong(&key, "arithmetic", &found))?;
         if let Some(unknown) = formula.names().into_iter().find(|name| !file.factors.contains_key(*name)) {
             let known: Vec<&str> = file.factors.keys().map(String::as_str).collect();
             let expected = format!("arithmetic over the factors {}", known.join(", "));
-            return Err(Fault::expected(place(), expected, format!("`{unknown}`")));
+            return Err(wrong(&key, &expected, &format!("`{unknown}`")));
         }
         formulas.push((name, formula));
     }
@@ -460,15 +456,14 @@ fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) 
         flat(&file.set).into_iter().chain(flat(&asked.set)).map(|(key, value)| (key, design::json(&value))).collect();
     let mut levels: Vec<Level> = Vec::new();
     for words in &asked.levels {
-        let resolution = level::read(words)
-            .map_err(|expected| Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")))?;
+        let resolution = level::read(words).map_err(|expected| wrong("levels", &expected, &format!("`{words}`")))?;
         if !level::fits(&asked.solver, &resolution) {
             let expected = format!("a level of the kind that {} has", asked.solver);
-            return Err(Fault::expected(format!("{key}: levels"), expected, format!("`{words}`")));
+            return Err(wrong("levels", &expected, &format!("`{words}`")));
         }
         let words = resolution.to_string();
         if levels.iter().any(|known| known.words == words) {
-            return Err(Fault::expected(format!("{key}: levels"), "each level once", format!("`{words}` again")));
+            return Err(wrong("levels", "each level once", &format!("`{words}` again")));
         }
         levels.push(Level { asked: place, resolution, words, formulas: formulas.clone(), set: set.clone() });
     }
@@ -502,8 +497,8 @@ fn scene(path: &Path, file: &File) -> Result<(SceneSource, Option<&'static Case>
     let Some(case) = CASES.iter().copied().find(|case| case.name == name) else {
         let help = did_you_mean(name, CASES.iter().map(|case| case.name)).map(|help| format!(" ({help})"));
         let found = format!("`{name}`{}", help.unwrap_or_default());
-        let place = format!("{}: scene", path.display());
-        return Err(Fault::expected(place, "a case (`grainbench list`), or a scene file relative to this file", found));
+        let expected = "a case (`grainbench list`), or a scene file relative to this file";
+        return Err(Fault::at_key(path, "scene", expected, found));
     };
     let source = case.source();
     let source = match variant {
