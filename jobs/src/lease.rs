@@ -14,7 +14,7 @@ use std::fs;
 use std::io;
 use std::ops::Range;
 use std::path::{Path, PathBuf};
-use std::time::{Duration, SystemTime};
+use std::time::Duration;
 
 /// Time limits of the lock on the directory of leases. The lock is held while leases are read and one is added. The
 /// longest wait is 60 s. A lock counts as abandoned after 20 s if its process cannot be checked.
@@ -138,10 +138,11 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
         if path.extension().is_none_or(|ending| ending != ENDING) {
             continue;
         }
-        let (Ok(text), Some(age)) = (fs::read_to_string(&path), age(&path, now)) else { continue };
+        let written = fs::metadata(&path).and_then(|about| about.modified());
+        let (Ok(text), Ok(written)) = (fs::read_to_string(&path), written) else { continue };
         let Ok(contents) = serde_json::from_str::<LeaseContents>(&text) else { continue };
         let is_gone = machine::has_ended(contents.process, &contents.host) == Some(true);
-        if is_gone || age > seconds {
+        if is_gone || now.duration_since(written).unwrap_or_default().as_secs_f64() > seconds {
             let _ = fs::remove_file(&path);
         } else {
             found.push(contents);
@@ -149,12 +150,6 @@ pub fn held(plan: &Path, seconds: f64) -> Result<Vec<LeaseContents>, Fault> {
     }
     found.sort_by(|a, b| a.worker.cmp(&b.worker));
     Ok(found)
-}
-
-/// Returns the age (s) of a file at the time `now`, or `None` if the file does not exist.
-fn age(path: &Path, now: SystemTime) -> Option<f64> {
-    let written = fs::metadata(path).and_then(|about| about.modified()).ok()?;
-    Some(now.duration_since(written).unwrap_or_default().as_secs_f64())
 }
 
 #[cfg(test)]

@@ -73,12 +73,6 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
         .collect()
 }
 
-/// Returns the range of task indices of a shard.
-#[must_use]
-pub fn task_range(tasks: &[Task], shard: Shard) -> Range<usize> {
-    all(tasks, shard.count).swap_remove(shard.index as usize - 1)
-}
-
 /// Returns the recommended number of shards: the largest number whose mean expected duration is at least a minute.
 /// It is at least 1 and at most the number of groups and ungrouped tasks.
 #[must_use]

@@ -9,6 +9,7 @@ use crate::shard::{self, Shard};
 use grainbench_store::log::{Entry, Log, State, Worker};
 use grainbench_store::results::{FinishedTasks, RESULTS};
 use grainbench_store::{WriteError, machine};
+use serde_json::Value;
 use std::collections::BTreeSet;
 use std::fs;
 use std::sync::Mutex;
@@ -73,10 +74,6 @@ impl ResultFile<'_> {
     }
 }
 
-fn quoted(words: &str) -> String {
-    serde_json::to_string(words).unwrap_or_else(|_| "\"\"".to_owned())
-}
-
 /// Runs a shard of a plan. `list` performs the tasks.
 ///
 /// # Errors
@@ -88,7 +85,7 @@ pub fn work<L: TaskList>(
     watch: &dyn Watch,
     list: &L,
 ) -> Result<Summary, Fault> {
-    let range = shard::task_range(&plan.tasks, asked.shard);
+    let range = shard::all(&plan.tasks, asked.shard.count).swap_remove(asked.shard.index as usize - 1);
     let seconds = plan.head.lease_seconds;
     let contents = LeaseContents {
         worker: worker.name.clone(),
@@ -104,7 +101,7 @@ pub fn work<L: TaskList>(
         .and_then(|output| serde_json::to_string(&output).map_err(|error| error.to_string()))
     {
         Ok(json) => file.add(place, state, seconds, &json),
-        Err(words) => file.add(place, State::Crashed, seconds, &quoted(&words)),
+        Err(words) => file.add(place, State::Crashed, seconds, &Value::from(words).to_string()),
     };
     let sink = ResultSink::new(watch, &store);
     // Each task is tried at most once by this worker, even if it fails again.
