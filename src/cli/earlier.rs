@@ -44,29 +44,22 @@ impl EarlierReport {
         self.provenance.options.iter().any(|words| words.starts_with("interrupted:"))
     }
 
-    /// Returns true if a result of the claim with this solver was red, or if its control did not fail.
-    pub(crate) fn was_red(&self, case: &str, solver: &str, claim: &Claim) -> bool {
-        let (rows, controls) = self.of_claim(case, solver, claim);
-        rows.iter().any(|row| row.outcome.is_red()) || controls.iter().any(|control| !control.turned_red)
-    }
-
-    /// Returns true if an interrupted run omitted the claim or its control.
-    pub(crate) fn was_left_out(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
-        let (rows, controls) = self.of_claim(case, solver, claim);
-        self.is_interrupted() && (rows.is_empty() || with_controls && controls.is_empty())
-    }
-
-    /// Returns the results and the controls of a claim.
-    fn of_claim(&self, case: &str, solver: &str, claim: &Claim) -> (Vec<&Verdict>, Vec<&ControlResult>) {
+    /// Returns true if a result of the claim with this solver was red, if its control did not fail, or if an interrupted
+    /// run omitted the claim or its control.
+    pub(crate) fn is_open(&self, case: &str, solver: &str, claim: &Claim, with_controls: bool) -> bool {
         let variant = claim.runs.first().map_or("", |run| run.variant);
         let sought = [case, variant, solver, claim.quantity.as_str()];
         let resolution = claim.resolution();
-        let rows =
+        let mut rows =
             self.verdicts.iter().filter(|row| row.key() == [case, variant, solver, &resolution, &claim.quantity]);
         let is_its = |control: &&ControlResult| {
             [&control.case, &control.variant, &control.solver, &control.quantity].map(String::as_str) == sought
         };
-        (rows.collect(), self.controls.iter().filter(is_its).collect())
+        let mut controls = self.controls.iter().filter(is_its);
+        let is_omitted = rows.clone().next().is_none() || with_controls && controls.clone().next().is_none();
+        self.is_interrupted() && is_omitted
+            || rows.any(|row| row.outcome.is_red())
+            || controls.any(|control| !control.turned_red)
     }
 
     /// Returns the differences between a report and the earlier one, one line per result or control. Lines of red

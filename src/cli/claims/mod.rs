@@ -107,15 +107,9 @@ pub(crate) fn narrow(
     for of_case in &mut *selected {
         let case = of_case.case.name;
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
-        let solver =
-            |claim: &Claim| stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default().to_owned();
-        let controls = !options.no_controls;
         let is_meant = |claim: &Claim| {
-            let repeats = |before: &EarlierReport| {
-                let solver = solver(claim);
-                before.was_red(case, &solver, claim) || before.was_left_out(case, &solver, claim, controls)
-            };
-            before.is_none_or(repeats)
+            let solver = stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default();
+            before.is_none_or(|before| before.is_open(case, solver, claim, !options.no_controls))
         };
         let asked = of_case.claims.len();
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
