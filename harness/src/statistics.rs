@@ -64,7 +64,7 @@ pub fn median(values: &[f64]) -> f64 {
 #[must_use]
 pub fn spread(values: &[f64]) -> Option<f64> {
     let (_, variance) = mean_and_variance(values);
-    let half_width = quantile(values.len() as f64 - 1.0)? * (2.0 * variance).sqrt();
+    let half_width = quantile(CONFIDENCE, values.len() as f64 - 1.0)? * (2.0 * variance).sqrt();
     (half_width > 0.0).then_some(half_width)
 }
 
@@ -74,7 +74,7 @@ pub fn spread(values: &[f64]) -> Option<f64> {
 pub fn interval(values: &[f64]) -> Option<(f64, f64)> {
     let count = values.len() as f64;
     let (mean, variance) = mean_and_variance(values);
-    Some((mean, quantile(count - 1.0)? * (variance / count).sqrt()))
+    Some((mean, quantile(CONFIDENCE, count - 1.0)? * (variance / count).sqrt()))
 }
 
 /// Returns the mean and the variance s² of independent values; the variance of a single value is NaN.
@@ -115,8 +115,7 @@ pub fn next_mean(runs: &[&[f64]], blocks: usize, judged: usize) -> Option<(f64, 
     let correlation = correlation.clamp(0.0, 1.0);
     let effective = (width * (1.0 - correlation) / (1.0 + correlation)).max(1.0);
     let level = 1.0 - (1.0 - CONFIDENCE) / judged.max(1) as f64;
-    let half_width =
-        quantile_at(level, (count - 1.0) * effective)? * (variance * (1.0 + 1.0 / count) / effective).sqrt();
+    let half_width = quantile(level, (count - 1.0) * effective)? * (variance * (1.0 + 1.0 / count) / effective).sqrt();
     Some((of_all.iter().sum::<f64>() / width, half_width))
 }
 
@@ -128,13 +127,8 @@ fn block_means(values: &[f64], blocks: usize) -> Option<Vec<f64>> {
     Some(values[used..].chunks_exact(length).map(|block| block.iter().sum::<f64>() / length as f64).collect())
 }
 
-/// Returns Student's t of the two-sided interval with the confidence level [`CONFIDENCE`].
-fn quantile(degrees_of_freedom: f64) -> Option<f64> {
-    quantile_at(CONFIDENCE, degrees_of_freedom)
-}
-
 /// Returns Student's t of the two-sided interval with a confidence level.
-fn quantile_at(level: f64, degrees_of_freedom: f64) -> Option<f64> {
+fn quantile(level: f64, degrees_of_freedom: f64) -> Option<f64> {
     Some(StudentsT::new(0.0, 1.0, degrees_of_freedom).ok()?.inverse_cdf(0.5 + 0.5 * level))
 }
 

@@ -11,6 +11,7 @@ use crate::run::{Change, ExpectedOutcome};
 use crate::scope::Scope;
 use grainbench_scene::method::Method;
 use grainbench_solver::resolution::Resolution;
+use std::collections::BTreeSet;
 
 /// Solver setup: the scene and the resolution of one method.
 #[derive(Clone)]
@@ -62,12 +63,8 @@ pub fn of_each_variant(case: &'static Case) -> Vec<TargetQuantity> {
     for claim in (case.claims)() {
         add(case, &claim, &mut subjects);
     }
-    let kinds = |subject: &TargetQuantity| {
-        let mut kinds: Vec<Method> = subject.lanes.iter().map(|lane| lane.method).collect();
-        kinds.sort_unstable();
-        kinds.dedup();
-        kinds.len()
-    };
+    let kinds =
+        |subject: &TargetQuantity| subject.lanes.iter().map(|lane| lane.method).collect::<BTreeSet<Method>>().len();
     subjects.sort_by_key(|subject| std::cmp::Reverse(kinds(subject)));
     let mut chosen: Vec<TargetQuantity> = Vec::new();
     for subject in subjects {

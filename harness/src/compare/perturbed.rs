@@ -91,19 +91,14 @@ pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -
         .runs(runs)
         .agrees(Source::Program, move |done| {
             let horizon = step_of_horizon(columns, &done[2], &done[3])?;
-            let found: Result<Vec<Measurement>, MissingData> = columns
-                .iter()
-                .map(|column| {
-                    let (ours, theirs) = together(&done[0], &done[1], column)?;
-                    let scale = largest(&theirs);
-                    let series = done[1].series();
-                    let until = series.step.partition_point(|&step| step <= horizon);
-                    let relative =
-                        |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
-                    Ok(Measurement::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
-                })
-                .collect();
-            Measurement::worst_among(found?).ok_or_else(|| MissingData("columns to compare".to_owned()))
+            let series = done[1].series();
+            let until = series.step.partition_point(|&step| step <= horizon);
+            Measurement::worst_read(columns.iter().map(|column| {
+                let (ours, theirs) = together(&done[0], &done[1], column)?;
+                let scale = largest(&theirs);
+                let relative = |values: &[f64]| values[..until].iter().map(|value| value / scale).collect::<Vec<f64>>();
+                Ok(Measurement::worst_of(&series.time[..until], &relative(&ours), &relative(&theirs), 1.0))
+            }))
         })
         .within(computed(
             ALLOWED,

@@ -86,25 +86,16 @@ pub(super) fn rounding(scene: &Scene, ends: [&End; 2]) -> f64 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use grainbench_scene::scene::Grain;
     use nalgebra::Vector3;
 
     /// The difference of two states is the largest difference of a grain. NaN counts as the largest.
     #[test]
     fn ends_that_are_not_numbers_are_apart() {
-        let grain = |speed: f64| GrainState {
-            id: 1,
-            material: 0,
-            radius: 1.0,
-            mass: 1.0,
-            position: Vector3::zeros(),
-            velocity: Vector3::x() * speed,
-            spin: Vector3::zeros(),
-            angle: None,
-            force: None,
-            torque: None,
-            plastic_strain: 0.0,
-            virial: None,
-            mean_virial: None,
+        let grain = |speed: f64| {
+            let (position, velocity, spin) = (Vector3::zeros(), Vector3::x() * speed, Vector3::zeros());
+            let grain = Grain { material: 0, radius: 1.0, mass: 1.0, inertia: 1.0, position, velocity, spin };
+            GrainState::start(1, &grain)
         };
         let end = |speeds: [f64; 2]| End { time: 1.0, grains: speeds.map(grain).to_vec(), time_step: 0.1, steps: 10.0 };
         assert_eq!(end([0.0, 0.0]).apart(&end([1.0, -3.0])), 3.0);
