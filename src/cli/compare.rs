@@ -63,6 +63,7 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
     let words = vec!["compare".to_owned(), a, b];
     let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let mut columns = report.sections.iter().flat_map(|section| section.verdicts.iter().skip(2));
+    let is_label = |row: &Verdict| LABELS.iter().any(|label| row.quantity == quantity(label));
     let is_mute = !columns.any(|row| row.outcome.is_judged() && !is_label(row));
     let rows: Vec<_> = report.verdicts().collect();
     let text = format!("{}{}\n", line::results(&rows), counts(&comparison));
@@ -74,10 +75,6 @@ const ALONE: &str = "values in only one file are not compared";
 
 /// Columns that identify or describe grains, not their motion. If only these columns agree, nothing counts as compared.
 const LABELS: [&str; 8] = ["id", "type", "mol", "proc", "radius", "diameter", "mass", "density"];
-
-fn is_label(row: &Verdict) -> bool {
-    LABELS.iter().any(|label| row.quantity == quantity(label))
-}
 
 /// Returns the name of the quantity of a column's result.
 fn quantity(column: &str) -> String {

@@ -67,7 +67,8 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     if output.json {
         print(&results_json(report)?)?;
     } else if output.quiet {
-        print_text(&quiet_text(report))?;
+        let failing: String = failing_lines(report).into_iter().map(|line| line + "\n").collect();
+        print_text(&format!("{failing}{}\n", Headline::of_report(report).sentence()))?;
     } else {
         let text = output.text.clone().unwrap_or_else(|| format!("{}\n", summary_table_within(report, width())));
         print_text(&text)?;
@@ -105,12 +106,6 @@ pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
     if strict && amber > 0 {
         report.red_because.push(format!("strict: {amber} amber"));
     }
-}
-
-/// Returns the lines of failed results and controls, and the counts.
-fn quiet_text(report: &Report) -> String {
-    let failing: String = failing_lines(report).into_iter().map(|line| line + "\n").collect();
-    format!("{failing}{}\n", Headline::of_report(report).sentence())
 }
 
 /// Returns the exit code. It is red if the report does not pass. With `strict`, an amber result is red too.

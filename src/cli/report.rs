@@ -53,13 +53,6 @@ pub(crate) struct Arguments {
     figures: Vec<String>,
 }
 
-impl Arguments {
-    /// Returns true if an option for figures is given.
-    const fn is_of_pictures(&self) -> bool {
-        !self.beside.is_empty() || self.fringe_stress.is_some() || self.window.is_some() || self.frames.is_some()
-    }
-}
-
 /// Reads a directory and writes its page, figures and result files again. The exit code is that of the stored results.
 /// For a plan, makes the report of the finished tasks.
 pub(crate) fn report(arguments: &Arguments) -> Outcome {
@@ -94,7 +87,8 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
     if (holds(RECORD_FILE) || holds(BROKEN_FILE)) && !holds(REPORT_FILE) && !holds(STUDY_FILE) {
         return publish(arguments, &style, &pictures::named_figures(&pictures(arguments)?));
     }
-    if arguments.is_of_pictures() {
+    let Arguments { beside, fringe_stress, window, frames, .. } = arguments;
+    if !beside.is_empty() || fringe_stress.is_some() || window.is_some() || frames.is_some() {
         let there = arguments.dir.display();
         refuse!("{there}: expected {RECORD_FILE} of `simulate` for figures");
     }

@@ -176,7 +176,7 @@ fn refuse_without_use(selected: &[CaseSelection], folder: &Path) -> Result<(), F
 
 /// Performs all tasks in this process. A task that was omitted because of an interrupt has no result.
 fn perform(tasks: &ClaimTasks, options: &ClaimOptions) -> Vec<Option<Result<Section, String>>> {
-    let follower = Follower::new("checks");
+    let follower = Follower::new("checks", None);
     let tell = |finished: &Section| {
         for row in finished.verdicts.iter().filter(|_| options.verbose) {
             follower.tell(&format!("{}: {}", row.outcome.word(), line::verdict(row)));

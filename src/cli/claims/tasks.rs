@@ -263,10 +263,6 @@ impl TaskList for ClaimTasks {
 }
 
 impl Tasks for ClaimTasks {
-    fn is_timed(&self) -> bool {
-        false
-    }
-
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         self.planned(program, true)
     }

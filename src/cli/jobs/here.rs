@@ -69,7 +69,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
     };
     let jobs = if study.is_timed() { 1 } else { cores() };
     let asked = WorkRequest { shard: Shard::WHOLE, again: &[State::Crashed], jobs };
-    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks").calling(&draft))?;
+    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks", Some(&draft)))?;
     // The folder of leases is empty unless another process works on the same directory.
     let _ = fs::remove_dir(out.join(RUNNING));
     let end = format!("{} of {} tasks were finished before\n", summary.before, summary.tasks);

@@ -98,10 +98,6 @@ impl StabilityStudy {
 }
 
 impl Tasks for StabilityStudy {
-    fn is_timed(&self) -> bool {
-        false
-    }
-
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         Ok(self.items.iter().map(|item| self.task(item, program)).collect())
     }

@@ -21,7 +21,9 @@ use std::process::ExitCode;
 /// Tasks of one kind of work.
 pub(crate) trait Tasks: Sync {
     /// Returns true if the tasks measure times.
-    fn is_timed(&self) -> bool;
+    fn is_timed(&self) -> bool {
+        false
+    }
     /// Returns all tasks. `program` is the hash of this program.
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault>;
     /// Returns the hashes of the files on which the tasks depend, by path.

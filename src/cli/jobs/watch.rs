@@ -12,18 +12,13 @@ pub(crate) struct Follower<'a> {
     progress: Mutex<Option<Progress>>,
     /// Name of the tasks in the plural.
     what: &'static str,
-    /// Function that is called after each finished task.
+    /// Function that is called after each finished task, if any.
     after: Option<&'a (dyn Fn() + Sync)>,
 }
 
 impl<'a> Follower<'a> {
-    pub(crate) fn new(what: &'static str) -> Self {
-        Self { interrupt: Interrupt::listen(), progress: Mutex::new(None), what, after: None }
-    }
-
-    /// Calls a function after each finished task.
-    pub(crate) fn calling(self, after: &'a (dyn Fn() + Sync)) -> Self {
-        Self { after: Some(after), ..self }
+    pub(crate) fn new(what: &'static str, after: Option<&'a (dyn Fn() + Sync)>) -> Self {
+        Self { interrupt: Interrupt::listen(), progress: Mutex::new(None), what, after }
     }
 
     fn progress(&self) -> MutexGuard<'_, Option<Progress>> {

@@ -57,7 +57,7 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     };
     let again: &[State] = if retry_failed { &[State::Failed, State::Crashed] } else { &[] };
     let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again, jobs };
-    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks"))?;
+    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks", None))?;
     if !options.quiet {
         print(&words(&summary))?;
     }

@@ -117,8 +117,7 @@ impl PointSet {
     /// Selects the points of a target quantity. `program` is the hash of this program.
     #[must_use]
     pub fn new(subject: TargetQuantity, wanted: &PointSelection, solvers: &dyn Solvers, program: &str) -> Self {
-        let tasks = tasks(&subject, wanted, solvers, program);
-        Self { subject, tasks, counts: wanted.counts }
+        Self { tasks: tasks(&subject, wanted, solvers, program), subject, counts: wanted.counts }
     }
 
     /// Returns the number of points.
