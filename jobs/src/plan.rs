@@ -140,28 +140,10 @@ impl Plan {
     /// # Errors
     /// The error names the file, the place, what was expected and what was found.
     pub fn read(path: &Path) -> Result<Self, Fault> {
-        let head = Self::head(path)?;
-        let file = path.join(TASKS);
-        let text = read_text(&file)?;
-        if hash(&text) != head.hash {
-            return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
-        }
-        let tasks = read_tasks(&file, &text)?;
-        Ok(Self { path: path.to_owned(), head, tasks })
-    }
-
-    /// Reads the contents of `plan.toml`.
-    ///
-    /// # Errors
-    /// The error names the file, the place, what was expected and what was found.
-    fn head(path: &Path) -> Result<Head, Fault> {
         let file = path.join(HEAD);
         if !file.is_file() {
-            return Err(Fault::in_file(
-                path,
-                "a directory with a plan, written by `--plan DIR`",
-                format!("no {HEAD} in it"),
-            ));
+            let expected = "a directory with a plan, written by `--plan DIR`";
+            return Err(Fault::in_file(path, expected, format!("no {HEAD} in it")));
         }
         let head: Head = read_toml(&file)?;
         let wrong = |expected: &str, found: String| Err(Fault::in_file(&file, expected, found));
@@ -174,7 +156,13 @@ impl Plan {
         if !(head.lease_seconds.is_finite() && head.lease_seconds > 0.0) {
             return wrong("`lease_seconds` above zero", head.lease_seconds.to_string());
         }
-        Ok(head)
+        let file = path.join(TASKS);
+        let text = read_text(&file)?;
+        if hash(&text) != head.hash {
+            return Err(Fault::in_file(&file, format!("the tasks for which {HEAD} was written"), "others"));
+        }
+        let tasks = read_tasks(&file, &text)?;
+        Ok(Self { path: path.to_owned(), head, tasks })
     }
 
     /// Checks that the running program is the one that wrote the plan, and that the input files have not changed.
@@ -186,11 +174,8 @@ impl Plan {
         let here = key::of_this_program();
         if here != head.program {
             let expected = format!("the program that wrote the plan, version {}", head.version);
-            return Err(Fault::in_file(
-                &self.path,
-                expected,
-                "another build; write the plan again (unchanged tasks stay finished)",
-            ));
+            let found = "another build; write the plan again (unchanged tasks stay finished)";
+            return Err(Fault::in_file(&self.path, expected, found));
         }
         for (path, known) in &head.inputs {
             if key::of_file(&head.directory.join(path)) != *known {

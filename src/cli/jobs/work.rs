@@ -59,7 +59,10 @@ pub(crate) fn work(plan: &Path, options: &WorkOptions, jobs: Option<u16>, retry_
     let asked = WorkRequest { shard: options.shard.unwrap_or(Shard::WHOLE), again, jobs };
     let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks", None))?;
     if !options.quiet {
-        print(&words(&summary))?;
+        let Summary { tasks, before, done, failed, .. } = summary;
+        let [tasks, before, done, failures] = [tasks, before, done, failed].map(|number| number::count(number as u64));
+        let failed = if failed > 0 { format!(", {failures} of them failed") } else { String::new() };
+        print(&format!("{tasks} tasks: {before} were finished, {done} done now{failed}\n"))?;
     }
     if summary.left > 0 {
         exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
@@ -74,13 +77,6 @@ fn submit(plan: &Plan, options: &WorkOptions) -> Outcome {
         Some(job) => print(&format!("job {}: shards {} of {}\n", job.job, job.indexes, job.shards)),
         None => print("every missing task is queued or running\n"),
     }
-}
-
-fn words(summary: &Summary) -> String {
-    let &Summary { tasks, before, done, failed, .. } = summary;
-    let count = |number: usize| number::count(number as u64);
-    let failed = if failed > 0 { format!(", {} of them failed", count(failed)) } else { String::new() };
-    format!("{} tasks: {} were finished, {} done now{failed}\n", count(tasks), count(before), count(done))
 }
 
 /// Returns a description of this process as a worker.
