@@ -176,7 +176,8 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
         let curve = thinned(traced.expected, DRAWN);
         if !curve.is_empty() && !expected.iter().any(|drawn| looks_alike(&drawn.points, &curve)) {
             let rounded = |power: f64| format!("slope {}", (power * 1e3).round() / 1e3);
-            let label = traced.slope.map_or_else(|| format!("{label}, {}", expected_word(claim.source)), rounded);
+            let word = if matches!(claim.source, Source::Derived(_)) { "exact" } else { "expected" };
+            let label = traced.slope.map_or_else(|| format!("{label}, {word}"), rounded);
             // Curves with the same slope share one guide line.
             if !expected.iter().any(|guide| guide.label == label) {
                 expected.push(Curve::new(label, Stroke::Dashed, curve));
@@ -191,14 +192,6 @@ pub fn figures(runner: &Runner, claims: &[Claim]) -> Result<Vec<Figure>, RunErro
         Figure::graph(plate.name, plate.title, plate.caption, plate.axes.map(axis), [measured, expected].concat())
     };
     Ok(graphs.into_iter().map(figure).collect())
-}
-
-/// Returns the legend of an expected curve: "exact" for a derived curve, "expected" otherwise.
-const fn expected_word(source: Source) -> &'static str {
-    match source {
-        Source::Derived(_) => "exact",
-        Source::Printed(..) | Source::Program | Source::Ourselves(_) | Source::Regression(_) => "expected",
-    }
 }
 
 /// Returns true if two plotted curves differ by less than the width of a line.

@@ -3,7 +3,7 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::control::{self, WrongPhysics};
-use crate::data::{Data, SceneDataError};
+use crate::data::SceneDataError;
 use crate::expect::Measurement;
 use crate::reading::{self, Table};
 use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, Set};
@@ -317,7 +317,11 @@ impl Runner {
         slot.get_or_init(|| {
             let mut scene = match run.data {
                 None => self.case.variant(run.variant).map_err(|error| self.unreadable(run, error.to_string()))?,
-                Some(data) => self.made_from(data, run)?,
+                Some(data) => {
+                    let folder = self.options.data.as_deref().ok_or_else(|| data.needs.to_owned());
+                    let made = folder.and_then(|folder| (data.scene)(folder).map_err(SceneDataError::into_words));
+                    made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })?
+                }
             };
             if let Some((_, change)) = &run.adjustment {
                 change(&mut scene);
@@ -325,13 +329,6 @@ impl Runner {
             Ok(Arc::new(scene))
         })
         .clone()
-    }
-
-    /// Makes a scene from third-party data.
-    fn made_from(&self, data: &Data, run: &Run) -> Result<Scene, RunError> {
-        let folder = self.options.data.as_deref().ok_or_else(|| data.needs.to_owned());
-        let made = folder.and_then(|folder| (data.scene)(folder).map_err(SceneDataError::into_words));
-        made.map_err(|reason| RunError::NotAvailable { solver: self.solver_name(run), reason })
     }
 
     /// Returns the scene of a run as the case defines it. If `wrong` is true and the negative control changes the scene,
