@@ -22,7 +22,6 @@ pub(crate) fn refuse_others(path: &Path) -> Result<(), Fault> {
     Err(Fault::input(format!("--checkpoint {there}: expected no file, or a checkpoint to replace; found {found}")))
 }
 
-/// Reads a checkpoint from a file.
 pub(crate) fn read(path: &Path) -> Result<Checkpoint, Fault> {
     let refused = |reason: String| Fault::input(format!("{}: {reason}", path.display()));
     let bytes = fs::read(path).map_err(|error| refused(error.to_string()))?;

@@ -181,7 +181,6 @@ impl Write for TamedOutput {
     }
 }
 
-/// Prints a value as JSON.
 pub(crate) fn print_json(value: &impl serde::Serialize) -> Outcome {
     let text = serde_json::to_string_pretty(value)?;
     print(&(text + "\n"))

@@ -36,7 +36,6 @@ pub(crate) fn fetch(arguments: &Fetch) -> Outcome {
     print(&format!("{count} files in {}\n", target.display()))
 }
 
-/// Downloads a file with `curl`.
 fn download(address: &str, file: &Path) -> Result<(), Fault> {
     let words = ["--fail", "--location", "--silent", "--show-error", "--output"];
     let done = Command::new("curl").args(words).arg(file).arg(address).output();

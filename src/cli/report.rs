@@ -120,7 +120,6 @@ fn publish<F: Borrow<Figure>>(arguments: &Arguments, style: &FigureStyle, figure
     print(&format!("{}\n", dir.join("index.html").display()))
 }
 
-/// Reads a style of figures.
 fn style(path: &Path) -> Result<FigureStyle, Fault> {
     let named = |reason: String| Fault::input(format!("{}: {reason}", path.display()));
     let text = std::fs::read_to_string(path).map_err(|error| named(error.to_string()))?;

@@ -198,7 +198,6 @@ impl<S: Solvers> Solvers for CachingSolvers<S> {
     }
 }
 
-/// Solver with a cache of finished runs.
 struct CachingSolver {
     solver: Arc<dyn Solver>,
     name: String,

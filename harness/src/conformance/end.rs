@@ -7,7 +7,6 @@ use grainbench_solver::failure::RunError;
 use grainbench_solver::record::{GrainState, Record};
 use grainbench_solver::resolution::Resolution;
 
-/// Final state of a run.
 #[derive(Clone, Debug)]
 pub(super) struct End {
     pub(super) time: f64,

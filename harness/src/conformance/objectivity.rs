@@ -144,7 +144,6 @@ pub(super) const fn is_rigid(resolution: &Resolution) -> bool {
     matches!(resolution, Resolution::Rigid { .. })
 }
 
-/// Returns the results for deformable bodies.
 fn of_bodies(rows: &Rows<'_>) -> Vec<Verdict> {
     let levels = [Some(rows.terms.resolution), shorter(&rows.terms.resolution)];
     let judge = |named: &NamedScene, times: f64, read: fn(&dyn Solver, &Scene, &Record) -> Result<f64, NoEnd>| {

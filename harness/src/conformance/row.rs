@@ -57,7 +57,6 @@ impl Rows<'_> {
         asked.map(|entry| self.row(entry.borrow().name, resolution, quantity, find(entry))).collect()
     }
 
-    /// Returns the result for one scene.
     fn row(
         &self,
         scene: &str,

@@ -138,7 +138,6 @@ pub(super) fn held() -> Result<Vec<NamedScene>, SceneError> {
     Ok(all)
 }
 
-/// Returns true for a two-dimensional scene.
 pub(super) fn flat(scene: &Scene) -> bool {
     scene.dimension == Dimension::Two
 }

@@ -171,7 +171,6 @@ impl Builder {
         self
     }
 
-    /// Adds a plane.
     fn plane(self, name: &str, point: V, normal: V) -> Self {
         let shape = format!("plane = {{ point = {}, normal = {} }}", self.vector(point), self.vector(normal));
         self.wall(name, &shape)

@@ -45,7 +45,6 @@ impl CollectOptions {
     }
 }
 
-/// Writes the report of a plan.
 pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
     let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
     // Paths on the command line are relative to the current directory. Paths in the plan are relative to the directory

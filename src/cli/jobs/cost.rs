@@ -29,7 +29,6 @@ const BESIDE: [(&str, f64); 2] = [("prices", 40.0), ("loads", 90.0)];
 /// Number of rounds in which the cost of a step is measured.
 const ROUNDS: u32 = 5;
 
-/// Cost study.
 pub(crate) struct CostStudy {
     /// Points of each target quantity.
     sets: Vec<PointSet>,

@@ -16,7 +16,6 @@ use std::sync::Arc;
 /// Expected duration of a test of an effect (s).
 const SECONDS: f64 = 0.5;
 
-/// Effects study of cases.
 pub(crate) struct EffectStudy {
     /// Study of each case. Its tasks share runs.
     ledgers: Vec<Ledger>,

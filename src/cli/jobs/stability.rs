@@ -29,7 +29,6 @@ const CELLS: f64 = 0.05;
 /// Factor on the expected duration of a hard case. A failed case is repeated with smaller time steps.
 const TRIES: f64 = 3.0;
 
-/// Stability study.
 pub(crate) struct StabilityStudy {
     assemblies: Vec<Assembly>,
     hard: Vec<HardCase>,

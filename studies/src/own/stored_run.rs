@@ -9,7 +9,6 @@ use grainbench_solver::record::{Column, Record};
 use grainbench_solver::resolution::Resolution;
 use serde::{Deserialize, Serialize};
 
-/// Column of a finished run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredColumn {
     pub(super) name: String,
@@ -24,7 +23,6 @@ pub(super) struct StoredColumn {
     pub(super) scale: f64,
 }
 
-/// Finished run.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredRun {
     pub(super) status: LevelStatus,

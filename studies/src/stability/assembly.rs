@@ -47,7 +47,6 @@ const APART: u64 = 60;
 /// Criterion of instability.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 enum Judge {
-    /// Growth of the perturbation.
     Growth,
     /// Kinetic energy after separation.
     Energy,
