@@ -204,10 +204,12 @@ fn families(scene: &Scene) -> Vec<Family> {
     let has = |is_on: &dyn Fn(&ContactLaw) -> bool| scene.laws.iter().flatten().any(is_on);
     let mut families = Vec::new();
     let mut scaled = |name: &str, change: &dyn Fn(&mut ContactLaw, f64)| {
-        families.push(Family {
-            name: name.to_owned(),
-            sizes: SIZES.iter().map(|&size| both(scene, size, change)).collect(),
-        });
+        let with = |factor: f64| changed(scene, |law| change(law, factor));
+        let both = |amount: f64| {
+            let scenes = vec![with(1.0 - amount), with(1.0 + amount)];
+            Size { amount, words: format!("±{}", number::fraction(amount)), scenes }
+        };
+        families.push(Family { name: name.to_owned(), sizes: SIZES.map(both).into() });
     };
     if has(&|law| law.friction > 0.0) {
         scaled("friction", &|law, factor| law.friction *= factor);
@@ -235,16 +237,6 @@ fn families(scene: &Scene) -> Vec<Family> {
         families.push(Family { name: effect.word().to_owned(), sizes: vec![size] });
     }
     families
-}
-
-/// Returns two changes of one relative size: an increase and a decrease.
-fn both(scene: &Scene, size: f64, change: &dyn Fn(&mut ContactLaw, f64)) -> Size {
-    let with = |factor: f64| changed(scene, |law| change(law, factor));
-    Size {
-        amount: size,
-        words: format!("±{}", number::fraction(size)),
-        scenes: vec![with(1.0 - size), with(1.0 + size)],
-    }
 }
 
 fn changed(scene: &Scene, change: impl Fn(&mut ContactLaw)) -> Scene {

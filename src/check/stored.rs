@@ -28,7 +28,10 @@ pub(super) fn compare(case: &Case, output: &CheckedOutput<'_>) -> Vec<Verdict> {
     let compared = against(&observed.series, &observed.uncertainty, &runs, None, is_compared, scale);
     let Some((nearest, columns)) = compared else { return Vec::new() };
     // The discretisation error is of first order, so it is proportional to the time step.
-    let step_of_stored = runs.iter().find(|run| run.name == nearest).and_then(|run| time_step(&run.series));
+    let step_of_stored = runs.iter().find(|run| run.name == nearest).and_then(|run| {
+        let (time, step) = run.series.time.last().zip(run.series.step.last())?;
+        (*step > 0).then(|| time / *step as f64)
+    });
     let ratio = outputs.time_step().zip(step_of_stored).map_or(1.0, |(of_files, of_stored)| of_files / of_stored);
     let coarser = if ratio > 1.0 + 1e-6 { ratio } else { 1.0 };
     let rows = columns.into_iter().map(|compared| {
@@ -73,10 +76,4 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
             })
         })
         .collect()
-}
-
-/// Returns the mean time step of a series (s).
-fn time_step(series: &Series) -> Option<f64> {
-    let (time, step) = series.time.last().zip(series.step.last())?;
-    (*step > 0).then(|| time / *step as f64)
 }
