@@ -3,13 +3,12 @@
 
 use super::exit::{Fault, refuse};
 use super::select::CaseSelection;
-use grainbench::reference::outside::ExternalProgram;
-use grainbench::reference::outside::STORED;
+use grainbench::reference::outside::{ExternalProgram, STORED};
 use grainbench::reports::Report;
 use grainbench::reports::judged::ExternalResults;
 use grainbench::reports::study::{Study, kept_text};
 use grainbench::store::artifact::read_json;
-use grainbench::store::{ReadError, write_file};
+use grainbench::store::write_file;
 
 /// Version of a program that does not report its version.
 const UNKNOWN: &str = "unknown";
@@ -31,8 +30,8 @@ pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fa
 
 /// Reads the stored results of an external solver from the directory of its manifest.
 pub(crate) fn read(program: &ExternalProgram) -> Result<ExternalResults, Fault> {
-    let wrong = |found: ReadError| format!("--expect-stored: {found} (`--update-stored` writes the file)");
-    read_json(&program.folder().join(STORED)).map_err(|found| Fault::input(wrong(found)))
+    read_json(&program.folder().join(STORED))
+        .map_err(|found| Fault::input(format_args!("--expect-stored: {found} (`--update-stored` writes the file)")))
 }
 
 /// Returns the differences between a report and the stored results of an external solver, in words: of name, version and

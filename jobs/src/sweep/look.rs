@@ -171,10 +171,7 @@ impl EvaluatedQuantity {
     pub(super) fn quantity(&self) -> Quantity {
         match self {
             Self::Gate(claim, allowed) => Quantity {
-                words: claim
-                    .elsewhere
-                    .as_ref()
-                    .map_or_else(|| claim.quantity.clone(), |other| other.quantity.to_owned()),
+                words: claim.elsewhere.as_ref().map_or(&*claim.quantity, |other| other.quantity).to_owned(),
                 unit: claim.unit.to_owned(),
                 allowed: *allowed,
                 source: claim.source.words(),
@@ -196,20 +193,16 @@ impl EvaluatedQuantity {
                     (None, made) | (Some(_), made @ ToleranceOrigin::Interval) => made,
                     (Some(_), _) => ToleranceOrigin::Judged,
                 };
-                let allowed = || allowed.unwrap_or_else(|| own_allowance(claim, seen.done));
-                (claim.measure)(std::slice::from_ref(seen.done)).map(|measured| judged(&measured, allowed(), made))
+                let done = std::slice::from_ref(seen.done);
+                // The scene of a sweep point may differ from the scene of the case.
+                let elsewhere = || claim.elsewhere.as_ref().map(|other| (other.allowed)(&seen.done.scene));
+                let allowed = || allowed.or_else(elsewhere).unwrap_or_else(|| claim.tolerance.allowed(done));
+                (claim.measure)(done).map(|measured| judged(&measured, allowed(), made))
             }
             Self::Own(own) => own.at(seen),
         };
         found.unwrap_or_else(|missing| QuantityResult::without_value(Outcome::Unsupported, Some(missing.to_string())))
     }
-}
-
-/// Returns the largest error that passes for a claim in the scene of a sweep point, which may differ from the scene of
-/// the case.
-fn own_allowance(claim: &Claim, done: &FinishedRun) -> f64 {
-    let stated = || claim.tolerance.allowed(std::slice::from_ref(done));
-    claim.elsewhere.as_ref().map_or_else(stated, |elsewhere| (elsewhere.allowed)(&done.scene))
 }
 
 /// Compares a measurement with the largest error that passes, and returns the result for the report.
@@ -243,18 +236,13 @@ impl SweepQuantity {
             })
         };
         let Some(expected) = self.equals.as_ref().map(evaluated) else {
-            return Ok(QuantityResult {
-                value: Some(value).filter(|value| value.is_finite()),
-                ..QuantityResult::default()
-            });
+            let value = Some(value).filter(|value| value.is_finite());
+            return Ok(QuantityResult { value, ..QuantityResult::default() });
         };
         let own_scale = self.scale.as_ref().map(evaluated);
         let scale = own_scale.unwrap_or(expected.abs());
-        let row = judged(
-            &Measurement::new(value, expected, scale),
-            self.allowed.unwrap_or_default(),
-            ToleranceOrigin::Judged,
-        );
+        let measured = Measurement::new(value, expected, scale);
+        let row = judged(&measured, self.allowed.unwrap_or_default(), ToleranceOrigin::Judged);
         if own_scale.is_some_and(|scale| !is_scale(scale)) {
             let detail = Some(format!("scale: expected a number above zero, found {scale}"));
             return Ok(QuantityResult { verdict: Some(Outcome::Broken), detail, ..row });

@@ -140,6 +140,10 @@ fn slips(dice: &mut dyn FnMut(f64, f64) -> f64) -> Drawn {
     Drawn { text, exact }
 }
 
+fn middle(low: f64, high: f64) -> f64 {
+    0.5 * (low + high)
+}
+
 /// Returns the study of a scene with fixed levels.
 fn study(text: &str) -> SceneCost {
     with_study(text, (&ALWAYS, &|| false), Duration::from_secs(3600), |measurement| {
@@ -234,7 +238,7 @@ fn intervals_contain_the_true_error() {
 /// A scene that no level resolves: the sentence says so, and names the budget.
 #[test]
 fn a_sentence_says_when_nobody_reaches_the_target() {
-    let mut study = study(&flight(&mut |low, high| 0.5 * (low + high)).text);
+    let mut study = study(&flight(&mut middle).text);
     assert!(study.sentence(0.01, &[]).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01, &[]));
     for point in study.quantities.iter_mut().flat_map(|quantity| &mut quantity.points) {
         point.uncertainty = 0.02;
@@ -251,8 +255,7 @@ fn a_sentence_says_when_nobody_reaches_the_target() {
 #[test]
 fn each_column_has_its_own_scale() {
     let (rate, time, speed) = (1.6, 1.15, 3.0);
-    let middle = |low: f64, high: f64| 0.5 * (low + high);
-    let text = flight(&mut |low, high| middle(low, high)).text;
+    let text = flight(&mut middle).text;
     with_study(&text, (&ALWAYS, &|| false), Duration::from_secs(3600), |measurement| {
         for fineness in LEVELS {
             measurement.level(0, fineness, &mut ()).unwrap();
@@ -271,7 +274,7 @@ fn each_column_has_its_own_scale() {
 /// A stopped study has whole runs only, and no note. Negative control: without a stop there are further levels.
 #[test]
 fn a_stopped_study_has_whole_runs_only() {
-    let text = between(&mut |low, high| 0.5 * (low + high)).text;
+    let text = between(&mut middle).text;
     let levels = |most: usize| {
         let asked = AtomicUsize::new(0);
         let stop = || asked.fetch_add(1, Ordering::Relaxed) >= most;
@@ -315,7 +318,7 @@ impl Solvers for Breaks {
 /// a limited number of levels, and the results name it.
 #[test]
 fn a_solver_that_breaks_at_coarse_levels_gets_finer_ones() {
-    let text = between(&mut |low, high| 0.5 * (low + high)).text;
+    let text = between(&mut middle).text;
     let levels = |coarsest| {
         with_study(&text, (&Breaks(coarsest), &|| false), Duration::from_secs(5), |measurement| {
             measurement.levels(&mut ()).unwrap();
