@@ -45,6 +45,7 @@ pub struct Runner {
 }
 
 /// Options of a runner.
+#[derive(Clone)]
 pub struct RunnerOptions {
     /// External solver that replaces every solver named in the claims. It interprets the resolutions of the claims itself.
     pub stranger: Option<Arc<dyn Solver>>,

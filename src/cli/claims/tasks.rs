@@ -51,20 +51,14 @@ pub(crate) struct ClaimTasks {
     pub(crate) selected: Vec<CaseSelection>,
     /// Solvers whose conformance properties are tested.
     conforming: Vec<ConformingSolver>,
-    /// True to run the negative controls.
-    controls: bool,
-    /// True to run external programs even if a stored run exists.
-    live: bool,
-    /// True to run all resolution levels.
-    thorough: bool,
+    /// Options of the runners, without an external solver.
+    options: RunnerOptions,
     /// True if the tasks cover the whole registry with all solvers.
     pub(crate) is_whole: bool,
     /// Options for the report, in words.
     pub(crate) words: Vec<String>,
     /// External solvers that a plan names.
     strangers: NamedSolvers,
-    data: Option<PathBuf>,
-    threads: usize,
     /// All tasks in the order of the report.
     all: Vec<ClaimTask>,
     /// Cache of finished runs, if there is one.
@@ -117,11 +111,16 @@ impl ClaimTasks {
         let conforms = is_whole && (options.levels.is_empty() || thorough);
         let conforming = if conforms { conform::owing(&options.solver)? } else { Vec::new() };
         Ok(Self {
-            controls: !options.no_controls,
-            live: options.live,
-            thorough,
-            data: options.data.clone(),
-            threads: usize::from(options.threads),
+            options: RunnerOptions {
+                stranger: None,
+                live: options.live,
+                thorough,
+                controlled: !options.no_controls,
+                threads: usize::from(options.threads),
+                // With all levels, runs with stored results are repeated too.
+                afresh: thorough.then_some(Set::Paper),
+                data: options.data.clone(),
+            },
             is_whole: is_whole && options.solver.is_empty(),
             words: super::words(cases, options),
             ..Self::with(selected, conforming)
@@ -140,14 +139,10 @@ impl ClaimTasks {
             runners: selected.iter().map(|_| OnceLock::new()).collect(),
             selected,
             conforming,
-            controls: true,
-            live: false,
-            thorough: false,
+            options: RunnerOptions::default(),
             is_whole: false,
             words: Vec::new(),
             strangers: NamedSolvers::default(),
-            data: None,
-            threads: 1,
             cache: None,
             solvers: Arc::new(Registry),
         }
@@ -184,16 +179,8 @@ impl ClaimTasks {
         self.runners[case].get_or_init(|| {
             let selected = &self.selected[case];
             let stranger = selected.stranger.as_ref().map(|stranger| Arc::clone(stranger) as Arc<dyn Solver>);
-            Runner::new(selected.case, Arc::clone(&self.solvers)).with(RunnerOptions {
-                stranger,
-                live: self.live,
-                thorough: self.thorough,
-                controlled: self.controls,
-                threads: self.threads,
-                // With all levels, runs with stored results are repeated too.
-                afresh: self.thorough.then_some(Set::Paper),
-                data: self.data.clone(),
-            })
+            let options = RunnerOptions { stranger, ..self.options.clone() };
+            Runner::new(selected.case, Arc::clone(&self.solvers)).with(options)
         })
     }
 
@@ -297,7 +284,8 @@ impl ClaimTasks {
     fn planned(&self, program: &str, has_seconds: bool) -> Result<Vec<Task>, Fault> {
         let mut tasks = Vec::new();
         let mut seen: HashMap<String, usize> = HashMap::new();
-        let settings = format!("{} {} {}", !self.controls, self.live, self.thorough);
+        let RunnerOptions { controlled, live, thorough, .. } = self.options;
+        let settings = format!("{} {live} {thorough}", !controlled);
         for (at, selected) in self.selected.iter().enumerate() {
             let stranger = match &selected.stranger {
                 Some(outside) => outside.edition().map_err(Fault::input)?,
@@ -343,7 +331,7 @@ impl ClaimTasks {
 
     /// Returns the hashes of the installed programs that a claim runs. A stored run needs no program.
     fn programs(&self, case: &Case, claim: &Claim) -> String {
-        let runs = claim.runs.iter().filter(|run| self.live || !stored::exists(case, run));
+        let runs = claim.runs.iter().filter(|run| self.options.live || !stored::exists(case, run));
         runs.map(|run| Registry.edition(run.solver)).collect::<Vec<_>>().join(" ").trim().to_owned()
     }
 
@@ -351,20 +339,20 @@ impl ClaimTasks {
     fn seconds(&self, runner: &Runner, claim: &Claim) -> f64 {
         let once = |run: &Run| {
             let start = if is_program(run.solver) { START } else { 0.0 };
-            if run.kept && !self.thorough {
+            if run.kept && !self.options.thorough {
                 return KEPT;
             }
             let scene = runner.scene(run);
             start + scene.map_or(0.0, |scene| nominal_seconds(&scene, &run.resolution))
         };
         let all: f64 = claim.runs.iter().map(once).sum();
-        if self.controls { 2.0 * all } else { all }
+        if self.options.controlled { 2.0 * all } else { all }
     }
 
     /// Judges a claim and its negative control.
     fn claim(&self, case: usize, claim: usize) -> (State, Section) {
         let (claim, runner) = (&self.selected[case].claims[claim], self.runner(case));
-        let (verdict, control) = runner.judge_and_control(claim, self.controls);
+        let (verdict, control) = runner.judge_and_control(claim, self.options.controlled);
         // A solver that is not installed now may be installed later, so the task can be repeated.
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
         let keys: HashSet<String> = claim.runs.iter().map(Run::key).collect();
