@@ -106,7 +106,7 @@ pub fn work<L: TaskList>(
     let sink = ResultSink::new(watch, &store);
     // Each task is tried at most once by this worker, even if it fails again.
     let mut tried: BTreeSet<usize> = BTreeSet::new();
-    let mut is_first = true;
+    let mut before = None;
     loop {
         let (lease, others) = Lease::take(&plan.path, range.clone(), &contents, seconds)?;
         // Results are read after the lease is taken. Otherwise another worker could finish a task after the reading and
@@ -119,10 +119,7 @@ pub fn work<L: TaskList>(
             Some(entry) => asked.again.contains(&entry.state) && !tried.contains(&place),
         };
         let open: Vec<usize> = range.clone().filter(|place| is_open(*place)).collect();
-        if is_first {
-            summary.before = range.len() - open.len();
-        }
-        is_first = false;
+        summary.before = *before.get_or_insert(range.len() - open.len());
         summary.left = open.len();
         let is_mine = |place: &usize| lease.as_ref().is_some_and(|lease| lease.has(*place));
         let mine: Vec<usize> = open.iter().copied().filter(is_mine).collect();

@@ -218,12 +218,11 @@ impl Sweep {
             let (edition, is_program) = (solvers.edition(name), solvers.is_program(name));
             let step = format!("{:?}", level.resolution);
             let mut seconds = 0.0;
-            let mut looked = 0_usize;
             for (place, point) in self.points.iter().enumerate() {
                 let set = self.set(level, point);
                 // Scenes are built in the order of the points until the time budget is spent, but at least one for each
                 // level. Later points reuse the last estimate.
-                if patience > 0.0 || looked == 0 {
+                if patience > 0.0 || place == 0 {
                     let start = Instant::now();
                     let scene = self.scene(&set)?;
                     if tasks.is_empty() {
@@ -237,7 +236,6 @@ impl Sweep {
                     let once = if is_program { START + PROGRAM * once } else { once };
                     seconds = once * f64::from(self.file.repetitions);
                     patience -= start.elapsed().as_secs_f64();
-                    looked = place + 1;
                 }
                 let key = serde_json::to_string(&set).map_err(|error| Fault::Input(error.to_string()))?;
                 tasks.push(Task {
@@ -321,18 +319,16 @@ impl Sweep {
             return Ok((solver.run(scene, level, &mut ())?, Vec::new()));
         }
         let mut timings = Vec::new();
-        let mut last = None;
-        for _ in 0..self.file.repetitions {
+        loop {
             let clocked = clock::clocked(REFERENCE, || solver.run(scene, level, &mut ()));
             let record = clocked.done?;
             let wall = record.cost.wall_seconds;
             let start_up = (clocked.wall - wall).max(0.0);
             timings.push(Timing { wall, cpu: clocked.cpu, start_up, reference: clocked.reference });
-            last = Some(record);
+            if timings.len() >= self.file.repetitions as usize {
+                return Ok((record, timings));
+            }
         }
-        let missing =
-            || RunError::Resolution { solver: solver.name(), reason: "no repetition was requested".to_owned() };
-        Ok((last.ok_or_else(missing)?, timings))
     }
 
     /// Returns the report of the finished tasks. `outputs` has the result of each task, or `None`
