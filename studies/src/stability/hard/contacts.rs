@@ -125,10 +125,8 @@ fn squeezed(_scene: &Scene, record: &Record) -> Result<(), Failure> {
     near("velocity of the centre", grains[0].velocity.norm(), 0.0, 0.5)?;
     let points = record.snapshots.last().map_or(&[][..], |snapshot| &snapshot.points);
     if let Some(point) = points.iter().find(|point| point.position.y.abs() > 0.2) {
-        return Err(Failure::Tunnelling(format!(
-            "a material point is {:.3} m off the middle, behind a plane",
-            point.position.y
-        )));
+        let y = point.position.y;
+        return Err(Failure::Tunnelling(format!("a material point is {y:.3} m off the middle, behind a plane")));
     }
     match points.iter().find(|point| point.volume.is_nan() || point.volume <= 0.0) {
         Some(_) => Err(Failure::CellCollapsed),

@@ -90,20 +90,15 @@ pub fn judge(case: &HardCase, solvers: &dyn Solvers, name: &str) -> HardCaseResu
     let Some(solver) = solvers.find_within(name, LIMIT) else { return row };
     let expected = nominal_seconds(scene, &resolution(name, 1.0));
     if expected > HOPELESS {
-        row.detail = format!(
-            "a uniform grid that resolves the smallest grain would take about {:.0} h",
-            (expected / 3600.0).ceil()
-        );
+        let hours = (expected / 3600.0).ceil();
+        row.detail = format!("a uniform grid that resolves the smallest grain would take about {hours:.0} h");
         return row;
     }
     match attempt(case, &*solver, 1.0) {
         Ok(()) => row.standing = Hardness::Holds,
         Err(Stop::Cannot(error)) => {
-            row.standing = if matches!(error, RunError::NotAvailable { .. }) {
-                Hardness::NotAvailable
-            } else {
-                Hardness::Unsupported
-            };
+            let is_missing = matches!(error, RunError::NotAvailable { .. });
+            row.standing = if is_missing { Hardness::NotAvailable } else { Hardness::Unsupported };
             row.detail = error.to_string();
         }
         Err(Stop::Failed(how)) => {
@@ -171,9 +166,8 @@ fn continues(
         solver.restart(scene, resolution, &checkpoint, &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
-        return Err(Stop::Failed(Failure::Wrong(format!(
-            "{differ} grains have a different final state when the run is continued"
-        ))));
+        let what = format!("{differ} grains have a different final state when the run is continued");
+        return Err(Stop::Failed(Failure::Wrong(what)));
     }
     Ok(())
 }
