@@ -153,16 +153,10 @@ impl Runner {
         if row.outcome != Outcome::Pass {
             return row;
         }
-        match self.refused_control(claim) {
-            Some(reason) => {
-                let words = format!(
-                    "the solver cannot run the negative control of this claim, {}: {reason}",
-                    claim.control.name
-                );
-                row.left(Outcome::Unsupported, words)
-            }
-            None => row,
-        }
+        let Some(reason) = self.refused_control(claim) else { return row };
+        let control = claim.control.name;
+        let words = format!("the solver cannot run the negative control of this claim, {control}: {reason}");
+        row.left(Outcome::Unsupported, words)
     }
 
     /// Judges a claim and, if `with_control` is true and the control can be run, its negative control. All runs of the claim must
@@ -477,13 +471,9 @@ impl Runner {
         let is_outdated = |done: &FinishedRun| done.kept.as_ref().is_some_and(|made| !made.is_current);
         if row.outcome == Outcome::Pass && done.iter().any(is_outdated) {
             let case = self.case.name;
-            return row.left(
-                Outcome::Outdated,
-                format!(
-                    "the stored run was made with other solver sources; `grainbench reference keep {case} --no-cache` \
-                     repeats it"
-                ),
-            );
+            let hint = format!("`grainbench reference keep {case} --no-cache` repeats it");
+            let reason = format!("the stored run was made with other solver sources; {hint}");
+            return row.left(Outcome::Outdated, reason);
         }
         row
     }

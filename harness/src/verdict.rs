@@ -244,10 +244,8 @@ impl Verdict {
     pub fn unless_wider_than(self, most: f64) -> Self {
         if self.outcome == Outcome::Pass && self.allowed > most {
             let [allowed, most] = [self.allowed, most].map(|part| 100.0 * part);
-            return self.left(
-                Outcome::NoReference,
-                format!("inconclusive: the tolerance is {allowed:.3} % of the scale, above {most} %"),
-            );
+            let reason = format!("inconclusive: the tolerance is {allowed:.3} % of the scale, above {most} %");
+            return self.left(Outcome::NoReference, reason);
         }
         self
     }

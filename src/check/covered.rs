@@ -150,10 +150,8 @@ impl Coverage {
         if missing == 0 || row.outcome != Outcome::Pass {
             return row;
         }
-        row.left(
-            Outcome::NoReference,
-            format!("{missing} samples are not compared, because no step of the run has their times"),
-        )
+        let reason = format!("{missing} samples are not compared, because no step of the run has their times");
+        row.left(Outcome::NoReference, reason)
     }
 
     /// Returns the reason why claims about the whole run cannot be judged; `None` if the output covers the whole run.
@@ -210,25 +208,21 @@ impl Coverage {
             return row;
         }
         let [length, from] = [gap.length(), gap.from].map(|time| number::significant(time, 6));
-        row.left(
-            Outcome::NoReference,
-            format!("no sample at the times of the stored run for {length} s from t = {from} s"),
-        )
+        let reason = format!("no sample at the times of the stored run for {length} s from t = {from} s");
+        row.left(Outcome::NoReference, reason)
     }
 
     /// Returns the result about the coverage itself. It is red if the output ends early (amber if the output is
     /// declared partial), and amber if the duration of the run is unknown.
     pub(super) fn row(&self, outputs: &Outputs, row: Verdict) -> Verdict {
+        let origin = outputs.origin().map(|origin| format!("; times count from the first sample, {}", at(origin)));
         let row = Verdict {
             evidence: Evidence::Invariant,
             source: "duration of the scene".to_owned(),
             tolerance: ToleranceOrigin::Exact,
             because: format!(
                 "a run is judged only if its end is known; the tolerance is half a step plus the digits of the time{}",
-                outputs
-                    .origin()
-                    .map(|origin| format!("; times count from the first sample, {}", at(origin)))
-                    .unwrap_or_default()
+                origin.unwrap_or_default()
             ),
             ..row
         };

@@ -240,9 +240,9 @@ fn judge_mean(row: Verdict, tail: &Tail, (count, floor): (usize, f64), conventio
     let row = row.judged(&Measurement::new(found, expected, scale));
     match row.outcome {
         Outcome::Fail if tail.is_between(conventions, found) => {
-            let reason = "inconclusive: the output lies in the 99 % interval of the means of our conventions (--convention \
-                          selects one)";
-            row.left(Outcome::NoReference, reason.to_owned())
+            let reason = "inconclusive: the output lies in the 99 % interval of the means of our conventions \
+                          (--convention selects one)";
+            row.left(Outcome::NoReference, reason)
         }
         Outcome::Fail if row.error.is_some() => {
             let [low, high] = [low, high].map(|value| number::significant(value, 4));

@@ -91,11 +91,8 @@ pub(super) fn judged_in_time(
         }
         (Outcome::Pass, _) if wide as f64 > FEW * count as f64 => {
             let most = 100.0 * WIDE;
-            let reason = format!(
-                "inconclusive: for {wide} of {count} samples the tolerance is above {most} % of the \
-                                  scale"
-            );
-            row.left(Outcome::NoReference, reason)
+            let found = format!("for {wide} of {count} samples the tolerance is above {most} % of the scale");
+            row.left(Outcome::NoReference, format!("inconclusive: {found}"))
         }
         (Outcome::Pass, _) if wide > 0 => {
             let because = format!("{}; {wide} of {count} samples with too large a tolerance are skipped", row.because);

@@ -108,11 +108,8 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         let output = CheckedOutput { candidate, outputs, observed, covered, open };
         let mut section = section(subject, &output, options);
         if let Some(row) = section.verdicts.first_mut().filter(|_| starts > 1) {
-            let words = format!(
-                "; {starts} scenes of the variant match the first sample within the printed digits; the \
-                         nearest is used"
-            );
-            row.because.push_str(&words);
+            let words = "scenes of the variant match the first sample within the printed digits; the nearest is used";
+            row.because += &format!("; {starts} {words}");
         }
         return Ok(section);
     }

@@ -113,10 +113,8 @@ impl Plan {
             (None, _) => longest,
             (_, None) => shortest,
             (Some(time), _) => {
-                return Err((
-                    Outcome::Fail,
-                    format!("the time {time} s is not a whole number of steps of {longest} s"),
-                ));
+                let reason = format!("the time {time} s is not a whole number of steps of {longest} s");
+                return Err((Outcome::Fail, reason));
             }
         };
         let steps: Vec<u64> = times.iter().map(|time| (time / step).round() as u64).collect();

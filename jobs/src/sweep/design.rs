@@ -154,11 +154,9 @@ mod tests {
 
     #[test]
     fn a_grid_has_every_value_with_every_other() {
-        let found = design_points(
-            "factors.a = { values = [1, 2] }\n\
-                        factors.b = { from = 0.1, to = 10.0, count = 3, spacing = 'log' }\n",
-        )
-        .unwrap();
+        let text = "factors.a = { values = [1, 2] }\n\
+                    factors.b = { from = 0.1, to = 10.0, count = 3, spacing = 'log' }\n";
+        let found = design_points(text).unwrap();
         let rows: Vec<(f64, f64)> =
             found.iter().map(|row| (row[0].as_f64().unwrap(), row[1].as_f64().unwrap())).collect();
         assert_eq!(rows, [(1.0, 0.1), (1.0, 1.0), (1.0, 10.0), (2.0, 0.1), (2.0, 1.0), (2.0, 10.0)]);

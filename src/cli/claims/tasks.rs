@@ -85,10 +85,7 @@ impl ClaimTasks {
         let options = ClaimOptions { solver, levels, filter, no_controls, live, threads: 1, ..ClaimOptions::default() };
         let filters = Filters::read(&options.filter)?;
         if !filters.outcomes().is_empty() {
-            refuse!(
-                "--filter: expected quantity, source or evidence (`outcome` is unknown before the \
-                                     run)"
-            );
+            refuse!("--filter: expected quantity, source or evidence (`outcome` is unknown before the run)");
         }
         let mut selected = select::select(&cases, &options.solver, &options.levels)?;
         super::narrow(&mut selected, &options, &filters, None)?;

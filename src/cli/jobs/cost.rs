@@ -213,8 +213,6 @@ fn of_variant(case: &'static Case, variant: &str) -> Result<TargetQuantity, Faul
     let mut variants: Vec<&str> = all.iter().map(|subject| subject.variant).collect();
     variants.sort_unstable();
     let known = if variants.is_empty() { "no variant has one".to_owned() } else { variants.join(", ") };
-    Err(Fault::input(format!(
-        "{}/{variant}: expected a variant with an exact solution for a single run ({known}), found one without",
-        case.name
-    )))
+    let expected = format!("a variant with an exact solution for a single run ({known})");
+    Err(Fault::input(format!("{}/{variant}: expected {expected}, found one without", case.name)))
 }
