@@ -1,7 +1,7 @@
 //! Force plot of Cundall and Strack for a snapshot in two dimensions.
 
 use crate::figure::{ForceBar, ForcePlot};
-use grainbench_solver::record::{Partner, Snapshot};
+use grainbench_solver::record::{GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
 /// Returns a force plot of a snapshot. Contacts with grains that are not in the snapshot are left out.
@@ -49,13 +49,6 @@ pub fn force_plot(snapshot: &Snapshot) -> ForcePlot {
             Some((flat(middle - along * half), flat(middle + along * half)))
         })
         .collect();
-    ForcePlot {
-        discs: snapshot
-            .grains
-            .iter()
-            .map(|grain| (flat(grain.position), grain.radius, grain.angle.unwrap_or(f64::NAN)))
-            .collect(),
-        walls,
-        bars,
-    }
+    let disc = |grain: &GrainState| (flat(grain.position), grain.radius, grain.angle.unwrap_or(f64::NAN));
+    ForcePlot { discs: snapshot.grains.iter().map(disc).collect(), walls, bars }
 }

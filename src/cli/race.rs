@@ -136,10 +136,6 @@ fn track(name: &str, steps: Option<[u64; 2]>) -> Result<Track, Fault> {
         _ => Resolution::CriticalFraction(0.1),
     };
     let long = (WORK / scene.grains.len() as u64).clamp(60, MOST_STEPS);
-    Ok(Track {
-        name: name.to_owned(),
-        scene,
-        resolution,
-        steps: steps.unwrap_or([(long / 6).min(MOST_TO_COMPARE), long]),
-    })
+    let steps = steps.unwrap_or([(long / 6).min(MOST_TO_COMPARE), long]);
+    Ok(Track { name: name.to_owned(), scene, resolution, steps })
 }

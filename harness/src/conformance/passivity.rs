@@ -60,11 +60,8 @@ fn check(rows: &Rows<'_>) -> Vec<Verdict> {
 }
 
 fn gained(gain: f64, allowed: f64) -> PropertyValue {
-    PropertyValue {
-        measured: Measurement::new(gain, ExpectedValue::Bound(Bound::AtMost(0.0)), 1.0),
-        allowed,
-        made: ToleranceOrigin::Computed,
-    }
+    let measured = Measurement::new(gain, ExpectedValue::Bound(Bound::AtMost(0.0)), 1.0);
+    PropertyValue { measured, allowed, made: ToleranceOrigin::Computed }
 }
 
 /// Returns scenes of a grain that bounces between two planes, one scene per contact law and friction coefficient.

@@ -31,11 +31,8 @@ pub(super) struct PropertyValue {
 impl PropertyValue {
     /// Returns a deviation from zero. `value`, `scale` and `allowed` have the same unit.
     pub(super) fn deviation(value: f64, scale: f64, allowed: f64) -> Self {
-        Self {
-            measured: Measurement::new(value, 0.0, scale),
-            allowed: allowed / scale,
-            made: ToleranceOrigin::Computed,
-        }
+        let measured = Measurement::new(value, 0.0, scale);
+        Self { measured, allowed: allowed / scale, made: ToleranceOrigin::Computed }
     }
 }
 

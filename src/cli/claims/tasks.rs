@@ -354,11 +354,9 @@ impl ClaimTasks {
         let is_failed = matches!(verdict.outcome, verdict::Outcome::Broken | verdict::Outcome::NotAvailable);
         let keys: HashSet<String> = claim.runs.iter().map(Run::key).collect();
         let (verdicts, controls) = (vec![verdict], control.into_iter().collect());
-        let runs = runs(runner).filter(|run| keys.contains(&run.key)).collect();
-        (
-            if is_failed { State::Failed } else { State::Done },
-            Section { verdicts, controls, runs, ..Section::default() },
-        )
+        let runs: Vec<RunCost> = runs(runner).filter(|run| keys.contains(&run.key)).collect();
+        let state = if is_failed { State::Failed } else { State::Done };
+        (state, Section { verdicts, controls, runs, ..Section::default() })
     }
 
     /// Draws the figures of a case for its selected claims.

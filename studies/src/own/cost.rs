@@ -150,14 +150,11 @@ impl<'a> Measurement<'a> {
     pub fn new(study: &'a SceneStudy<'a>) -> Self {
         let scene = Scene { snapshots: 0, snapshot_times: Vec::new(), ..study.scene.clone() };
         let ladders: Vec<Ladder> = study.names.iter().map(|name| Ladder::new(name, &scene, study.solvers)).collect();
-        let finished = ladders
-            .iter()
-            .map(|ladder| Finished {
-                exponent: ladder.exponent(),
-                listed: ladder.listed.clone(),
-                ..Finished::default()
-            })
-            .collect();
+        let finished = |ladder: &Ladder| {
+            let (exponent, listed) = (ladder.exponent(), ladder.listed.clone());
+            Finished { exponent, listed, ..Finished::default() }
+        };
+        let finished = ladders.iter().map(finished).collect();
         let found = study.names.iter().map(|name| study.solvers.find_within(name, study.budget)).collect();
         Self {
             study,

@@ -42,12 +42,8 @@ pub(super) fn cases() -> Result<Vec<HardCase>, SceneError> {
          within 3 % of the approach speed";
     let mut cases = Vec::new();
     for (exponent, ratio) in [("1e-6", 1e-6), ("1e-3", 1e-3), ("1e3", 1e3), ("1e6", 1e6)] {
-        cases.push(case(
-            format!("mass-ratio-{exponent}"),
-            MOMENTA,
-            &impact([1.0, 1.0], [1e3, 1e3 * ratio], 1.0),
-            head_on,
-        )?);
+        let text = impact([1.0, 1.0], [1e3, 1e3 * ratio], 1.0);
+        cases.push(case(format!("mass-ratio-{exponent}"), MOMENTA, &text, head_on)?);
     }
     cases.push(case("size-ratio-100", MOMENTA, &impact([1.0, 0.01], [1e3, 1e3], 1.0), head_on)?);
     for (name, length) in [("units-1e-9", 1e-9), ("units-1e9", 1e9)] {
@@ -61,12 +57,8 @@ pub(super) fn cases() -> Result<Vec<HardCase>, SceneError> {
         three_in_a_row,
     )?);
     for ratio in [0.9, 1.0, 1.5, 10.0] {
-        cases.push(case(
-            format!("damping-{ratio}-of-critical"),
-            "two discs separate with at most 20 % of their approach speed",
-            &damped(ratio),
-            damped_impact,
-        )?);
+        let must = "two discs separate with at most 20 % of their approach speed";
+        cases.push(case(format!("damping-{ratio}-of-critical"), must, &damped(ratio), damped_impact)?);
     }
     cases.push(case(
         "high-spin",
