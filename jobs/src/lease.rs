@@ -23,7 +23,7 @@ const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(60), abandoned_af
 const ENDING: &str = "json";
 
 /// Contents of a lease file: the worker and its task ranges.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct LeaseContents {
     /// Name of the worker.
     pub worker: String,
@@ -158,14 +158,7 @@ mod tests {
     use std::thread::sleep;
 
     fn lease_contents(worker: &str, process: u32) -> LeaseContents {
-        LeaseContents {
-            worker: worker.to_owned(),
-            host: machine::name(),
-            process,
-            job: None,
-            tasks: Vec::new(),
-            done: 0,
-        }
+        LeaseContents { worker: worker.to_owned(), host: machine::name(), process, ..LeaseContents::default() }
     }
 
     #[test]

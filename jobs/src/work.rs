@@ -92,8 +92,7 @@ pub fn work<L: TaskList>(
         host: worker.host.clone(),
         process: worker.process,
         job: worker.job.clone(),
-        tasks: Vec::new(),
-        done: 0,
+        ..LeaseContents::default()
     };
     let mut summary = Summary { tasks: range.len(), ..Summary::default() };
     let file = ResultFile { plan, worker, log: Mutex::new(None) };

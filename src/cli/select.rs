@@ -77,7 +77,11 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
         match &levels {
             Levels::Default => claims.retain(|claim| claim.set() == Set::Main),
             Levels::All => {}
-            Levels::Named(names) => claims.retain(|claim| claim.runs.iter().any(|run| is_at(case, run, names))),
+            Levels::Named(names) => {
+                let spellings = |run: &Run| [level_of(case, run), run.resolution.to_string()];
+                let is_at = |run: &Run| spellings(run).iter().any(|name| names.contains(&unified(name)));
+                claims.retain(|claim| claim.runs.iter().any(is_at));
+            }
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
@@ -120,17 +124,11 @@ fn wanted_levels(selected: &[CaseSelection], names: &[String]) -> Result<Levels,
     for name in selected.iter().flat_map(|CaseSelection { case, claims, .. }| levels(case, claims)) {
         push_new(&mut known, name);
     }
-    let unified: Vec<String> = known.iter().map(|name| unified(name)).collect();
-    for name in names {
-        if !unified.contains(&self::unified(name)) {
-            return Err(Fault::unknown("a level", name, known.iter().map(String::as_str)));
-        }
+    let is_unknown = |name: &&String| known.iter().all(|known| unified(known) != unified(name));
+    match names.iter().find(is_unknown) {
+        Some(name) => Err(Fault::unknown("a level", name, known.iter().map(String::as_str))),
+        None => Ok(Levels::Named(names.iter().map(|name| unified(name)).collect())),
     }
-    Ok(Levels::Named(names.iter().map(|name| self::unified(name)).collect()))
-}
-
-fn is_at(case: &Case, run: &Run, levels: &[String]) -> bool {
-    [level_of(case, run), run.resolution.to_string()].iter().any(|name| levels.contains(&unified(name)))
 }
 
 /// Returns the name of a level in a unified spelling, because `dt=.1` and `dt=0.1` are the same level.

@@ -46,12 +46,11 @@ impl CollectOptions {
 }
 
 pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
-    let earlier = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
+    let mut columns = arguments.against.iter().map(|path| read_column(path)).collect::<Result<Vec<_>, _>>()?;
     // Paths on the command line are relative to the current directory. Paths in the plan are relative to the directory
     // in which the plan was made.
     let from_here = |path: &Path| absolute(path).unwrap_or_else(|_| path.to_owned());
-    let out = arguments.out.clone().unwrap_or_else(|| plan.join("report"));
-    let out = from_here(&out);
+    let out = from_here(&arguments.out.clone().unwrap_or_else(|| plan.join("report")));
     let against = arguments.against.last().map(|path| results_of(&from_here(path)));
     if let Some(out) = &arguments.out {
         check_writable(out)?;
@@ -72,8 +71,7 @@ pub(crate) fn collect(plan: &Path, arguments: &CollectOptions) -> Outcome {
         ..ReportOptions::default()
     };
     let code = study.report_of(&plan, &finished, how)?;
-    if !earlier.is_empty() {
-        let mut columns = earlier;
+    if !columns.is_empty() {
         columns.push(read_column(&out)?);
         write_trend(&out, &columns)?;
     }

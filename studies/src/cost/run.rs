@@ -4,7 +4,7 @@
 use super::knobs::{self, SweepPoint};
 use crate::clock::{self, TimedResult};
 use crate::run_cache::run_words;
-use grainbench_harness::run::{Change, FinishedRun};
+use grainbench_harness::run::FinishedRun;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::statistics::range;
 use grainbench_harness::subject::TargetQuantity;
@@ -195,7 +195,6 @@ fn tasks(subject: &TargetQuantity, wanted: &PointSelection, solvers: &dyn Solver
     for lane in &subject.lanes {
         let mut scene = plain.clone();
         if let Some(change) = &lane.prepare {
-            let change: &Change = change;
             change(&mut scene);
         }
         let scene = Arc::new(scene);
