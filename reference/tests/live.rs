@@ -18,32 +18,16 @@ use grainbench_solver::failure::{Failure, RunError};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 
-const SCENE: &str = r#"title = "A disc in flight"
-dimension = 2
-duration = 0.02
-
-[materials.rock]
-density = 1000.0
-
-[contacts.rock]
-between = ["rock", "rock"]
-normal_stiffness = 1e6
-
-[grains.disc]
-material = "rock"
-radius = 0.5
-position = [0.0, 0.0]
-velocity = [1.0, 0.0]
-
-[output]
-every = 0.01
-
-[probes]
-disc = { grain = "disc" }
-"#;
-
+/// Returns the scene of a disc in flight at 1 m/s, with three samples.
 fn scene() -> Scene {
-    SceneSource::from_text("scene.toml", Path::new("."), SCENE).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    let text = include_str!("../../tests/scenes/flight.toml");
+    SceneSource::from_text("scene.toml", Path::new("."), text)
+        .set("duration", "0.02")
+        .set("grains.disc.velocity", "[1.0, 0.0]")
+        .set("output.every", "0.01")
+        .set("probes.disc.grain", "disc")
+        .scene(&grainbench_scene::resolve::no_data_file)
+        .unwrap()
 }
 
 /// Creates an executable script in a folder.

@@ -85,50 +85,17 @@ const LAWS: [&str; 8] = [
 /// Returns a scene of discs, or of spheres for Hertz contacts, between periodic sides. It has an uneven floor, a moving
 /// wall above, and a group with prescribed motion.
 fn discs(law: &str) -> String {
-    format!(
-        "title = 'discs'\ndimension = 2\nduration = 1.0\ngravity = [0.0, -10.0]\nglobal_damping = 20.0\n\
-         domain = {{ low = [0.0, -1.0], high = [4.0, 9.0], periodic = [true, false] }}\n\
-         grain_shape = '{}'\nmaterials.m = {{ density = 1000.0, young_modulus = 1e7, poisson_ratio = 0.3 }}\n\
-         contacts.all = {{ between = ['m', 'm'], {law} }}\n\
-         [grains.g]\nmaterial = 'm'\nradius = 0.15\n\
-         lattice = {{ origin = [0.2, 0.16], spacing = [0.33, 0.31], count = [12, 6] }}\n\
-         [grains.d]\nmaterial = 'm'\nradius = 0.15\nposition = [2.0, 2.1]\n[driven.d]\ngrains = 'd'\n\
-         [walls.floor]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n\
-         [walls.step]\nmaterial = 'm'\nsegment = [[1.0, -0.1], [1.3, 0.02]]\n\
-         [walls.lid]\nmaterial = 'm'\nplane = {{ point = [0.0, 3.0], normal = [0.0, -1.0] }}\n\
-         motion = [{{ velocity = [1e-6, 0.0] }}, {{ sine = {{ amplitude = [0.0, 1e-6], frequency = 5.0 }} }}]\n",
-        if law.contains("hertz") { "sphere" } else { "disc" }
-    )
+    let discs = include_str!("../scenes/discs-between-walls.toml").replace("normal_stiffness = 1e5", law);
+    if law.contains("hertz") { discs.replace("'disc'", "'sphere'") } else { discs }
 }
 
 /// Returns a scene of spheres with each kind of wall. Some spheres are removed during the run.
 fn spheres(law: &str) -> String {
-    format!(
-        "title = 'spheres'\ndimension = 3\nduration = 1.0\ngravity = [0.0, 0.0, -10.0]\nglobal_damping = 20.0\n\
-         domain = {{ low = [-2.0, -2.0, -9.0], high = [2.0, 2.0, 9.0], periodic = [true, false, false] }}\n\
-         removal = {{ low = [-3.0, -3.0, -0.5], high = [3.0, 3.0, 9.0], every_cycles = 50 }}\n\
-         materials.m = {{ density = 1000.0, young_modulus = 1e7, poisson_ratio = 0.3 }}\n\
-         contacts.all = {{ between = ['m', 'm'], {law} }}\n\
-         [grains.g]\nmaterial = 'm'\nradius = 0.2\n\
-         lattice = {{ origin = [-1.5, -0.85, 0.45], spacing = [0.41, 0.42, 0.43], count = [8, 5, 3] }}\n\
-         [walls.floor]\nmaterial = 'm'\n\
-         rectangle = {{ corner = [-3.0, -1.5, 0.0], edges = [[6.0, 0.0, 0.0], [0.0, 4.0, 0.0]] }}\n\
-         [walls.side]\nmaterial = 'm'\nplane = {{ point = [0.0, -1.6, 0.0], normal = [0.0, 1.0, 0.0] }}\n\
-         motion = [{{ velocity = [1e-6, 0.0, 0.0] }}]\n\
-         [walls.trough]\nmaterial = 'm'\ncylinder = {{ axis = [[-9.0, 0.0, 1.0], [9.0, 0.0, 1.0]], radius = 1.6 }}\n\
-         [walls.cone]\nmaterial = 'm'\ncone = {{ axis = [[0.0, 0.0, -2.0], [0.0, 0.0, 3.0]], radii = [1.9, 2.8] }}\n\
-         [walls.mesh]\nmaterial = 'm'\nmesh = {{ file = 'roof.stl', unit = 'm', open = true }}\n\
-         motion = [{{ spin = [0.0, 0.0, 1e-6], centre = [0.0, 0.0, 0.0] }}]\n\
-         [walls.lid]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0, 1.7], normal = [0.0, 0.0, -1.0] }}\n\
-         piston = {{ force = 30.0, mass = 50.0, damping = 5.0 }}\n"
-    )
+    include_str!("../scenes/spheres-between-walls.toml").replace("normal_stiffness = 1e5", law)
 }
 
 /// Two triangles that rise from the floor.
-const ROOF: &str = "solid roof\n\
-    facet normal 0 0 0\nouter loop\nvertex -0.5 -1.0 -0.1\nvertex 0.0 -1.0 0.15\nvertex 0.0 1.0 0.15\nendloop\nendfacet\n\
-    facet normal 0 0 0\nouter loop\nvertex -0.5 -1.0 -0.1\nvertex 0.0 1.0 0.15\nvertex -0.5 1.0 -0.1\nendloop\nendfacet\n\
-    endsolid roof\n";
+const ROOF: &str = include_str!("../scenes/roof.stl");
 
 #[test]
 fn steps_of_grains_allocate_nothing() {
@@ -150,23 +117,8 @@ fn steps_of_grains_allocate_nothing() {
 
 /// Returns a scene of a body on a wall and a body above it, in two or three dimensions.
 fn bodies(material: &str, dimension: usize) -> String {
-    let (place, up, low, high) = match dimension {
-        2 => ("[0.5, 0.99]", "[0.0, 1.0]", "[0.0, 0.0]", "[1.0, 0.5]"),
-        _ => ("[0.5, 0.5, 0.99]", "[0.0, 0.0, 1.0]", "[0.0, 0.0, 0.0]", "[1.0, 1.0, 0.5]"),
-    };
-    let at = |last: &str| if dimension == 2 { format!("[0.0, {last}]") } else { format!("[0.0, 0.0, {last}]") };
-    format!(
-        "title = 'bodies'\ndimension = {dimension}\nduration = 1.0\nreference_length = 0.5\ngravity = {}\n\
-         largest_initial_overlap = 0.5\n\
-         materials.m = {{ density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3, {material} }}\n\
-         contacts.all = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.3 }}\n\
-         [grains.g]\nmaterial = 'm'\nradius = 0.5\nposition = {place}\nvelocity = {}\n\
-         [bodies.b]\nmaterial = 'm'\nbox = {{ low = {low}, high = {high} }}\n\
-         [walls.floor]\nmaterial = 'm'\nplane = {{ point = {}, normal = {up} }}\n",
-        at("-1.0"),
-        at("-0.2"),
-        at("0.0")
-    )
+    let bodies = [include_str!("../scenes/bodies-2d.toml"), include_str!("../scenes/bodies-3d.toml")];
+    bodies[dimension - 2].replace("constitutive = 'hypoelastic'", material)
 }
 
 #[test]

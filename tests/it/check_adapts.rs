@@ -41,15 +41,7 @@ fn keys_follow_other_keys() {
 /// A grain on a floor keeps its static overlap, and grains on it move with it.
 #[test]
 fn grains_move_with_a_radius() {
-    let directory = temporary();
-    let scene = "title = 't'\ndimension = 2\nduration = 0.1\ngravity = [0.0, -10.0]\nmaterials.m.density = 1000.0\n\
-         contacts.m = { between = ['m', 'm'], normal_stiffness = 1e6 }\n\
-         [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
-         [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.3]\n\
-         [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.0996858407346410]\n\
-         [grains.d]\nmaterial = 'm'\nradius = 0.1\nposition = [2.0, 0.5]\n\
-         [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
-    directory.write("s.toml", scene);
+    let directory = temporary_with("s.toml", include_str!("../scenes/four-discs.toml"));
     let heights = |set: &str| -> Vec<f64> {
         let answer = directory.run(format!("scene s.toml {set}"));
         let resolved = answer.json();
@@ -69,12 +61,7 @@ fn grains_move_with_a_radius() {
 }
 
 /// A sphere that hits a floor obliquely, with friction and dashpots. The contact conventions differ by 12 %.
-const OBLIQUE: &str = "title = 'Oblique impact'\ndimension = 3\nduration = 0.1\ngravity = [0.0, 0.0, -9.81]\n\
-     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e4\n\
-     tangential_stiffness = 5e3\nfriction = 0.5\nnormal_damping = 400.0\ntangential_damping = 200.0\n\
-     [grains.a]\nmaterial = 'g'\nradius = 0.005\nposition = [0.0, 0.0, 0.02]\nvelocity = [1.0, 0.0, -1.0]\n\
-     [walls.floor]\nmaterial = 'g'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
-     [output]\nevery = 0.001\n[probes]\na = { grain = 'a' }\ncontact = { contact = ['a', 'floor'] }\n";
+const OBLIQUE: &str = include_str!("../scenes/oblique-impact.toml");
 
 /// The output is compared with the nearest convention, with its own tolerance. The summary names the convention.
 #[test]
@@ -109,15 +96,7 @@ fn the_nearest_convention_is_judged_by_its_own_tolerance() {
 }
 
 /// Thirty discs fall into a box. After the horizon of the run, only means are compared.
-const THIRTY: &str = "title = 'Thirty discs'\ndimension = 2\nduration = 0.3\ngravity = [0.0, -9.81]\n\
-     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e5\n\
-     tangential_stiffness = 5e4\nfriction = 0.5\nnormal_damping = 60.0\ntangential_damping = 30.0\n\
-     [grains.a]\nmaterial = 'g'\nradius = 0.005\nvelocity = [0.3, 0.0]\n\
-     lattice = { origin = [0.006, 0.01], spacing = [0.0115, 0.0115], count = [6, 5], perturbation = 6e-4, seed = 3 }\n\
-     [walls.floor]\nmaterial = 'g'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
-     [walls.left]\nmaterial = 'g'\nplane = { point = [0.0, 0.0], normal = [1.0, 0.0] }\n\
-     [walls.right]\nmaterial = 'g'\nplane = { point = [0.075, 0.0], normal = [-1.0, 0.0] }\n\
-     [output]\nevery = 0.002\n[probes]\nall = { system = true }\nfloor = { wall = 'floor' }\n";
+const THIRTY: &str = include_str!("../scenes/thirty-discs.toml");
 
 #[test]
 fn a_wrong_friction_of_many_grains_is_red() {
@@ -130,15 +109,7 @@ fn a_wrong_friction_of_many_grains_is_red() {
 }
 
 /// 605 discs flow out of a hopper. Only their numbers are known, as in the log of a program.
-const HOPPER: &str = "title = 'A hopper'\ndimension = 2\nduration = 1.6\ngravity = [0.0, -9.81]\n\
-     materials.g.density = 2500.0\n[contacts.g]\nbetween = ['g', 'g']\nnormal_stiffness = 1e5\n\
-     tangential_stiffness = 2.9e4\nfriction = 0.5\nrestitution = 0.6\n[grains.a]\nmaterial = 'g'\nradius = 0.005\n\
-     lattice = { origin = [-0.0525, 0.0055], spacing = [0.0105, 0.0105], count = [11, 55], perturbation = 1e-4, seed = 1 }\n\
-     [walls]\nleft = { material = 'g', plane = { point = [-0.06, 0.0], normal = [1.0, 0.0] } }\n\
-     right = { material = 'g', plane = { point = [0.06, 0.0], normal = [-1.0, 0.0] } }\n\
-     floor = { material = 'g', segment = [[-0.06, 0.0], [-0.028, 0.0]] }\n\
-     other = { material = 'g', segment = [[0.06, 0.0], [0.028, 0.0]] }\n\
-     [removal]\nlow = [-0.1, -0.05]\nhigh = [0.1, 1.0]\n[output]\nevery = 0.01\n[probes]\ndiscs = { count = true }\n";
+const HOPPER: &str = include_str!("../scenes/hopper.toml");
 
 /// The flow rate reveals a wrong friction. The tolerance is the scatter of our runs, and a right run of another convention and
 /// another rounding lies within it. The result says how long a run must be to be conclusive.

@@ -38,25 +38,10 @@ fn a_rerun_gives_the_same_bits() {
 }
 
 /// 1600 discs that fall on each other and roll across a periodic boundary.
-const MANY: &str = "title = 't'\ndimension = 2\nduration = 2.0\ngravity = { magnitude = 9.8, slope_deg = 20.0 }\n\
-                    domain = { low = [0.0, 0.0], high = [30.0, 60.0], periodic = [true, false] }\n\
-                    materials.m = { density = 1000.0 }\n\
-                    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
-                    friction = 0.5, restitution = 0.5 }\n\
-                    [grains.g]\nmaterial = 'm'\nrandom = { count = 1600, radius_range = [0.3, 0.5], speed = 5.0, seed = 3 }\n\
-                    [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
-                    [probes]\nall.system = true\n";
+const MANY: &str = include_str!("../scenes/many-discs.toml");
 
 /// Two oscillating blocks, one fixed and one that falls onto a slope, with the energy budget.
-const BLOCKS: &str = "title = 't'\ndimension = 2\nduration = 0.5\nreference_length = 1.0\ngravity = [0.5, -2.0]\n\
-                      materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
-                      contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e3, \
-                      tangential_stiffness = 1.0e3, friction = 0.3 }\n\
-                      [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [3.0, 2.0] }\nfixed = ['x-low']\n\
-                      wave = { amplitude = 0.4 }\n\
-                      [bodies.c]\nmaterial = 'm'\nbox = { low = [4.0, 0.05], high = [6.0, 2.0] }\n\
-                      [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, -0.01], normal = [0.0, 1.0] }\n\
-                      [probes]\nall.system = true\n";
+const BLOCKS: &str = include_str!("../scenes/two-blocks.toml");
 
 /// The number of threads changes no output: series, snapshots, contacts and checkpoints. A run can continue from a
 /// checkpoint with another number of threads.
@@ -83,26 +68,8 @@ fn threads_leave_no_trace() {
 }
 
 /// Random discs with restitution on a slope under a rotating wall, and a neo-Hookean block.
-const SCENES: [(&str, &str); 2] = [
-    (
-        "dem",
-        "title = 't'\ndimension = 2\nduration = 0.2\ngravity = { magnitude = 9.8, slope_deg = 17.3 }\n\
-         domain = { low = [0.0, 0.0], high = [4.0, 4.0] }\n\
-         materials.m = { density = 1000.0, young_modulus = 1.0e7, poisson_ratio = 0.3 }\n\
-         contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, \
-         friction_angle_deg = 31.7, restitution = 0.83 }\n\
-         [grains.g]\nmaterial = 'm'\nrandom = { count = 40, radius_range = [0.1, 0.2], speed = 1.0, seed = 3 }\n\
-         [walls.w]\nmaterial = 'm'\nsegment = [[0.0, -0.1], [4.0, -0.1]]\n\
-         motion = [{ spin = 0.7, centre = [2.0, 0.0] }]\n[probes]\nall.system = true\n",
-    ),
-    (
-        "mpm",
-        "title = 't'\ndimension = 2\nduration = 5.0\nreference_length = 1.0\n\
-         materials.m = { density = 1.0, young_modulus = 100.0, poisson_ratio = 0.3 }\n\
-         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [2.0, 1.0] }\nfixed = ['x-low']\n\
-         wave = { amplitude = 2.0 }\n[probes]\nb.body = 'b'\nall.system = true\n",
-    ),
-];
+const SCENES: [(&str, &str); 2] =
+    [("dem", include_str!("../scenes/turning-wall.toml")), ("mpm", include_str!("../scenes/vibrating-block.toml"))];
 
 /// The system library uses other functions if some features of the processor are masked. Our solvers have their own
 /// functions, so their results do not change.

@@ -11,48 +11,7 @@ use std::fmt::Write;
 use std::path::Path;
 
 /// Scene of spheres that fall into a box without a lid and come to rest.
-const SCENE: &str = r#"title = "Spheres in a box"
-dimension = 3
-duration = 20.0
-gravity = [0.0, 0.0, -10.0]
-domain = { low = [0.0, 0.0, 0.0], high = [5.0, 5.0, 10.0] }
-
-[materials.m]
-density = 1.0
-
-[contacts.all]
-between = ["m", "m"]
-normal_stiffness = 2e3
-tangential_stiffness = 1e3
-friction = 0.4
-normal_damping = 40.0
-tangential_damping = 20.0
-
-[grains.g]
-material = "m"
-radius = 0.5
-lattice = { origin = [0.55, 0.6, 0.6], spacing = [1.12, 1.16, 1.2], count = [4, 4, 6] }
-
-[walls.floor]
-material = "m"
-plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }
-[walls.left]
-material = "m"
-plane = { point = [0.0, 0.0, 0.0], normal = [1.0, 0.0, 0.0] }
-[walls.right]
-material = "m"
-plane = { point = [5.0, 0.0, 0.0], normal = [-1.0, 0.0, 0.0] }
-[walls.front]
-material = "m"
-plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }
-[walls.back]
-material = "m"
-plane = { point = [0.0, 5.0, 0.0], normal = [0.0, -1.0, 0.0] }
-
-[output]
-every = 5.0
-snapshots = 3
-"#;
+const SCENE: &str = include_str!("../scenes/spheres-in-a-box.toml");
 
 /// Returns the snapshot of the packing at rest.
 fn packing() -> Snapshot {

@@ -10,27 +10,10 @@ use grainbench::solver::resolution::Resolution;
 use std::path::Path;
 
 /// Discs on a floor that overlap, slip and rotate. A group on top has prescribed motion.
-const DISCS: &str = "title = 'discs'\ndimension = 2\nduration_cycles = 60\ngravity = [0.0, -9.81]\n\
-    largest_initial_overlap = 0.1\n\
-    materials.m.density = 2500.0\n\
-    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, \
-    friction = 0.1, normal_damping = 10.0 }\n\
-    [grains.g]\nmaterial = 'm'\nradius = 0.05\n\
-    lattice = { origin = [0.05, 0.049], spacing = [0.098, 0.098], count = [40, 30] }\nspin = 3.0\nvelocity = [0.5, 0.0]\n\
-    [grains.d]\nmaterial = 'm'\nradius = 0.05\nlattice = { origin = [0.05, 2.99], spacing = [0.1, 0.1], count = [7, 1] }\n\
-    [grains.a]\nmaterial = 'm'\nradius = 0.05\nposition = [4.2, 0.049]\n\
-    [grains.b]\nmaterial = 'm'\nradius = 0.05\nposition = [4.299, 0.05]\n\
-    [driven.lid]\ngrains = 'd'\nvelocity = [0.2, 0.0]\n\
-    [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
-    [output]\nevery_cycles = 7\nsnapshots = 2\n";
+const DISCS: &str = include_str!("../scenes/sliding-discs.toml");
 
 /// Two colliding elastic discs.
-const SOFT: &str = "title = 'soft'\ndimension = 2\nduration = 0.02\nlargest_initial_overlap = 0.2\n\
-    materials.m = { density = 1000.0, young_modulus = 1.0e6, poisson_ratio = 0.3 }\n\
-    contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0e6, tangential_stiffness = 1.0e6, friction = 0.3 }\n\
-    [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n\
-    [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [0.988, 0.1]\n\
-    [output]\nevery = 0.004\nsnapshots = 2\n";
+const SOFT: &str = include_str!("../scenes/soft-discs.toml");
 
 fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, RunObserver) {
     let mut observer =
@@ -110,22 +93,9 @@ fn memory(path: &Path, simulate: &str) -> f64 {
 #[cfg(target_os = "linux")]
 fn a_grain_takes_at_most_seven_hundred_bytes_and_a_point_half_of_that() {
     let path = temporary();
-    let spheres = |layers: u32| {
-        format!(
-            "title = 'spheres'\ndimension = 3\nduration_cycles = 3\ngravity = [0.0, 0.0, -1.0]\n\
-             largest_initial_overlap = 0.1\n\
-             domain = {{ low = [0.0, 0.0, 0.0], high = [39.92, 39.92, 200.0], periodic = [true, true, false] }}\n\
-             materials.m.density = 1.909859317102744\n\
-             contacts.m = {{ between = ['m', 'm'], normal_stiffness = 2.0e5, tangential_stiffness = 57142.857142857145, \
-             friction = 0.5, normal_damping = 50.0 }}\n\
-             [grains.g]\nmaterial = 'm'\nradius = 0.5\n\
-             lattice = {{ origin = [0.5, 0.5, 0.499], spacing = [0.998, 0.998, 0.998], count = [40, 40, {layers}] }}\n\
-             [walls.floor]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}\n\
-             [output]\nevery_cycles = 3\n"
-        )
-    };
-    path.write("few.toml", spheres(50));
-    path.write("many.toml", spheres(150));
+    let spheres = include_str!("../scenes/layers-of-spheres.toml");
+    path.write("few.toml", spheres);
+    path.write("many.toml", spheres.replace("count = [40, 40, 50]", "count = [40, 40, 150]"));
     let [few, many] = ["few.toml", "many.toml"].map(|scene| memory(&path, &format!("simulate {scene} --solver dem")));
     let grain = (many - few) / f64::from(40 * 40 * 100);
     assert!(grain > 300.0 && grain <= 700.0, "{grain} B a grain");

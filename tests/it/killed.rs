@@ -12,11 +12,7 @@ use std::path::Path;
 use std::time::{Duration, Instant};
 
 /// Scene of discs in a row with many snapshots, so that a run writes many files.
-const SCENE: &str = "title = 't'\ndimension = 2\nduration_cycles = 4000\n[materials.m]\ndensity = 1000.0\n\
-     [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n\
-     [grains.a]\nmaterial = 'm'\nradius = 0.1\nvelocity = [1.0, 0.0]\n\
-     lattice = { origin = [0.0, 0.0], spacing = [0.25, 0.25], count = [8, 4] }\n\
-     [output]\nsnapshots = 60\n[probes]\nall = { system = true }\n[variants.shorter]\noutput.snapshots = 40\n";
+const SCENE: &str = include_str!("../scenes/rows-of-discs.toml");
 
 /// Two runs that write different files. Each run is given by its command line.
 struct Pair {

@@ -6,13 +6,9 @@ use std::process::Stdio;
 
 /// Returns a scene of a falling disc. In steel, a wave crosses a cell of 1.25 mm in 0.2 µs.
 fn scene(young_modulus: f64, duration: f64) -> String {
-    format!(
-        "title = 'A disc falls on a floor'\ndimension = 2\nduration = {duration:.1}\ngravity = [0.0, -9.81]\n\
-         materials.m = {{ density = 7800.0, young_modulus = {young_modulus:e}, poisson_ratio = 0.3 }}\n\
-         contacts.all = {{ between = ['m', 'm'], law = 'coulomb', friction = 0.3 }}\n\
-         grains.disc = {{ material = 'm', radius = 0.01, position = [0.0, 0.05] }}\n\
-         walls.floor = {{ material = 'm', plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}\n"
-    )
+    include_str!("../scenes/falling-disc.toml")
+        .replace("young_modulus = 2.1e11", &format!("young_modulus = {young_modulus:e}"))
+        .replace("duration = 20.0", &format!("duration = {duration:.1}"))
 }
 
 /// Starts a run, ends it after its first line on the standard error, and returns this line.

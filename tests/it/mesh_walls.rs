@@ -45,20 +45,13 @@ fn strips(low: [f64; 2], high: [f64; 2], count: u32) -> Vec<Triangle> {
         .collect()
 }
 
-/// Spheres above each other in a box with sides of 2 m. Some are in contact with edges and corners of the box.
-const GRAINS: &str = r#"title = "Walls of triangles"
-dimension = 3
-duration = 0.3
-gravity = [1.0, -2.0, -10.0]
-materials.m.density = 1000.0
-contacts.all = { between = ["m", "m"], normal_stiffness = 1e5, tangential_stiffness = 3e4, friction = 0.4, normal_damping = 5.0 }
-output = { every_cycles = 100, snapshots = 2 }
-probes.all = { system = true }
-[grains.all]
-material = "m"
-radius = 0.2
-lattice = { origin = [-0.79, -0.8, -0.79], spacing = [0.5, 0.51, 0.52], count = [4, 4, 3] }
-"#;
+/// Spheres above each other in a box of triangles with sides of 2 m. Some are in contact with edges and corners of the box.
+const BOX: &str = include_str!("../scenes/in-a-box.toml");
+
+/// Returns the scene of the spheres without the box.
+fn spheres() -> &'static str {
+    BOX.split("[walls.box]").next().unwrap()
+}
 
 fn scene(triangles: &[Triangle], text: &str) -> Scene {
     let directory = temporary_with("wall.stl", stl(triangles));
@@ -80,7 +73,6 @@ fn apart(one: &Record, other: &Record) -> f64 {
 /// In a box of twelve triangles, grains move as in a box of six planes.
 #[test]
 fn a_box_of_triangles_is_a_box_of_planes() {
-    let mesh = "walls.box = { material = 'm', mesh = { file = 'wall.stl', unit = 'm' } }\n";
     let mut planes = String::new();
     for axis in 0..3 {
         for side in [-1.0, 1.0] {
@@ -91,8 +83,8 @@ fn a_box_of_triangles_is_a_box_of_planes() {
         }
     }
     let triangles = block([-1.0; 3], [1.0; 3]);
-    let mut ours = scene(&triangles, &format!("{mesh}{GRAINS}"));
-    let as_planes = run(&scene(&triangles, &format!("{planes}{GRAINS}")), &mut ());
+    let mut ours = scene(&triangles, BOX);
+    let as_planes = run(&scene(&triangles, &format!("{planes}{}", spheres())), &mut ());
     let record = run(&ours, &mut ());
     let contacts = |record: &Record| record.snapshots.last().unwrap().contacts.as_ref().map_or(0, Vec::len);
     let touching = contacts(&record);
@@ -107,7 +99,7 @@ fn a_box_of_triangles_is_a_box_of_planes() {
 #[test]
 fn a_plate_of_triangles_moves_as_a_rectangle() {
     let motion = "motion = [{ velocity = [0.3, 0.0, 0.2], spin = [0.0, 0.0, 1.5], centre = [0.2, 0.1, 0.0] }]";
-    let grains = GRAINS.replace("-0.79]", "0.1999]").replace("count = [4, 4, 3]", "count = [4, 4, 1]");
+    let grains = spheres().replace("-0.79]", "0.1999]").replace("count = [4, 4, 3]", "count = [4, 4, 1]");
     let mesh =
         format!("[walls.plate]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', unit = 'm', open = true }}\n{motion}\n");
     let rectangle = "rectangle = { corner = [-3.0, -3.0, 0.0], edges = [[6.0, 0.0, 0.0], [0.0, 6.0, 0.0]] }";
@@ -130,17 +122,7 @@ fn a_spring_goes_on_over_a_ridge() {
     let at = |x: f64, y: f64| [x, y, -slope.tan() * x.abs()];
     let [a, b, c] = [-1.0, 0.0, 1.0].map(|x| [at(x, -1.0), at(x, 1.0)]);
     let triangles = [[a[0], b[0], b[1]], [a[0], b[1], a[1]], [b[0], c[0], c[1]], [b[0], c[1], b[1]]];
-    let text = r#"title = "A roof"
-dimension = 3
-duration = 0.04
-materials.m.density = 1000.0
-contacts.all = { between = ["m", "m"], normal_stiffness = 1e5, tangential_stiffness = 3e4, friction = 10.0 }
-output.every_cycles = 1
-probes.touch = { contact = ["ball", "roof"] }
-grains.ball = { material = "m", radius = 0.1, position = [-2e-3, 0.0, 0.0995] }
-driven.ball = { grains = "ball", velocity = [0.1, 0.0, 0.0] }
-walls.roof = { material = "m", mesh = { file = "wall.stl", unit = "m", open = true } }
-"#;
+    let text = include_str!("../scenes/roof.toml");
     let record = run(&scene(&triangles, text), &mut ());
     let (rate, time) = (3e4 * 0.1, &record.series.time);
     let allowed = rate * 0.04 * (1.0 - slope.cos());
@@ -168,7 +150,7 @@ fn funnel() -> Scene {
         "{}[walls.funnel]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', unit = 'm', open = true }}\n\
          motion = [{{ spin = [0.0, 0.0, 3.0], centre = [0.0, 0.0, 0.0] }}]\n\
          [removal]\nlow = [-9.0, -9.0, -9.0]\nhigh = [9.0, 9.0, -1.5]\n",
-        GRAINS.replace("-0.79]", "0.2]").replace("duration = 0.3", "duration = 0.8")
+        spheres().replace("-0.79]", "0.2]").replace("duration = 0.3", "duration = 0.8")
     );
     scene(&triangles, &text)
 }
@@ -221,7 +203,6 @@ fn valid_files_are_read() {
         (stl(&cube[2..]).into_bytes(), "unit = 'm', open = true"),
     ] {
         directory.write("wall.stl", bytes);
-        let text = format!("{GRAINS}[walls.box]\nmaterial = 'm'\nmesh = {{ file = 'wall.stl', {more} }}\n");
-        scene_in(&directory, &text).unwrap();
+        scene_in(&directory, &BOX.replace("unit = 'm'", more)).unwrap();
     }
 }

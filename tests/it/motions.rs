@@ -10,19 +10,11 @@ use grainbench::solver::resolution::Resolution;
 /// Final velocity of the belt (m/s).
 const SPEED: f64 = 1.0;
 const RISING: f64 = 0.4; // time until the belt has its final velocity (s)
-const END: f64 = 0.6; // duration of the run (s)
+const END: f64 = 0.6; // duration of the run (s), as in its scene
 
 /// Returns the displacement of the disc at the end (m).
 fn way(solver: &str, resolution: &Resolution, motion: &str) -> f64 {
-    let text = format!(
-        "title = 'Drawn off'\ndimension = 2\ngravity = [0.0, -9.8]\nduration = {END:?}\n\
-         materials.m = {{ density = 1000.0, young_modulus = 1e6, poisson_ratio = 0.3 }}\n\
-         contacts.all = {{ between = ['m', 'm'], normal_stiffness = 1e7, tangential_stiffness = 1e7, friction = 0.8, \
-         normal_damping = 200.0, tangential_damping = 200.0 }}\n\
-         grains.disc = {{ material = 'm', radius = 0.1, position = [0.0, 0.1] }}\n\
-         [walls.belt]\nmaterial = 'm'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\nmotion = [{motion}]\n\
-         [output]\nsnapshots = 0\n[probes]\ndisc.grain = 'disc'\n"
-    );
+    let text = include_str!("../scenes/drawn-belt.toml").replace("{ velocity = [1.0, 0.0] }", motion);
     let record = simulated(solver, &scene(&text), resolution);
     *record.series.column("disc.x").unwrap().last().unwrap()
 }

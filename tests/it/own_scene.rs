@@ -1,6 +1,6 @@
 //! Cost and stability of a scene of the user's on the command line.
 
-use crate::common::{Directory, interrupted, root, temporary};
+use crate::common::{Directory, interrupted, root, temporary, temporary_with};
 use serde_json::Value;
 use std::collections::BTreeMap;
 use std::fs;
@@ -122,11 +122,7 @@ fn a_quantity_that_a_method_lacks_is_unsupported() {
 /// One disc that oscillates on the spring of a floor: the exact limit is that of one mass on one spring.
 #[test]
 fn the_stable_step_of_a_scene_has_its_exact_limit() {
-    let folder = temporary();
-    let scene = "title = 't'\ndimension = 2\ngravity = [0.0, -9.81]\nduration = 1.0\nmaterials.m.density = 1000.0\n[contacts.m]\n\
-         between = ['m', 'm']\nnormal_stiffness = 1.0e6\n[grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.0999]\n\
-         [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n[probes]\na = { grain = 'a' }\n";
-    folder.write("s.toml", scene);
+    let folder = temporary_with("s.toml", include_str!("../scenes/disc-on-a-spring.toml"));
     let answer = folder.ok("stability s.toml --solver dem --json");
     let results = answer.json();
     let limit = &results["stability"]["limits"][0];

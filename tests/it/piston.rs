@@ -5,37 +5,17 @@ use grainbench::scene::nalgebra::{Matrix2, SymmetricEigen, Vector2};
 use grainbench::solver::record::Record;
 use grainbench::solver::resolution::Resolution;
 
-/// Force on the lid (N).
+/// Force on the lid (N), as in the file of the scene.
 const FORCE: f64 = 30.0;
 const MASS: f64 = 4.0; // mass of the lid (kg); the mass of the sphere is 1 kg
 const STIFFNESS: f64 = 2e4; // contact stiffness (N/m)
 
 /// Returns a scene with a sphere on a floor, and a lid at a distance `gap` (m) above the sphere.
 fn scene(gap: f64, damping: f64, between: f64, duration: f64, motion: &str) -> String {
-    format!(
-        r#"title = "A lid"
-dimension = 3
-duration = {duration:?}
-domain = {{ low = [-1.0, -1.0, 0.0], high = [1.0, 1.0, 3.0], periodic = [true, true, false] }}
-materials.m.density = 1.909859317102744
-output = {{ every = 0.005, snapshots = 0 }}
-probes = {{ lid = {{ piston = "lid" }}, floor = {{ wall = "floor" }}, on-lid = {{ wall = "lid" }}, ball = {{ grain = "ball" }} }}
-contacts.all = {{ between = ["m", "m"], normal_stiffness = {STIFFNESS:?}, normal_damping = {between:?} }}
-[grains.ball]
-material = "m"
-radius = 0.5
-position = [0.0, 0.0, 0.5]
-[walls.floor]
-material = "m"
-plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}
-[walls.lid]
-material = "m"
-plane = {{ point = [0.0, 0.0, {:?}], normal = [0.0, 0.0, -1.0] }}
-piston = {{ force = {FORCE:?}, mass = {MASS:?}, damping = {damping:?} }}
-{motion}
-"#,
-        1.0 + gap
-    )
+    let lid = include_str!("../scenes/lid.toml").replace("1.01]", &format!("{:?}]", 1.0 + gap));
+    let values = [("duration", 1.0, duration), ("normal_damping", 5.0, between), (" damping", 0.5, damping)];
+    let edited = |lid: String, (key, from, to)| lid.replace(&format!("{key} = {from:?}"), &format!("{key} = {to:?}"));
+    values.into_iter().fold(lid, edited) + motion
 }
 
 fn run(text: &str) -> Record {

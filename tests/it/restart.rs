@@ -119,36 +119,7 @@ fn a_run_that_is_kept_goes_on_to_the_same_files() {
 }
 
 /// Discs that bounce in a box. The run is long enough to be killed in the middle.
-const LONG: &str = r#"title = "Discs in a box"
-dimension = 2
-duration_cycles = 1_000_000
-gravity = [0.0, -9.8]
-materials.rock = { density = 1000.0, bulk_modulus = 1e6, shear_modulus = 5e5 }
-
-[contacts.rock]
-between = ["rock", "rock"]
-normal_stiffness = 1e6
-tangential_stiffness = 5e5
-friction = 0.4
-
-[grains.all]
-material = "rock"
-radius = 0.1
-velocity = [1.0, 0.3]
-lattice = { origin = [0.15, 0.15], spacing = [0.25, 0.25], count = [3, 3] }
-
-[walls]
-left = { material = "rock", plane = { point = [0.0, 0.0], normal = [1.0, 0.0] } }
-right = { material = "rock", plane = { point = [1.0, 0.0], normal = [-1.0, 0.0] } }
-floor = { material = "rock", plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }
-lid = { material = "rock", plane = { point = [0.0, 1.0], normal = [0.0, -1.0] } }
-
-[output]
-every_cycles = 100_000
-snapshots = 2
-[probes]
-all = { system = true }
-"#;
+const LONG: &str = include_str!("../scenes/discs-in-a-box.toml");
 
 /// Returns the names and texts of the output files of a run, without run times.
 fn left(directory: &Path) -> Vec<(String, String)> {

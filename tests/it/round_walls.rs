@@ -103,40 +103,7 @@ fn a_sphere_goes_round_in_a_cone() {
 }
 
 /// Grains between the ends of a rotating drum, and in a funnel above the drum.
-const DRUM_AND_FUNNEL: &str = r#"title = "Grains in a drum and a funnel"
-dimension = 3
-duration = 0.5
-gravity = [0.0, 0.0, -10.0]
-domain = { low = [-4.0, -4.0, -4.0], high = [4.0, 4.0, 8.0] }
-materials.m.density = 1.909859317102744
-output = { every = 0.1, snapshots = 0 }
-probes = { all = { system = true }, drum = { wall = "drum" }, funnel = { wall = "funnel" } }
-
-[contacts.all]
-between = ["m", "m"]
-normal_stiffness = 1e5
-tangential_stiffness = 2.8e4
-friction = 0.5
-normal_damping = 50.0
-tangential_damping = 25.0
-
-[grains.in-the-drum]
-material = "m"
-radius = 0.3
-lattice = { origin = [-0.9, -1.0, -0.9], spacing = [0.65, 0.66, 0.67], count = [4, 4, 4] }
-[grains.above]
-material = "m"
-radius = 0.3
-lattice = { origin = [-0.6, -0.5, 5.5], spacing = [0.65, 0.66, 0.67], count = [3, 3, 3] }
-
-[walls.drum]
-material = "m"
-cylinder = { axis = [[0.0, -3.0, 0.0], [0.0, 3.0, 0.0]], radius = 2.0 }
-motion = [{ spin = [0.0, 2.0, 0.0], centre = [0.0, 0.0, 0.0] }]
-[walls.funnel]
-material = "m"
-cone = { axis = [[0.0, 0.0, 3.2], [0.0, 0.0, 6.5]], radii = [0.5, 2.5] }
-"#;
+const DRUM_AND_FUNNEL: &str = include_str!("../scenes/drum-and-funnel.toml");
 
 /// LAMMPS with the deck of the scene has the same energy and the same wall forces, until chaos amplifies rounding.
 /// Without LAMMPS, nothing is compared, which is an error in CI.

@@ -5,40 +5,8 @@ use std::path::Path;
 
 /// Returns a scene of spheres with friction that fall into a box and come to rest.
 fn scene(duration: f64, grains: &str) -> String {
-    format!(
-        r#"title = "Spheres in a box"
-dimension = 3
-duration = {duration:?}
-gravity = [0.0, 1.0, -10.0]
-largest_initial_overlap = 0.2
-domain = {{ low = [0.0, 0.0, 0.0], high = [5.0, 5.0, 10.0], periodic = [true, false, false] }}
-materials.m.density = 1.0
-
-[contacts.all]
-between = ["m", "m"]
-normal_stiffness = 2e3
-tangential_stiffness = 1e3
-friction = 0.4
-normal_damping = 40.0
-tangential_damping = 20.0
-
-[output]
-every = 1.0
-snapshots = 0
-
-{grains}
-
-[walls.floor]
-material = "m"
-plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }}
-[walls.front]
-material = "m"
-plane = {{ point = [0.0, 0.0, 0.0], normal = [0.0, 1.0, 0.0] }}
-[walls.back]
-material = "m"
-plane = {{ point = [0.0, 5.0, 0.0], normal = [0.0, -1.0, 0.0] }}
-"#
-    )
+    let heap = include_str!("../scenes/heap.toml").replace("duration = 1.0", &format!("duration = {duration:?}"));
+    heap.replace("[grains.g]\nmaterial = 'm'\nstate = { path = 'heap.state' }", grains)
 }
 
 const DROPPED: &str = "[grains.g]\nmaterial = 'm'\nradius = 0.5\n\

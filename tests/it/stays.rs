@@ -7,16 +7,7 @@ use grainbench::solver::record::{Record, Snapshot};
 use grainbench::solver::resolution::Resolution;
 
 /// Common part of the scenes: spheres of mass 1 kg.
-const HEAD: &str = r#"title = "Passing"
-dimension = 3
-duration = 2.0
-gravity = [0.0, 0.0, -1.0]
-domain = { low = [-3.0, 0.0, -50.0], high = [3.0, 4.0, 50.0], periodic = [false, true, false] }
-materials.m.density = 1.909859317102744
-contacts.all = { between = ["m", "m"], normal_stiffness = 2e4, tangential_stiffness = 6e3, friction = 0.5, normal_damping = 20.0 }
-output = { every_cycles = 100, snapshots = 3 }
-probes.grains = { count = true }
-"#;
+const HEAD: &str = include_str!("../scenes/passing-freely.toml");
 
 /// Scene of a silo that is filled and drained.
 const SILO: &str = include_str!("../scenes/silo.toml");

@@ -80,16 +80,7 @@ fn wrong(option: &HelpOption) -> Vec<&'static str> {
 
 /// Writes the files that the commands need: a scene, a table, an empty file and a directory.
 fn prepare(directory: &Path) {
-    let scene = "title = \"One\"
-dimension = 2
-duration = 1.0
-[materials.rock]
-density = 1.0
-[grains.one]
-material = \"rock\"
-radius = 1.0
-position = [0.0, 0.0]
-";
+    let scene = include_str!("../scenes/one-disc.toml");
     for (name, text) in [("scene.toml", scene), ("table.csv", "step,id,x\n0,1,0\n"), ("empty", "")] {
         directory.write(name, text);
     }

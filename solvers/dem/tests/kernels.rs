@@ -43,24 +43,8 @@ fn law_with_everything(hertz: bool) -> ContactLaw {
 
 /// Returns a scene of two grains and a moving wall with every effect, for Hertz contacts or for linear springs.
 fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
-    let vector = |value: &str| vec![value; dimension].join(", ");
-    let (high, gravity) = (vector("10.0"), vector("1.0"));
-    let periodic = if dimension == 2 { "true, false" } else { "true, false, false" };
-    let text = format!(
-        "title = 'everything'\ndimension = {dimension}\nduration = 1.0\ngravity = [{gravity}]\nglobal_damping = 0.1\n\
-         domain = {{ low = [{}], high = [{high}], periodic = [{periodic}] }}\n\
-         materials.m.density = 1000.0\ncontacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e6 }}\n\
-         [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [{}]\n\
-         [grains.b]\nmaterial = 'm'\nradius = 0.5\nposition = [{}]\n\
-         [walls.w]\nmaterial = 'm'\nplane = {{ point = [{}], normal = [{}] }}\nmotion = [{{ velocity = [{}] }}]\n",
-        vector("0.0"),
-        vector("4.0"),
-        vector("6.0"),
-        vector("1.0"),
-        if dimension == 2 { "0.0, 1.0" } else { "0.0, 1.0, 0.0" },
-        if dimension == 2 { "0.1, 0.0" } else { "0.1, 0.0, 0.0" },
-    );
-    let source = SceneSource::from_text("everything", Path::new(""), &text);
+    let texts = [include_str!("scenes/everything-2d.toml"), include_str!("scenes/everything-3d.toml")];
+    let source = SceneSource::from_text("everything", Path::new(""), texts[dimension - 2]);
     let mut scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
     scene.change_laws(|law| *law = law_with_everything(hertz));
     let off: Vec<Effect> = effects().filter(|effect| !effect.is_on(&scene)).collect();

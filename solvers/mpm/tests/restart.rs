@@ -39,16 +39,8 @@ fn checkpoints(solver: Mpm, text: &str, at: &Resolution, every: u64) -> (String,
     (whole, keeper.kept)
 }
 
-/// Returns a short run of a rolling sphere.
-fn sphere() -> String {
-    "dimension = 3\nduration = 0.05\ngravity = [3.0, 0.0, -9.0]\n\
-     materials.m = { density = 1000.0, bulk_modulus = 6.0e6, shear_modulus = 3.0e6 }\n\
-     contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n\
-     [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0, 1.0]\n\
-     [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
-     [probes]\ng.grain = 'g'\nall.system = true\n"
-        .to_owned()
-}
+/// A short run of a rolling sphere.
+const SPHERE: &str = include_str!("scenes/rolling-sphere.toml");
 
 /// Returns a collision in which one disc is driven, with an energy budget.
 fn driven() -> String {
@@ -66,7 +58,7 @@ fn a_continued_run_leaves_the_same_bits() {
         ("mpm:2001", sampled(collision(0.1, 0.9, 0.5))),
         ("mpm:no-slip", sampled(collision(0.1, 0.9, 0.5))),
         ("mpm", sampled(incline(60.0, 0.9, 0.05, true))),
-        ("mpm", sampled(sphere())),
+        ("mpm", sampled(SPHERE.to_owned())),
         ("mpm", sampled(driven())),
         ("mpm:no-slip", sampled(driven())),
     ];
