@@ -1,4 +1,5 @@
-//! Tests of rapier with known solutions, and of the causes of its errors.
+//! Tests of rapier with known solutions, and of the causes of its errors. Scenes that it cannot run are in
+//! `tests/refusals/rigid.toml`.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -26,25 +27,7 @@ fn last(record: &Record, column: &str) -> f64 {
     *record.series.column(column).unwrap().last().unwrap()
 }
 
-const GRAIN: &str = r#"
-title = "one grain"
-dimension = 2
-duration = 0.5
-[materials.m]
-density = 1000.0
-[contacts.m]
-between = ["m", "m"]
-normal_stiffness = 1e6
-tangential_stiffness = 1e6
-friction = 0.5
-[grains.g]
-material = "m"
-radius = 0.5
-position = [0.0, 0.5]
-[probes]
-g = { grain = "g" }
-all = { system = true }
-"#;
+const GRAIN: &str = include_str!("scenes/grain.toml");
 
 /// Returns a disc at rest on a plane, with gravity tilted by an angle.
 fn slope(angle_deg: f64, friction: f64) -> Scene {
@@ -107,30 +90,7 @@ fn global_damping_decays() {
     }
 }
 
-const PAIR: &str = r#"
-title = "two grains"
-dimension = 2
-duration = 0.5
-[materials.m]
-density = 1.0
-[contacts.m]
-between = ["m", "m"]
-normal_stiffness = 1e4
-[grains.a]
-material = "m"
-radius = 1.0
-position = [-1.5, 0.0]
-velocity = [3.0, 0.0]
-[grains.b]
-material = "m"
-radius = 1.0
-position = [1.0, 0.0]
-[probes]
-a = { grain = "a" }
-b = { grain = "b" }
-contact = { contact = ["a", "b"] }
-all = { system = true }
-"#;
+const PAIR: &str = include_str!("scenes/pair.toml");
 
 #[test]
 fn elastic_impact_exchanges_velocities() {
@@ -330,38 +290,6 @@ fn a_sphere_has_the_forces_of_the_slope_too() {
     let expected = Vector3::new(3.0, 2.0, 0.0) * (-mass * 2.0 / 7.0);
     assert!((contact.shear_force - expected).norm() < 1e-3 * expected.norm(), "{:?} {expected:?}", contact.shear_force);
     assert!((contact.normal_force / (9.0 * mass) - 1.0).abs() < 1e-9);
-}
-
-#[test]
-fn says_what_it_cannot_do() {
-    let reason = |scene: &Scene| match Rigid::new().run(scene, &Resolution::substeps(1), &mut ()) {
-        Err(RunError::Unsupported { solver, reason }) => {
-            assert_eq!(solver, "rigid");
-            reason
-        }
-        other => panic!("{:?}", other.map(|record| record.provenance)),
-    };
-    let mut cohesive = scene(PAIR);
-    cohesive.change_laws(|law| law.cohesion = 1.0);
-    assert!(reason(&cohesive).contains("cohesion"));
-    let mut budget = slope(30.0, 0.5);
-    budget.probes[0].target = grainbench_scene::scene::ProbeTarget::Budget;
-    assert!(reason(&budget).contains("energy budget"));
-    let periodic = scene(&PAIR.replace(
-        "duration = 0.5",
-        "duration = 0.5\ndomain = { low = [-10.0, -10.0], high = [10.0, 10.0], periodic = [true, false] }",
-    ));
-    assert!(reason(&periodic).contains("periodic"));
-    let cycles = scene(&PAIR.replace("duration = 0.5", "duration_cycles = 10"));
-    assert!(reason(&cycles).contains("cycles"));
-    let mut wall = slope(0.0, 0.5);
-    wall.walls[0].motion.phases.push(grainbench_scene::motion::Phase {
-        velocity: Vector3::x(),
-        spin: Vector3::zeros(),
-        start: grainbench_scene::motion::Moment::Seconds(0.0),
-        stop: grainbench_scene::motion::Moment::Cycle(5),
-    });
-    assert!(reason(&wall).contains("`plane`"));
 }
 
 #[test]
