@@ -1,21 +1,26 @@
 //! An absent effect costs almost nothing, because it is not part of the selected kernel. Valgrind, if installed, counts
 //! the instructions of the kernel for undamped, frictionless discs. They are compared with those of a hand-written loop
-//! without any other effect. Counts do not depend on the load of the machine; no test measures time.
+//! without any other effect. Counts do not depend on the load of the machine; no test measures time. Simulating an effect
+//! with neutral values does not change the result.
 
 #[path = "../../benches/minimal/mod.rs"]
 mod minimal;
 
-use crate::common::scene;
+use crate::common::{scene, simulated};
 use grainbench::cases::registry;
 use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
+use grainbench::scene::contact_law::{ContactLaw, Springs};
 use grainbench::scene::effect::Effect;
-use grainbench::scene::scene::Scene;
+use grainbench::scene::effects::Effects;
+use grainbench::scene::scene::{Duration, Scene};
+use grainbench::solver::resolution::Resolution;
 use minimal::Minimal;
 use std::process::Command;
 
 /// Environment variable that tells the process under valgrind which loop to run and for how many steps.
 const TASK: &str = "GRAINBENCH_COUNTED_LOOP";
+/// Number of discs along each side of the lattice, as in its scene.
 const SIDE: u32 = 24;
 const STEP: f64 = 0.05;
 /// Largest accepted ratio of the kernel's instructions to those of the hand-written loop.
@@ -25,12 +30,7 @@ const FRICTION: f64 = 1.3;
 
 /// Returns a square lattice of overlapping discs. It expands at its rim without rebuilding the neighbour list.
 fn lattice() -> Scene {
-    scene(&format!(
-        "title = 'lattice'\ndimension = 2\nduration = 1.0\nmaterials.disc.density = 0.3183098861837907\n\
-         contacts.all = {{ between = ['disc', 'disc'], normal_stiffness = 1.0 }}\n\
-         grains.disc = {{ material = 'disc', radius = 1.0, lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], \
-         count = [{SIDE}, {SIDE}] }} }}\n"
-    ))
+    scene(include_str!("../scenes/lattice.toml"))
 }
 
 /// Returns dense shear of 10,000 discs without friction.
@@ -118,5 +118,43 @@ fn what_is_absent_is_no_part_of_the_kernel() {
         assert!(Effect::Friction.switch_on_idly(&mut scene));
         let with = kernel(&scene);
         assert!(with.contains("Coulomb") && !with.contains("Frictionless"), "{with}");
+    }
+}
+
+/// Adds an unused material with friction and rolling resistance. The selected kernels then include both, but they have no effect.
+fn with_idle_friction(scene: &Scene) -> Scene {
+    let mut scene = scene.clone();
+    let (law, count) = (scene.laws[0].unwrap(), scene.materials.len());
+    assert_eq!(count, 1, "a scene of one material");
+    let normal = law.normal_stiffness();
+    let springs = Springs::Linear { normal, tangential: normal };
+    let idle = ContactLaw { springs, friction: 0.5, rolling_friction: 0.1, ..law };
+    scene.materials.push("idle".to_owned());
+    scene.laws = vec![Some(law), None, None, Some(idle)];
+    scene
+}
+
+#[test]
+fn friction_that_does_nothing_changes_nothing_in_a_gas() {
+    let gas = registry::by_name("disc-gas").unwrap().variant("plain").unwrap();
+    same_without(&Scene { duration: Duration::Cycles(20_000), ..gas }, Resolution::CriticalFraction(0.05));
+}
+
+#[test]
+fn friction_that_does_nothing_changes_nothing_in_dense_shear() {
+    same_without(&Scene { duration: Duration::Cycles(200), ..dense_shear() }, Resolution::TimeStep(1e-4));
+}
+
+/// Checks that a frictionless scene has the same final state with the frictionless kernel and with friction that has no effect.
+fn same_without(scene: &Scene, resolution: Resolution) {
+    let idle = with_idle_friction(scene);
+    let (without, with) = (Effects::from_scene(scene), Effects::from_scene(&idle));
+    assert!(!without.friction && with.friction && with.rolling_resistance);
+    let [without, with] = [scene, &idle].map(|scene| simulated("dem", scene, &resolution));
+    let (without, with) = (without.snapshots.last().unwrap(), with.snapshots.last().unwrap());
+    assert!(without.grains.iter().any(|grain| grain.velocity != scene.grains[grain.id as usize - 1].velocity));
+    for (a, b) in without.grains.iter().zip(&with.grains) {
+        // Equal numbers have equal bits, except for the sign of zero.
+        assert!(a.position == b.position && a.velocity == b.velocity && a.force == b.force, "grain {}", a.id);
     }
 }

@@ -18,7 +18,6 @@ mod conform_claims;
 mod conformance;
 mod deck;
 mod determinism;
-mod effects;
 mod fields;
 mod given_data;
 mod guide;

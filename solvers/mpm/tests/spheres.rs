@@ -4,9 +4,7 @@
 mod support;
 
 use grainbench_solver::record::Record;
-use support::{column, last, run};
-
-const SPEED: f64 = 0.042_426_406_871_192_85;
+use support::{SPEED, column, energy, last, run};
 
 /// Returns two equal spheres of radius 1 that approach at .01 c each from a gap (m), each with an offset of `offset`
 /// (m).
@@ -36,11 +34,6 @@ fn momentum_drift(record: &Record) -> f64 {
     let columns = ["x", "y", "z"].map(|axis| column(record, &format!("all.momentum_{axis}")));
     let size = |at: usize| columns.iter().map(|column| column[at] * column[at]).sum::<f64>().sqrt();
     (0..columns[0].len()).map(size).fold(0.0, f64::max) / (4.0 / 3.0 * std::f64::consts::PI * SPEED)
-}
-
-fn energy(record: &Record) -> f64 {
-    let energy = column(record, "all.total_energy");
-    energy[energy.len() - 1] / energy[0]
 }
 
 /// In a head-on collision without friction, momentum is conserved to rounding, and no rotation starts. Springs return

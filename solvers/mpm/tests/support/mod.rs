@@ -11,6 +11,9 @@ use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 
+/// Speed of each of two bodies that collide: .01 of the speed of sound (m/s).
+pub const SPEED: f64 = 0.042_426_406_871_192_85;
+
 pub fn scene(text: &str) -> Scene {
     SceneSource::from_text("test", Path::new(""), &format!("title = 'test'\n{text}"))
         .scene(&grainbench_scene::resolve::no_data_file)
@@ -36,6 +39,11 @@ pub fn column<'a>(record: &'a Record, name: &str) -> &'a [f64] {
 
 pub fn last(record: &Record, name: &str) -> f64 {
     *column(record, name).last().unwrap()
+}
+
+/// Returns the total energy at the end of a run, divided by its initial value.
+pub fn energy(record: &Record) -> f64 {
+    last(record, "all.total_energy") / column(record, "all.total_energy")[0]
 }
 
 /// Returns the disc on an incline of Bardenhagen, Brackbill & Sulsky (2000), released at t = 0 or after relaxation.
