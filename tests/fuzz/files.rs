@@ -16,9 +16,8 @@ use grainbench::reference::outputs::{OutputError, Outputs, Sources};
 use grainbench::reference::stored::StoredRun;
 use grainbench::reports::export::record_json;
 use grainbench::reports::junit::junit_xml;
-use grainbench::reports::measured::Measurements;
 use grainbench::reports::results::results_json;
-use grainbench::reports::study::point::{Counts, Point, PointStatus, Timing};
+use grainbench::reports::study::point::{Point, PointStatus, Timing};
 use grainbench::reports::study::points_of;
 use grainbench::reports::{Provenance, Report, Section, page, plot, record_figures};
 use grainbench::scene::scene::{Sampling, Scene};
@@ -231,15 +230,7 @@ fn report() -> &'static Vec<u8> {
             options: vec!["run".to_owned()],
             wall_seconds: 1.0,
         };
-        serde_json::to_vec_pretty(&Report {
-            provenance,
-            sections: vec![section],
-            judged: Vec::new(),
-            shown: Vec::new(),
-            measured: Measurements::default(),
-            red_because: Vec::new(),
-        })
-        .unwrap()
+        serde_json::to_vec_pretty(&Report { provenance, sections: vec![section], ..Report::default() }).unwrap()
     })
 }
 
@@ -272,21 +263,18 @@ fn of_results(lot: &mut RandomSource) -> Answer {
         variant: "disc".to_owned(),
         solver: "dem".to_owned(),
         resolution: "dt=.1".to_owned(),
-        knobs: String::new(),
         quantity: "displacement".to_owned(),
         unit: "m".to_owned(),
         standing: PointStatus::Measured,
         value: Some(1.0),
         expected: Some(1.1),
         error: Some(0.1),
-        floor: None,
         wall_seconds: Some(0.1),
         wall_spread: Some(0.01),
         cpu_seconds: Some(0.1),
         start_up_seconds: Some(0.01),
         repetitions: vec![Timing { wall: 0.1, cpu: 0.1, start_up: 0.01, reference: 0.02 }],
-        counts: Counts::default(),
-        detail: None,
+        ..Point::default()
     };
     let text = serde_json::to_vec_pretty(&serde_json::json!({ "points": [point.clone(), point] })).unwrap();
     let path = left("results.json", &damaged(lot, &text));

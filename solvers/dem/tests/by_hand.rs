@@ -52,8 +52,7 @@ fn closely(found: Vector3<f64>, expected: Vector3<f64>) {
 #[test]
 fn a_stretched_spring_swings_with_its_contact() {
     let steps = 1000;
-    let law = "materials.h.density = 1.0e20\n\
-        contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3 }\n";
+    let law = HEAVY.replace(", stiffness_damping = 0.02", "");
     let spin = FRAC_PI_2 - 0.001;
     let text = format!(
         "{law}dimension = 3\nduration_cycles = {steps}\n\
@@ -358,14 +357,12 @@ fn a_rolling_spring_between_grains_has_its_moment_and_energy() {
 /// = −k_r θ with k_r = 2.25 k μ_r² R². Friction adds the torque R e × F.
 #[test]
 fn a_rolling_spring_turns_with_its_contact() {
-    let text = "materials.h.density = 1.0e20\n\
-        contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 1.0e3, \
-        rolling_friction = 0.5 }\n\
-        dimension = 3\nduration_cycles = 50\n\
+    let law = HEAVY.replace("stiffness_damping = 0.02", "rolling_friction = 0.5");
+    let text = "dimension = 3\nduration_cycles = 50\n\
         [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [0.0, 0.0, 0.095]\nspin = [1.0, 0.0, 200.0]\n\
         [walls.w]\nmaterial = 'h'\nplane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }\n\
         motion = [{ spin = [0.0, 0.0, 200.0], centre = [0.0, 0.0, 0.0] }]\n";
-    let record = run_at(text, Convention::DEFAULT, &Resolution::TimeStep(1e-4));
+    let record = run_at(&(law + text), Convention::DEFAULT, &Resolution::TimeStep(1e-4));
     let turn = 2.0 * (0.5 * 200.0 * 1e-4_f64).atan();
     let turned = (0..50).map(|steps| (f64::from(steps) * turn).sin_cos());
     let [along, beside] = turned.fold([0.0, 0.0], |[along, beside], (sine, cosine)| [along + cosine, beside + sine]);
@@ -383,14 +380,12 @@ fn a_rolling_spring_turns_with_its_contact() {
 /// spring and dashpot, k δ + β k v.
 #[test]
 fn a_rolling_spring_yields_at_the_normal_force_of_the_convention() {
+    let law = HEAVY.replace("friction = 1.0e3", "friction = 0.2, rolling_friction = 0.1");
     for (convention, dashpot) in [(Convention::CUNDALL_STRACK, 0.0), (Convention::DEFAULT, 1.0)] {
-        let text = "materials.h.density = 1.0e20\n\
-            contacts.h = { between = ['h', 'h'], normal_stiffness = 1.0e6, tangential_stiffness = 5.0e5, friction = 0.2, \
-            stiffness_damping = 0.02, rolling_friction = 0.1 }\n\
-            dimension = 2\nduration_cycles = 9\n\
+        let text = "dimension = 2\nduration_cycles = 9\n\
             [grains.g]\nmaterial = 'h'\nradius = 0.1\nposition = [0.0, 0.095]\nvelocity = [0.0, -0.5]\nspin = 1.0e3\n\
             [walls.w]\nmaterial = 'h'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n";
-        let record = run_at(text, convention, &Resolution::TimeStep(1e-4));
+        let record = run_at(&format!("{law}{text}"), convention, &Resolution::TimeStep(1e-4));
         let grain = &end(&record).grains[0];
         let moment = grain.torque.unwrap().z - 0.1 * grain.force.unwrap().x;
         close(moment, -0.1 * 0.1 * 1.0e6 * (0.005 + 9.0 * 0.5e-4 + dashpot * 0.02 * 0.5));

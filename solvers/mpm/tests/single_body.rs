@@ -3,7 +3,7 @@
 
 mod support;
 
-use grainbench_mpm::options::{Basis, StressUpdate, Transfer};
+use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_scene::manufactured::Medium;
 use grainbench_solver::failure::{Cause, RunError};
 use grainbench_solver::resolution::Resolution;
@@ -65,7 +65,7 @@ fn a_bar_vibrates_at_its_period() {
         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.3, 0.1], high = [25.3, 2.1] }\nfixed = ['x-low']\n\
         wave = { amplitude = 0.1 }\n[probes]\nb.body = 'b'\nall.system = true\n\
         p.point = { body = 'b', at = [25.3, 1.1] }\n";
-    let quadratic = |setting: &mut grainbench_mpm::options::Setting| {
+    let quadratic = |setting: &mut Setting| {
         setting.basis = Basis::Quadratic;
         setting.transfer = Transfer::Flip { pic: 0.0 };
     };
@@ -95,7 +95,7 @@ fn manufactured_error(basis: Basis, cells: f64, points: u32) -> f64 {
         domain = { low = [0.0, 0.0], high = [1.0, 1.0], periodic = [true, true] }\n\
         materials.m = { density = 1000.0, young_modulus = 1000.0, poisson_ratio = 0.3 }\n\
         [bodies.b]\nmaterial = 'm'\nbox = { low = [0.0, 0.0], high = [1.0, 1.0] }\n";
-    let flip = |setting: &mut grainbench_mpm::options::Setting| {
+    let flip = |setting: &mut Setting| {
         setting.basis = basis;
         setting.transfer = Transfer::Flip { pic: 0.0 };
     };
@@ -130,7 +130,7 @@ fn manufactured_motion_converges_at_second_order() {
 /// A run with hat functions and the stress updated last fails, with an error that names the cause.
 #[test]
 fn hats_with_stress_last_break_typed() {
-    let last = |setting: &mut grainbench_mpm::options::Setting| setting.stress_update = StressUpdate::Last;
+    let last = |setting: &mut Setting| setting.stress_update = StressUpdate::Last;
     let at = Resolution::grid(4.0, 3);
     let error = try_run("mpm:penalty", last, &support::incline(60.0, 0.3, 1.0, false), at).unwrap_err();
     let RunError::Broken(broken) = error else { panic!("{error}") };

@@ -2,12 +2,31 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use grainbench_solver::record::{BodyState, ContactState, GrainState, Partner, Snapshot, StepState};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::virial;
 use nalgebra::Vector3;
 use std::path::Path;
+
+fn scene(text: &str) -> Scene {
+    SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+}
+
+/// Returns a contact of the grain 1 in the plane, from the overlap (m) and the forces (N).
+fn touch(partner: Partner, normal: [f64; 2], overlap: f64, normal_force: f64, shear: [f64; 2]) -> ContactState {
+    ContactState {
+        grain: 1,
+        partner,
+        point: Vector3::zeros(),
+        normal: Vector3::new(normal[0], normal[1], 0.0),
+        overlap,
+        normal_force,
+        shear_force: Vector3::new(shear[0], shear[1], 0.0),
+        slipping: false,
+    }
+}
 
 /// A disc of 1000 kg and 125 kg m² is at (2, 3) m with (4, 5) m/s and 6 rad/s. A body of 20 kg and 7 kg m² is at (1,
 /// −2) m with (3, −1) m/s and −2 rad/s. Gravity is (3, −10) m/s². The internal kinetic energy is 11 J, and the springs
@@ -21,8 +40,7 @@ fn energies_and_momenta() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\ngravity = [3.0, -10.0]\n\
                 materials.m.density = 1273.2395447351628\n\
                 [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [2.0, 3.0]\n[probes]\nall.system = true\n";
-    let scene =
-        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene(text);
     let disc = GrainState {
         velocity: Vector3::new(4.0, 5.0, 0.0),
         spin: Vector3::new(0.0, 0.0, 6.0),
@@ -82,19 +100,8 @@ fn mean_stress_and_coordination() {
                 grains.b = { material = 'm', radius = 0.5, position = [0.9, 0.0] }\n\
                 grains.c = { material = 'm', radius = 0.5, position = [0.0, 0.8] }\n\
                 [walls.w]\nmaterial = 'm'\nsegment = [[-0.1, -0.45], [0.1, -0.45]]\n[probes]\nall.stress = true\n";
-    let scene =
-        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene(text);
     let grains = scene.grains.iter().zip(1..).map(|(grain, id)| GrainState::start(id, grain)).collect();
-    let touch = |partner, normal: [f64; 2], overlap, normal_force, shear: [f64; 2]| ContactState {
-        grain: 1,
-        partner,
-        point: Vector3::zeros(),
-        normal: Vector3::new(normal[0], normal[1], 0.0),
-        overlap,
-        normal_force,
-        shear_force: Vector3::new(shear[0], shear[1], 0.0),
-        slipping: false,
-    };
     let contacts = vec![
         touch(Partner::Grain(2), [1.0, 0.0], 0.1, 10.0, [0.0, 3.0]),
         touch(Partner::Grain(3), [0.0, 1.0], 0.2, 20.0, [4.0, 0.0]),
@@ -117,16 +124,7 @@ fn mean_stress_and_coordination() {
 /// is −7 J for xx (−10 N) and 2.8 J for the shear force (4 N), half of which is the symmetric component xy.
 #[test]
 fn both_grains_of_a_contact_share_the_vector_between_them() {
-    let contact = ContactState {
-        grain: 1,
-        partner: Partner::Grain(2),
-        point: Vector3::zeros(),
-        normal: Vector3::x(),
-        overlap: 0.1,
-        normal_force: 10.0,
-        shear_force: Vector3::y() * 4.0,
-        slipping: false,
-    };
+    let contact = touch(Partner::Grain(2), [1.0, 0.0], 0.1, 10.0, [0.0, 4.0]);
     let mut sum = [0.0; 6];
     [0.5, 0.3].into_iter().for_each(|radius| virial::add(&mut sum, &contact, radius));
     for (found, expected) in sum.into_iter().zip([-7.0, 0.0, 0.0, 1.4, 0.0, 0.0]) {
@@ -140,7 +138,6 @@ fn a_snapshot_is_taken_at_the_nearest_step() {
     let text = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
                 [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\n\
                 [output]\nevery = 0.5\nsnapshots = 0\nsnapshot_times = [0.24, 0.26, 0.5, 0.76]\n";
-    let scene =
-        SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let scene = scene(text);
     assert_eq!(Recorder::new(&scene, 0.1, 10).snapshot_steps(), [0, 2, 3, 5, 8, 10]);
 }
