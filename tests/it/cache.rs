@@ -1,5 +1,5 @@
 //! The cache of finished runs: a result from the cache equals the result of a run, and other results are never used.
-use crate::common::{ABSENT, Directory, interrupted, temporary};
+use crate::common::{ABSENT, Answer, Directory, entries, interrupted, temporary};
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::process::{Command, Stdio};
@@ -31,11 +31,9 @@ fn rows(directory: &Path, out: &str) -> String {
     directory.join(out).read("rows.csv")
 }
 
-fn entries(directory: &Path) -> Vec<PathBuf> {
-    let mut all: Vec<PathBuf> =
-        fs::read_dir(directory.join("cache")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    all.sort();
-    all
+/// Returns the files of finished runs in the cache.
+fn kept(directory: &Path) -> Vec<PathBuf> {
+    entries(directory.join("cache"))
 }
 
 #[test]
@@ -43,7 +41,7 @@ fn what_was_finished_is_taken_and_says_so() {
     let here = temporary();
     assert_eq!(taken(&mut program(&here, "first"), &here, "first"), (Some(0), 0));
     // A run that was too short for the cache may take longer when it is repeated.
-    let kept = entries(&here).len() as u64;
+    let kept = kept(&here).len() as u64;
     let (code, again) = taken(&mut program(&here, "second"), &here, "second");
     assert_eq!((code, rows(&here, "second")), (Some(0), rows(&here, "first")));
     assert_eq!(again, kept, "each is taken once");
@@ -66,9 +64,8 @@ fn a_folder_of_everybody_is_not_used() {
     assert_eq!(taken(&mut program(&here, "first"), &here, "first"), (Some(0), 0));
     let mode = |mode| fs::set_permissions(here.join("cache"), fs::Permissions::from_mode(mode)).unwrap();
     mode(0o777);
-    let answer = program(&here, "open").output().unwrap();
-    let message = String::from_utf8_lossy(&answer.stderr).into_owned();
-    assert!(answer.status.success() && message.contains("not used") && message.contains("mode 777"), "{message}");
+    let message = Answer::of(&mut program(&here, "open")).ok().err;
+    assert!(message.contains("not used") && message.contains("mode 777"), "{message}");
     assert_eq!(taken(&mut program(&here, "open"), &here, "open"), (Some(0), 0));
     mode(0o775);
     assert!(taken(&mut program(&here, "group"), &here, "group").1 > 5);
@@ -88,10 +85,10 @@ fn what_is_damaged_foreign_or_older_is_done_again() {
     let here = temporary();
     assert_eq!(taken(&mut program(&here, "first"), &here, "first").1, 0);
     let whole: Vec<(PathBuf, Vec<u8>)> =
-        entries(&here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
+        kept(&here).into_iter().map(|path| (path.clone(), fs::read(path).unwrap())).collect();
     let count = whole.len() as u64;
     let spoil = |how: &dyn Fn(usize, &[u8]) -> Vec<u8>| {
-        entries(&here).iter().for_each(|path| fs::remove_file(path).unwrap());
+        kept(&here).iter().for_each(|path| fs::remove_file(path).unwrap());
         for (at, (path, bytes)) in whole.iter().enumerate() {
             fs::write(path, how(at, bytes)).unwrap();
         }
@@ -126,7 +123,7 @@ fn two_at_once_share_it() {
         assert_eq!(child.wait().unwrap().code(), Some(0));
     }
     assert_eq!(rows(&here, "one"), rows(&here, "two"));
-    let kept = entries(&here).len() as u64;
+    let kept = kept(&here).len() as u64;
     assert_eq!(taken(&mut program(&here, "three"), &here, "three"), (Some(0), kept));
 }
 
@@ -146,7 +143,7 @@ fn an_interrupted_run_goes_on_from_what_was_finished() {
         // Before the handler is installed, a signal ends the process without a message.
         let is_announced = message.contains("the next run continues with the finished runs");
         assert!(code != Some(1) || is_announced, "{message}");
-        let now = if here.join("cache").exists() { entries(&here).len() } else { 0 };
+        let now = if here.join("cache").exists() { kept(&here).len() } else { 0 };
         assert!(now >= last, "finished runs are lost: {now} after {last}");
         last = now;
     }

@@ -287,14 +287,9 @@ fn killed_workers_lose_nothing_and_do_nothing_twice() {
 fn a_full_disk_loses_nothing() {
     let here = planned();
     // The files of this process are limited to 4 kB, which is about ten results.
-    let full = Command::new("sh")
-        .args(["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")])
-        .env("GRAINBENCH_CACHE", "off")
-        .current_dir(&here)
-        .output()
-        .unwrap();
-    let message = String::from_utf8_lossy(&full.stderr).into_owned();
-    assert!(!full.status.success() && message.contains("cannot write"), "{message}");
+    let command = ["-c", "trap '' XFSZ; ulimit -f 8; exec \"$0\" work p", env!("CARGO_BIN_EXE_grainbench")];
+    let full = Answer::of(Command::new("sh").args(command).env("GRAINBENCH_CACHE", "off").current_dir(&here));
+    assert!(full.code != Some(0) && full.err.contains("cannot write"), "{}", full.err);
     let before = done(&here.join("p")).len();
     assert!((1..POINTS).contains(&before), "{before}");
     assert_eq!(status(&here, "p")["damaged"], 0, "what the disk did not take whole is not there");
@@ -310,8 +305,8 @@ fn a_plan_that_cannot_be_written_leaves_the_earlier_one() {
     let plan = |out: &str, limit: &str| {
         let script = format!("trap '' XFSZ; {limit} exec \"$0\" run belt --plan {out}");
         let command = ["-c", &script, env!("CARGO_BIN_EXE_grainbench")];
-        let ended = Command::new("sh").args(command).current_dir(&here).output().unwrap();
-        (ended.status.code(), String::from_utf8_lossy(&ended.stderr).into_owned())
+        let ended = Answer::of(Command::new("sh").args(command).current_dir(&here));
+        (ended.code, ended.err)
     };
     let kept = ["plan.toml", "tasks.jsonl"].map(|name| fs::read(here.join("p").join(name)).unwrap());
     for out in ["p", "new"] {
@@ -458,18 +453,14 @@ fn a_trend_tells_which_rows_and_counts_changed() {
 
 /// Replaces the commands of Slurm by scripts that write their arguments to a file. If the file `broken` exists, `squeue` fails.
 fn fake_slurm(directory: &Path) -> String {
-    let bin = directory.join("bin");
-    fs::create_dir(&bin).unwrap();
     for (name, text) in [
-        ("sbatch", "echo \"$@\" >>\"$FAKE/sbatch.txt\"; cat \"$FAKE/number\" 2>/dev/null || echo 7"),
-        ("squeue", "test -e \"$FAKE/broken\" && exit 1; cat \"$FAKE/queue\" 2>/dev/null; true"),
-        ("scontrol", "echo 'Configuration data as of now'; echo 'MaxArraySize            = 4'"),
+        ("bin/sbatch", "echo \"$@\" >>\"$FAKE/sbatch.txt\"; cat \"$FAKE/number\" 2>/dev/null || echo 7"),
+        ("bin/squeue", "test -e \"$FAKE/broken\" && exit 1; cat \"$FAKE/queue\" 2>/dev/null; true"),
+        ("bin/scontrol", "echo 'Configuration data as of now'; echo 'MaxArraySize            = 4'"),
     ] {
-        let file = bin.join(name);
-        fs::write(&file, format!("#!/bin/sh\n{text}\n")).unwrap();
-        Command::new("chmod").arg("+x").arg(&file).status().unwrap();
+        directory.script(name, text);
     }
-    format!("{}:{}", bin.display(), std::env::var("PATH").unwrap_or_default())
+    format!("{}:{}", directory.join("bin").display(), std::env::var("PATH").unwrap_or_default())
 }
 
 /// The job array stays within the limit of the site. A resubmission contains only the missing shards that are neither

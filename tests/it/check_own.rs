@@ -1,6 +1,6 @@
 //! `check` with a scene file, with a case with other parameters, with VTK files, and with a folder of many outputs.
 
-use crate::common::{Answer, Directory, data, temporary, temporary_with};
+use crate::common::{Answer, Directory, data, entries, temporary, temporary_with};
 use grainbench::cases::registry::read_grains;
 use grainbench::scene::source::SceneSource;
 use serde_json::Value;
@@ -14,13 +14,8 @@ fn file(name: &str) -> String {
 
 /// Returns all VTK files of the run, including those of its box, in the order of a shell pattern.
 fn vtk() -> String {
-    let mut files: Vec<String> = fs::read_dir(data("liggghts-slope"))
-        .unwrap()
-        .map(|entry| entry.unwrap().path().display().to_string())
-        .filter(|path| path.ends_with(".vtk"))
-        .collect();
-    files.sort();
-    files.join(" ")
+    let files = entries(data("liggghts-slope")).into_iter().map(|path| path.display().to_string());
+    files.filter(|path| path.ends_with(".vtk")).collect::<Vec<_>>().join(" ")
 }
 
 /// Parameters of the run, as changes of the case of a sphere on a slope.
@@ -283,14 +278,7 @@ fn a_check_says_which_changes_the_output_would_reveal() {
 }
 
 /// Three discs that fly apart, in a scene without a probe of a grain.
-const FLIGHT: &str = "title = 'Three discs fly'\ndimension = 2\nduration = 0.1\n\
-    domain = { low = [0.0, -2.0], high = [4.0, 2.0], periodic = [true, false] }\n\
-    materials.m = { density = 1.0 }\n\
-    contacts.m = { between = ['m', 'm'], normal_stiffness = 1e3, tangential_stiffness = 5e2, friction = 0.5 }\n\
-    [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.25, 0.5]\nvelocity = [0.5, 0.25]\nspin = 2.0\n\
-    [grains.b]\nmaterial = 'm'\nradius = 0.1\nposition = [1.5, -0.25]\nvelocity = [-0.25, 1.0]\n\
-    [grains.c]\nmaterial = 'm'\nradius = 0.1\nposition = [3.0, 1.0]\nvelocity = [0.0, -0.5]\nspin = -1.0\n\
-    [output]\nevery = 0.01\n[probes]\nall = { system = true }\n";
+const FLIGHT: &str = include_str!("../scenes/flying-discs.toml");
 
 /// Row of a dump: x, y, z, vx, vy, vz, omegax, omegay, omegaz.
 type Row = [f64; 9];
@@ -403,11 +391,8 @@ fn no_option_allows_samples_far_apart() {
 /// A sample at a time between two steps counts as missing and is reported.
 #[test]
 fn a_sample_between_steps_is_missing() {
-    let directory = temporary();
-    let scene = "title = 't'\ndimension = 2\nduration = 0.04\n[materials.m]\ndensity = 1000.0\n\
-         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e6\n[grains.a]\nmaterial = 'm'\nradius = 0.1\n\
-         position = [0.0, 0.0]\nvelocity = [1.0, 0.0]\n[probes]\na.grain = 'a'\n";
-    directory.write("s.toml", scene);
+    let disc = include_str!("../scenes/disc.toml").replace("duration = 0.01", "duration = 0.04");
+    let directory = temporary_with("s.toml", disc);
     let judged = |time: &str| {
         // 20 samples are 2000 steps apart. A further sample after one step makes our run sample every step.
         let row = |step: u32, time: &str| format!("{step},{time},{:.6},1.000000\n", f64::from(step) * 1e-6);

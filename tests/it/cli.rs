@@ -2,43 +2,11 @@
 
 use crate::common::{Directory, files, temporary, temporary_with};
 use grainbench::cases::registry::CASES;
-use serde_json::Value;
+use serde_json::{Value, json};
 use std::process::Stdio;
 
 /// Scene of two colliding discs, with two snapshots between the first and the last.
-const SCENE: &str = r#"title = "Two discs collide"
-dimension = 2
-duration_cycles = 100
-
-[materials.rock]
-density = 1000.0
-
-[contacts.rock]
-between = ["rock", "rock"]
-normal_stiffness = 1e6
-
-[grains.left]
-material = "rock"
-radius = 0.1
-position = [-0.1, 0.0]
-velocity = [1.0, 0.0]
-
-[grains.right]
-material = "rock"
-radius = 0.1
-position = [0.1, 0.0]
-
-[output]
-every_cycles = 10
-snapshots = 2
-
-[probes]
-left = { grain = "left" }
-"#;
-
-fn json(text: &str) -> Value {
-    serde_json::from_str(text).unwrap_or_else(|error| panic!("{error} in {text}"))
-}
+const SCENE: &str = include_str!("../scenes/collision.toml");
 
 /// Returns a help text without spaces at the ends of lines. clap prints such spaces, and editors remove them.
 fn help(arguments: &str) -> String {
@@ -74,7 +42,7 @@ fn list_tells_of_every_case() {
         .map(|line| line.split_whitespace().collect::<Vec<_>>().join(" "))
         .collect();
     insta::assert_snapshot!(squash.join("\n"));
-    let entries = json(&directory.run("list --json").quiet());
+    let entries: Value = directory.run("list --json").quiet().parse().unwrap();
     assert_eq!(entries.as_array().unwrap().len(), CASES.len());
     for entry in entries.as_array().unwrap() {
         for key in ["name", "title", "claim", "variants", "gates", "default_level", "levels", "solvers"] {
@@ -115,7 +83,7 @@ fn undocumented(schema: &Value, path: &str, found: &mut Vec<String>) {
 #[test]
 fn schema_documents_every_key() {
     let directory = temporary();
-    let schema = json(&directory.run("scene --schema").quiet());
+    let schema: Value = directory.run("scene --schema").quiet().parse().unwrap();
     assert!(schema["properties"]["grains"].is_object());
     assert!(schema["$defs"].as_object().unwrap().len() > 5);
     let mut found = Vec::new();
@@ -145,7 +113,7 @@ fn run_leaves_its_files_and_a_summary() {
 
     let results = out.json("results.json");
     assert_eq!(results["verdicts"].as_array().unwrap().len(), results["controls"].as_array().unwrap().len());
-    assert_eq!(results["provenance"]["options"], json(r#"["squash"]"#));
+    assert_eq!(results["provenance"]["options"], json!(["squash"]));
     assert!(results["provenance"]["rustc"].as_str().unwrap().starts_with("rustc "));
     assert_eq!(results["points"][0]["variant"], "plain");
     let date = results["provenance"]["date"].as_str().unwrap();
@@ -174,9 +142,9 @@ fn run_prints_what_it_writes_as_json() {
     let directory = temporary();
     let text = directory.run("run squash/plain --levels dt=0.05 --no-controls --json").quiet();
     assert_eq!(text, directory.read("grainbench-out/results.json"));
-    let results = json(&text);
+    let results: Value = text.parse().unwrap();
     assert!(results["verdicts"].as_array().unwrap().iter().all(|row| row["verdict"] == "pass"));
-    assert_eq!(results["controls"], json("[]"));
+    assert_eq!(results["controls"], json!([]));
 }
 
 /// Old spellings are accepted until the next version, and a note is printed.

@@ -109,6 +109,30 @@ pub(crate) trait Directory: AsRef<Path> {
         std::fs::write(path, content).unwrap();
     }
 
+    /// Writes a script for the shell that can be run as a program.
+    #[cfg(unix)]
+    fn script(&self, name: &str, text: &str) {
+        self.write(name, format!("#!/bin/sh\n{text}\n"));
+        let mode = std::os::unix::fs::PermissionsExt::from_mode(0o755);
+        std::fs::set_permissions(self.as_ref().join(name), mode).unwrap();
+    }
+
+    /// Copies the files of a folder of the repository, without a program that was built there.
+    fn copy(&self, from: &str, to: &str) {
+        let to = self.as_ref().join(to);
+        std::fs::create_dir_all(&to).unwrap();
+        for path in entries(root(from)).into_iter().filter(|path| path.is_file() && !path.ends_with("one_grain")) {
+            std::fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
+        }
+    }
+
+    /// Replaces a text in a file, which must contain it. Only its first occurrence is replaced.
+    fn edit(&self, name: impl AsRef<Path>, from: &str, to: &str) {
+        let text = self.read(&name);
+        assert!(text.contains(from), "{}: {from}", name.as_ref().display());
+        self.write(name, text.replacen(from, to, 1));
+    }
+
     /// Returns the text of a file.
     fn read(&self, name: impl AsRef<Path>) -> String {
         let path = self.as_ref().join(name);
@@ -242,18 +266,25 @@ pub(crate) fn files(directory: &Path) -> Vec<String> {
     while let Some(path) = open.pop() {
         let shown = path.strip_prefix(directory).expect("below the directory").display().to_string();
         if path.is_dir() {
-            let entries: Vec<_> =
-                std::fs::read_dir(&path).expect("readable").map(|entry| entry.unwrap().path()).collect();
-            if entries.is_empty() && path != directory {
+            let inner = entries(&path);
+            if inner.is_empty() && path != directory {
                 found.push(shown + "/");
             }
-            open.extend(entries);
+            open.extend(inner);
         } else {
             found.push(shown);
         }
     }
     found.sort();
     found
+}
+
+/// Returns the paths of all entries of a directory, sorted.
+pub(crate) fn entries(directory: impl AsRef<Path>) -> Vec<PathBuf> {
+    let entries = std::fs::read_dir(directory).expect("readable");
+    let mut paths: Vec<PathBuf> = entries.map(|entry| entry.unwrap().path()).collect();
+    paths.sort();
+    paths
 }
 
 /// Returns the number of results with an outcome.

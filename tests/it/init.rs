@@ -23,11 +23,9 @@ fn a_written_solver_runs_at_once() {
         let judge = || path.run(format!("judge mine/SOLVER.toml {} {} --no-controls --quiet", CASES[0], CASES[1]));
         let answer = judge();
         assert!(answer.code == Some(0) && answer.out.contains("9 pass, 0 fail"), "{}{}", answer.out, answer.err);
-        let text = path.join("mine").read(source);
-        assert!(text.contains(right), "{language}");
         // `make` compares times of files.
         let _ = fs::remove_file(path.join("mine/one_grain"));
-        path.join("mine").write(source, text.replace(right, wrong));
+        path.edit(format!("mine/{source}"), right, wrong);
         assert_eq!(judge().code, Some(1), "{language}: a wrong friction passes");
     }
 }
@@ -76,14 +74,8 @@ fn judge_and_run_give_the_same_results() {
 fn a_python_function_needs_python() {
     let path = temporary();
     let judge = |name: &str, script: Option<&str>| {
-        let bin = path.join("bin");
-        fs::create_dir_all(&bin).unwrap();
-        if let Some(script) = script {
-            use std::os::unix::fs::PermissionsExt;
-            bin.write("python3", format!("#!/bin/sh\n{script}\n"));
-            fs::set_permissions(bin.join("python3"), fs::Permissions::from_mode(0o755)).unwrap();
-        }
-        Answer::of(path.program(format!("judge {name} {}", CASES[1])).env("PATH", &bin))
+        script.into_iter().for_each(|script| path.script("bin/python3", script));
+        Answer::of(path.program(format!("judge {name} {}", CASES[1])).env("PATH", path.join("bin")))
     };
     let absent = "error: sphere:sphere: expected the program `python3`, which runs the function; found none\n";
     let answer = judge("sphere:sphere", None);

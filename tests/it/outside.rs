@@ -152,19 +152,9 @@ fn a_scene_is_printed_as_programs_are_given_it() {
 /// Copies the files of an example to a separate folder, optionally with a defect in one file.
 fn example(name: &str, file: &str, spoiled: Option<(&str, &str)>) -> Folder {
     let directory = temporary();
-    let from = Path::new(env!("CARGO_MANIFEST_DIR")).join("examples").join(name);
-    for entry in fs::read_dir(from).unwrap().map(|entry| entry.unwrap().path()).filter(|path| path.is_file()) {
-        let name = entry.file_name().unwrap();
-        let mut text = fs::read(&entry).unwrap();
-        if let Some((right, wrong)) = spoiled.filter(|_| name == file) {
-            let whole = String::from_utf8(text).unwrap();
-            assert!(whole.contains(right), "{right}");
-            text = whole.replace(right, wrong).into_bytes();
-        }
-        // An executable in the source folder is skipped, because it does not belong to the copied sources.
-        if name != "one_grain" {
-            directory.write(name, text);
-        }
+    directory.copy(&format!("examples/{name}"), "");
+    if let Some((right, wrong)) = spoiled {
+        directory.edit(file, right, wrong);
     }
     directory
 }
@@ -291,8 +281,7 @@ fn a_program_is_held_to_what_is_kept_of_it() {
     let kept: Value = serde_json::from_slice(&fs::read(folder.join("judged.json")).unwrap()).unwrap();
     assert!(kept["rows"].as_array().unwrap().iter().any(|row| row["verdict"] == "fail"), "{kept}");
     assert_eq!(judge("--expect-stored column vibrating-bar").code, Some(0), "it is red as it was");
-    let script = folder.read("line.py");
-    folder.write("line.py", script.replace("x + dt * w", "x + 0.98 * dt * w"));
+    folder.edit("line.py", "x + dt * w", "x + 0.98 * dt * w");
     let other = judge("--expect-stored column vibrating-bar");
     assert!(other.code == Some(1) && other.err.contains("fail, its control red; kept: pass"), "{}", other.err);
     folder.write("judged.json", "{");

@@ -1,5 +1,5 @@
 //! Solver-independent claims. They apply to any solver, and their negative controls detect wrong physics.
-use crate::common::{Directory, Folder, temporary};
+use crate::common::{Answer, Directory, Folder, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::dem::convention::Convention;
@@ -23,7 +23,7 @@ use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
 use std::path::{Path, PathBuf};
-use std::process::{Command, Output};
+use std::process::Command;
 use std::sync::Arc;
 
 /// Contact conventions differ in everything that a scene leaves open. With every convention, the solver-independent
@@ -160,13 +160,11 @@ fn the_example_is_green_as_a_foreign_crate_and_red_when_spoiled() {
         programs.push((name, example.replace(line, wrong)));
     }
     let foreign = ForeignCrate::build(&programs);
-    let honest = foreign.run("honest");
-    assert_eq!(honest.status.code(), Some(0), "{honest:?}");
-    let rows = String::from_utf8(honest.stdout).unwrap();
+    let rows = foreign.run("honest").ok().out;
     assert!(rows.lines().filter(|line| line.starts_with("pass")).count() >= 20, "{rows}");
     for (name, ..) in spoiled {
-        let output = foreign.run(name);
-        assert_eq!(output.status.code(), Some(1), "{name} is spoiled and must be refused: {output:?}");
+        let Answer { code, out, err } = foreign.run(name);
+        assert_eq!(code, Some(1), "{name} is spoiled and must be refused: {out}{err}");
     }
 }
 
@@ -189,20 +187,19 @@ impl ForeignCrate {
         main += "        _ => unreachable!(),\n    }\n}\n";
         folder.write("main.rs", &main);
         let built = std::env::current_exe().unwrap().parent().unwrap().to_owned();
-        let output = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()))
+        let mut rustc = Command::new(std::env::var_os("RUSTC").unwrap_or_else(|| "rustc".into()));
+        rustc
             .args(["--edition", "2024", "--crate-name", "foreign", "--out-dir", ".", "main.rs"])
             .arg(format!("--extern=grainbench={}", newest(&built, "libgrainbench-").display()))
             .arg(format!("-Ldependency={}", built.display()))
-            .current_dir(&folder)
-            .output()
-            .unwrap();
-        assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+            .current_dir(&folder);
+        Answer::of(&mut rustc).ok();
         Self { folder }
     }
 
-    fn run(&self, name: &str) -> Output {
+    fn run(&self, name: &str) -> Answer {
         let executable = format!("foreign{}", std::env::consts::EXE_SUFFIX);
-        Command::new(self.folder.join(executable)).arg(name).output().unwrap()
+        Answer::of(Command::new(self.folder.join(executable)).arg(name))
     }
 }
 

@@ -53,8 +53,7 @@ fn a_program_and_its_folder_go_when_we_are_killed() {
     let path = temporary();
     let (temporary, program) = (path.join("tmp"), path.join("program"));
     std::fs::create_dir(&temporary).unwrap();
-    std::fs::write(&program, "#!/bin/sh\necho $$ > pid\nexec sleep 600\n").unwrap();
-    std::fs::set_permissions(&program, std::os::unix::fs::PermissionsExt::from_mode(0o755)).unwrap();
+    path.script("program", "echo $$ > pid\nexec sleep 600");
     path.write("s.toml", SCENE);
     let mut child = path
         .program("simulate s.toml --solver lammps --time-step 1e-3")
@@ -89,22 +88,7 @@ fn a_program_and_its_folder_go_when_we_are_killed() {
     assert!(!left(), "the program {pid} or its folder is left");
 }
 
-const SCENE: &str = r#"title = "A disc in flight"
-dimension = 2
-duration = 0.01
-
-[materials.rock]
-density = 1000.0
-
-[contacts.rock]
-between = ["rock", "rock"]
-normal_stiffness = 1e6
-
-[grains.disc]
-material = "rock"
-radius = 0.5
-position = [0.0, 0.0]
-"#;
+const SCENE: &str = include_str!("../scenes/flight.toml");
 
 /// A program without documented errors would have red results in hard cases.
 #[test]

@@ -8,7 +8,7 @@
 //! An entry with one edit is a row `[text, message]` in the list of `[rows]` with the name of the edit, for `replace` a
 //! row `[text, replacement, message]`. Any other entry is a `[[refusal]]`.
 
-use crate::common::{Directory, files, root, temporary};
+use crate::common::{Directory, entries, files, root, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use rayon::prelude::*;
@@ -193,12 +193,10 @@ fn contents(directory: &Path) -> BTreeMap<String, Vec<u8>> {
 
 /// Writes a file and creates its folders. A name that ends with `/` is a folder.
 fn write(directory: &Path, name: &str, bytes: &[u8]) {
-    let path = directory.join(name);
     if name.ends_with('/') {
-        fs::create_dir_all(path).unwrap();
+        fs::create_dir_all(directory.join(name)).unwrap();
     } else {
-        fs::create_dir_all(path.parent().unwrap()).unwrap();
-        fs::write(path, bytes).unwrap();
+        directory.write(name, bytes);
     }
 }
 
@@ -257,8 +255,7 @@ fn failures(table: &Table) -> Vec<(Place, String, Option<String>)> {
 
 #[test]
 fn every_refusal_is_as_in_its_table() {
-    let mut tables: Vec<_> = fs::read_dir(root("tests/refusals")).unwrap().map(|entry| entry.unwrap().path()).collect();
-    tables.sort();
+    let tables = entries(root("tests/refusals"));
     let run = |file: &std::path::PathBuf| -> (usize, Vec<String>) {
         let text = fs::read_to_string(file).unwrap();
         let table: Table = toml::from_str(&text).unwrap_or_else(|error| panic!("{}: {error}", file.display()));

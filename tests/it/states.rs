@@ -1,5 +1,6 @@
 //! Initial states of cases. Each state is unchanged, and a file `NAME.state.toml` beside it contains the command that makes it.
 
+use crate::common::entries;
 use grainbench::cases::registry::{CASES, read_grains};
 use grainbench::fields::overlap::sphere_in_box;
 use grainbench::reference::deck::Stepping;
@@ -48,7 +49,7 @@ struct Origin {
 /// Returns the paths of all state files of all cases.
 fn states() -> Vec<PathBuf> {
     let folders = CASES.iter().map(|case| case.directory());
-    let files = folders.flat_map(|folder| fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path()));
+    let files = folders.flat_map(entries);
     let mut states: Vec<PathBuf> =
         files.filter(|path| path.extension().is_some_and(|ending| ending == "state")).collect();
     states.sort();

@@ -1,6 +1,6 @@
 //! Rules for the whole repository.
 
-use crate::common::temporary;
+use crate::common::{Directory, entries, root, temporary};
 use grainbench::cases::registry::CASES;
 use grainbench::cases::solvers;
 use grainbench::harness::case::{PLAIN, Physics};
@@ -8,21 +8,16 @@ use grainbench::harness::evidence::Evidence;
 use rayon::prelude::*;
 use std::collections::BTreeSet;
 use std::fs;
-use std::path::{Path, PathBuf};
-
-fn root() -> &'static Path {
-    Path::new(env!("CARGO_MANIFEST_DIR"))
-}
+use std::path::PathBuf;
 
 /// Returns the relative path and the text of all text files of the repository. Build products, programs installed
 /// beside their adapters, and hidden folders except `.ci` are left out.
 fn texts() -> Vec<(String, String)> {
     let mut found = Vec::new();
-    let mut open = vec![root().to_path_buf()];
+    let mut open = vec![root("")];
     while let Some(folder) = open.pop() {
-        for entry in fs::read_dir(folder).unwrap() {
-            let path = entry.unwrap().path();
-            let shown = path.strip_prefix(root()).unwrap().display().to_string();
+        for path in entries(folder) {
+            let shown = path.strip_prefix(root("")).unwrap().display().to_string();
             let hidden = shown.starts_with('.') && !shown.starts_with(".ci") && !shown.starts_with(".gitignore");
             let is_installed = shown.starts_with("peers/") && shown.ends_with("/venv");
             if hidden || is_installed || shown == "target" || shown == "grainbench-out" {
@@ -83,14 +78,13 @@ fn crates_depend_in_one_direction() {
     // Additional dependencies of tests: tests of the solvers use the harness, and tests of the studies use one solver.
     let tested: &[(&str, &str)] =
         &[("solvers/dem", "harness"), ("solvers/mpm", "harness"), ("solvers/rigid", "harness"), ("studies", "dem")];
-    let manifest: toml::Table = fs::read_to_string(root().join("Cargo.toml")).unwrap().parse().unwrap();
+    let manifest: toml::Table = root("").read("Cargo.toml").parse().unwrap();
     let members = manifest["workspace"]["members"].as_array().unwrap();
     assert_eq!(Some(members), manifest["workspace"]["default-members"].as_array(), "`cargo test` runs all crates");
     for member in members {
         let member = member.as_str().unwrap();
         let (_, known) = allowed.iter().find(|(name, _)| *name == member).unwrap_or_else(|| panic!("{member} is new"));
-        let manifest: toml::Table =
-            fs::read_to_string(root().join(member).join("Cargo.toml")).unwrap().parse().unwrap();
+        let manifest: toml::Table = root(member).read("Cargo.toml").parse().unwrap();
         for section in ["dependencies", "dev-dependencies", "build-dependencies"] {
             let names = manifest.get(section).and_then(toml::Value::as_table).into_iter().flat_map(toml::Table::keys);
             for name in names.filter_map(|name| name.strip_prefix("grainbench-")) {
@@ -134,10 +128,9 @@ fn no_hash_map_string_or_trait_object_in_hot_loops() {
         ("mpm", of_mpm, &["contact", "grid", "material", "surface", "transfer"]),
         ("lanes", of_lanes, &[]),
     ] {
-        let source = root().join("solvers").join(solver).join("src");
+        let source = root("solvers").join(solver).join("src");
         files.extend(names.split(' ').map(|name| source.join(name).with_extension("rs")));
-        let entries = folders.iter().flat_map(|folder| fs::read_dir(source.join(folder)).unwrap());
-        files.extend(entries.map(|entry| entry.unwrap().path()));
+        files.extend(folders.iter().flat_map(|folder| entries(source.join(folder))));
     }
     assert!(files.len() > 35, "{}", files.len());
     for path in &files {
@@ -165,8 +158,7 @@ fn solvers_compute_the_same_bits_on_every_processor() {
 #[test]
 fn every_case_folder_is_whole() {
     let mut folders = BTreeSet::new();
-    for entry in fs::read_dir(root().join("cases")).unwrap() {
-        let path = entry.unwrap().path();
+    for path in entries(root("cases")) {
         let name = path.file_name().unwrap().to_str().unwrap().to_owned();
         if !path.is_dir() || name == "src" || name == "tests" || name == "benches" {
             continue;
@@ -210,7 +202,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
             assert!(allowed.is_finite() && allowed >= 0.0, "{place}: allowed {allowed}");
             assert!(!claim.runs.is_empty(), "{place} reads no run");
             if let Some(work) = claim.source.work() {
-                let folder = root().join("reference").join(work.id);
+                let folder = root("reference").join(work.id);
                 assert!(folder.join("provenance.toml").is_file(), "{place}: {} has no provenance", work.id);
             }
             // Expected values of an external program come from a stored or live run, never from a number in the code.
@@ -225,7 +217,7 @@ fn every_case_and_claim_says_what_it_claims_and_why() {
 
 /// Returns the formatting errors of some files. `cargo fmt` does not find files in generated lists.
 fn badly_formatted(files: &[PathBuf]) -> Option<String> {
-    let settings = root().join("rustfmt.toml");
+    let settings = root("rustfmt.toml");
     let mut command = std::process::Command::new("rustfmt");
     command.args(["--check", "--edition", "2024", "--config-path"]).arg(settings).args(files);
     let Ok(output) = command.output() else {
@@ -237,7 +229,7 @@ fn badly_formatted(files: &[PathBuf]) -> Option<String> {
 
 #[test]
 fn every_rust_file_of_the_tree_is_formatted() {
-    let files: Vec<PathBuf> = rust().into_iter().map(|(name, _)| root().join(name)).collect();
+    let files: Vec<PathBuf> = rust().into_iter().map(|(name, _)| root(&name)).collect();
     if let Some(found) = badly_formatted(&files) {
         assert!(found.is_empty(), "{found}");
     }
@@ -288,7 +280,7 @@ fn no_path_of_one_machine() {
 
 #[test]
 fn the_readme_has_the_two_commands() {
-    let Ok(text) = fs::read_to_string(root().join("README.md")) else { return };
+    let Ok(text) = fs::read_to_string(root("README.md")) else { return };
     for command in ["cargo run --release", "cargo test --release"] {
         assert!(text.contains(command), "README.md says nothing of `{command}`");
     }

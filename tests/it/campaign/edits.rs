@@ -13,15 +13,6 @@ fn another_number_is_another_task() {
     assert!(here.ok("run --resume p").out.contains("45 tasks: 30 were finished, 15 done now"));
 }
 
-/// Copies `examples/python` to the folder `s`, with a replacement in its files.
-fn one_grain(here: &Path, replaced: (&str, &str)) {
-    fs::create_dir_all(here.join("s")).unwrap();
-    for name in ["SOLVER.toml", "one_grain.py"] {
-        let text = fs::read_to_string(root("examples/python").join(name)).unwrap();
-        here.join("s").write(name, text.replace(replaced.0, replaced.1));
-    }
-}
-
 /// Makes a plan, runs it, and returns the output of its report.
 fn collected(here: &Path, plan: &str) -> Answer {
     here.ok(format!("{plan} --plan p"));
@@ -33,11 +24,8 @@ fn collected(here: &Path, plan: &str) -> Answer {
 #[test]
 fn an_edited_input_is_run_again() {
     let here = temporary();
-    fs::create_dir(here.join("c")).unwrap();
-    for name in ["scene.toml", "claims.toml"] {
-        fs::copy(root("examples/case").join(name), here.join("c").join(name)).unwrap();
-    }
-    one_grain(&here, ("", ""));
+    here.copy("examples/case", "c");
+    here.copy("examples/python", "s");
     here.write("s/pkg/core.py", "FACTOR = 1.0\n");
     here.write("s/config.json", "{}");
     let edits: [(&str, &str, &str, &str); 6] = [
@@ -50,13 +38,8 @@ fn an_edited_input_is_run_again() {
     ];
     for (plan, file, from, to) in edits {
         collected(&here, plan);
-        let path = here.join(file);
-        let text = fs::read_to_string(&path).unwrap();
-        assert!(text.contains(from), "{file}: {from}");
-        fs::write(&path, text.replacen(from, to, 1)).unwrap();
-        let stale = here.run("report p");
-        let message = "expected the file of the plan, found a changed file";
-        stale.refused(message);
+        here.edit(file, from, to);
+        here.run("report p").refused("expected the file of the plan, found a changed file");
         here.ok(format!("{plan} --plan p"));
         let again = here.ok("run --resume p").out.clone();
         assert!(again.contains(" 0 were finished"), "{file}: {again}");
@@ -69,7 +52,7 @@ fn an_edited_input_is_run_again() {
 #[test]
 fn an_edited_program_owes_its_conformance_again() {
     let here = temporary();
-    one_grain(&here, ("", ""));
+    here.copy("examples/python", "s");
     let owed = || -> Vec<Value> {
         here.ok("run --solver s/SOLVER.toml --plan p");
         let text = here.read("p/tasks.jsonl");
@@ -79,7 +62,7 @@ fn an_edited_program_owes_its_conformance_again() {
     let before = owed();
     assert_eq!(before.len(), 1);
     assert_eq!(owed(), before);
-    one_grain(&here, ("import csv", "import os, csv"));
+    here.edit("s/one_grain.py", "import csv", "import os, csv");
     assert_ne!(owed(), before);
 }
 

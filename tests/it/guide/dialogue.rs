@@ -1,6 +1,6 @@
 //! `console` blocks of the guide: commands and their output.
 
-use crate::common::{Folder, temporary};
+use crate::common::{Directory, Folder, temporary};
 use std::fs;
 use std::path::PathBuf;
 use std::process::{Command, Stdio};
@@ -97,14 +97,7 @@ impl Place {
         let parts =
             "guide/scenes guide/claims examples/cpp examples/python examples/case examples/sweep cases/drum-mixing";
         for part in parts.split(' ') {
-            let to = folder.join(part);
-            fs::create_dir_all(&to).unwrap();
-            for entry in fs::read_dir(crate::common::root(part)).unwrap() {
-                let path = entry.unwrap().path();
-                if path.is_file() && path.file_name().unwrap() != "one_grain" {
-                    fs::copy(&path, to.join(path.file_name().unwrap())).unwrap();
-                }
-            }
+            folder.copy(part, part);
         }
         let programs = folder.join("bin");
         fs::create_dir(&programs).unwrap();

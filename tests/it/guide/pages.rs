@@ -1,8 +1,8 @@
 //! Chapters of the guide, with their included files and links.
 
-use crate::common::root;
+use crate::common::{entries, root};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 #[derive(Clone)]
 pub(crate) struct Chapter {
@@ -12,17 +12,12 @@ pub(crate) struct Chapter {
 
 /// Returns all chapters, sorted by name.
 pub(crate) fn chapters() -> Vec<Chapter> {
-    let mut found: Vec<Chapter> = fs::read_dir(root("guide/src"))
-        .unwrap()
-        .map(|entry| entry.unwrap())
-        .filter(|entry| entry.path().extension().is_some_and(|ending| ending == "md"))
-        .map(|entry| Chapter {
-            name: entry.file_name().into_string().unwrap(),
-            text: fs::read_to_string(entry.path()).unwrap(),
-        })
-        .filter(|chapter| chapter.name != "SUMMARY.md")
-        .collect();
-    found.sort_by(|a, b| a.name.cmp(&b.name));
+    let files = entries(root("guide/src")).into_iter().filter(|path| path.extension().is_some_and(|end| end == "md"));
+    let read = |path: PathBuf| Chapter {
+        name: path.file_name().unwrap().to_str().unwrap().to_owned(),
+        text: fs::read_to_string(path).unwrap(),
+    };
+    let found: Vec<Chapter> = files.map(read).filter(|chapter| chapter.name != "SUMMARY.md").collect();
     assert!(found.len() > 7, "{} chapters", found.len());
     found
 }
