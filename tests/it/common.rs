@@ -321,6 +321,12 @@ pub(crate) fn expect_file(path: &str, wanted: &str) {
     assert!(found == wanted, "{} is out of date: UPDATE_README=1 cargo test --test it writes it", path.display());
 }
 
+/// Returns a table in Markdown. The cells of its head and of each row are separated by `|`.
+pub(crate) fn table(head: &str, rows: impl IntoIterator<Item = String>) -> String {
+    let line = "---|".repeat(head.split('|').count());
+    rows.into_iter().fold(format!("| {head} |\n|{line}\n"), |table, row| table + &format!("| {row} |\n"))
+}
+
 /// Returns a text in which the part between two marks is replaced.
 pub(crate) fn with_generated(readme: &str, mark: &str, table: &str) -> String {
     let open = format!("<!-- generated: {mark} -->\n");

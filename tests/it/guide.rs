@@ -8,15 +8,15 @@
 mod dialogue;
 mod pages;
 
-use crate::common::{expect_file, is_here, root, with_generated};
+use crate::common::{expect_file, is_here, root, table, with_generated};
 use dialogue::{Place, blocks, hold};
 use grainbench::cases::registry::CASES;
+use grainbench::harness::case::Case;
 use grainbench::harness::evidence::Evidence;
 use grainbench::harness::run::ExpectedOutcome;
 use grainbench::harness::verdict::Outcome;
 use pages::{Chapter, chapters, lost_links, untold, with_files};
 use std::collections::{BTreeMap, BTreeSet};
-use std::fmt::Write as _;
 use std::fs;
 
 /// Runs the dialogues of a chapter in order in a separate folder, and returns descriptions of those that failed.
@@ -118,11 +118,8 @@ fn links_and_includes_lead_somewhere() {
 
 /// Returns a table with the limitations of each case.
 fn weak_table() -> String {
-    let mut table = "| case | title | limitations |\n|---|---|---|\n".to_owned();
-    for case in CASES {
-        writeln!(table, "| `{}` | {} | {} |", case.name, case.title, one_line(case.weakness)).unwrap();
-    }
-    table
+    let row = |case: &&Case| format!("`{}` | {} | {}", case.name, case.title, one_line(case.weakness));
+    table("case | title | limitations", CASES.iter().map(row))
 }
 
 /// Returns a table of the known errors of solvers. Their results are amber as long as the errors exist.
@@ -141,11 +138,10 @@ fn known_table() -> String {
             }
         }
     }
-    let mut table = "| solver | error | claims that show it |\n|---|---|---|\n".to_owned();
-    for ((solver, reason), rows) in known {
-        writeln!(table, "| `{solver}` | {} | {} |", one_line(reason), one_line(&rows.join("; "))).unwrap();
-    }
-    table
+    let row = |((solver, reason), rows): ((&str, &str), Vec<String>)| {
+        format!("`{solver}` | {} | {}", one_line(reason), one_line(&rows.join("; ")))
+    };
+    table("solver | error | claims that show it", known.into_iter().map(row))
 }
 
 /// Returns a text on one line, for a table cell.

@@ -3,7 +3,7 @@
 //! `UPDATE_README=1 cargo test --release --test it peers` writes the tables again. New results come from `grainbench
 //! run --solver PATH --update-stored`.
 
-use crate::common::{expect_file, root, with_generated};
+use crate::common::{entries, expect_file, root, table, with_generated};
 use grainbench::cases::registry;
 use grainbench::peers::{KEPT, kept};
 use grainbench::reference::outside::ExternalProgram;
@@ -12,21 +12,15 @@ use grainbench::reports::judged::{ExternalResults, cases};
 use grainbench::reports::study::point::Diagram;
 use grainbench::reports::study::{Study, cost};
 use grainbench::reports::{Provenance, number};
-use std::fmt::Write as _;
+use std::path::PathBuf;
 
 /// Each adapter in `peers/` has stored results of its present files.
 #[test]
 fn every_adapter_was_judged_as_it_stands() {
-    let mut folders: Vec<String> = std::fs::read_dir(root("peers"))
-        .unwrap()
-        .map(|entry| entry.unwrap())
-        .filter(|entry| entry.path().join("SOLVER.toml").is_file())
-        .map(|entry| entry.file_name().into_string().unwrap())
-        .collect();
-    folders.sort();
-    let mut named: Vec<&str> = KEPT.iter().map(|(name, _)| *name).collect();
+    let folders = entries(root("peers")).into_iter().filter(|path| path.join("SOLVER.toml").is_file());
+    let mut named: Vec<PathBuf> = KEPT.iter().map(|(name, _)| root("peers").join(name)).collect();
     named.sort_unstable();
-    assert_eq!(folders, named);
+    assert_eq!(folders.collect::<Vec<_>>(), named);
     for ((folder, _), judged) in KEPT.iter().zip(kept().unwrap()) {
         let path = root("peers").join(folder);
         let program = ExternalProgram::read(&path.join("SOLVER.toml")).unwrap();
@@ -62,21 +56,15 @@ fn kept_rows_are_earned_and_are_those_of_today() {
 }
 
 fn programs_table(judged: &[ExternalResults]) -> String {
-    let mut table =
-        "| program | rows | pass | red | amber | controls red | judged |\n|---|---|---|---|---|---|---|\n".to_owned();
-    for results in judged {
+    let row = |results: &ExternalResults| {
         let count = results.count(None);
         let (pass, red, amber) = (count.pass(), count.red(), count.amber());
         let Headline { controls, controls_red, .. } = count;
         let rows = results.rows.len();
         let (version, day, commit) = (&results.version, results.provenance.day(), &results.provenance.commit);
-        writeln!(
-            table,
-            "| {version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit} |"
-        )
-        .unwrap();
-    }
-    table.trim_end().to_owned()
+        format!("{version} | {rows} | {pass} | {red} | {amber} | {controls_red} of {controls} | {day}, {commit}")
+    };
+    table("program | rows | pass | red | amber | controls red | judged", judged.iter().map(row)).trim_end().to_owned()
 }
 
 /// Returns a table cell: largest |error|/allowed, number of passed claims, and number of all claims including amber
@@ -93,13 +81,11 @@ fn cell(count: Headline, worst: Option<f64>) -> String {
 
 fn cases_table(judged: &[ExternalResults]) -> String {
     let names: Vec<&str> = judged.iter().map(|results| results.program.as_str()).collect();
-    let mut table = format!("| case | {} |\n|---|{}\n", names.join(" | "), "---|".repeat(names.len()));
-    for case in cases(judged) {
-        let cells: Vec<String> =
-            judged.iter().map(|results| cell(results.count(Some(case)), results.worst(case))).collect();
-        writeln!(table, "| `{case}` | {} |", cells.join(" | ")).unwrap();
-    }
-    table.trim_end().to_owned()
+    let row = |case: &str| {
+        let cells = judged.iter().map(|results| cell(results.count(Some(case)), results.worst(case)));
+        format!("`{case}` | {}", cells.collect::<Vec<_>>().join(" | "))
+    };
+    table(&format!("case | {}", names.join(" | ")), cases(judged).into_iter().map(row)).trim_end().to_owned()
 }
 
 #[test]
@@ -117,8 +103,7 @@ fn tables_are_generated() {
 fn costs_table(study: &Study) -> String {
     const TARGET: f64 = 0.01;
     let lines = cost::lines(&study.diagrams);
-    let mut table = format!("| at 1 % | {} |\n|---|{}\n", lines.join(" | "), "---|".repeat(lines.len()));
-    for diagram in &study.diagrams {
+    let row = |diagram: &Diagram| {
         let cheapest = |line: &str| cost::cheapest(diagram, line, TARGET).and_then(|point| point.wall_seconds);
         let best = lines.iter().filter_map(|line| cheapest(line)).fold(f64::INFINITY, f64::min);
         let nearest = |line: &str| {
@@ -134,9 +119,9 @@ fn costs_table(study: &Study) -> String {
         };
         let cells: Vec<String> = lines.iter().map(cell).collect();
         let Diagram { case, variant, quantity, .. } = diagram;
-        writeln!(table, "| `{case}/{variant}`, {quantity} | {} |", cells.join(" | ")).unwrap();
-    }
+        format!("`{case}/{variant}`, {quantity} | {}", cells.join(" | "))
+    };
+    let costs = table(&format!("at 1 % | {}", lines.join(" | ")), study.diagrams.iter().map(row));
     let Provenance { machine, date, commit, .. } = &study.provenance;
-    write!(table, "\n{machine}, {}, commit {commit}.", date.split(' ').next().unwrap_or_default()).unwrap();
-    table
+    format!("{costs}\n{machine}, {}, commit {commit}.", date.split(' ').next().unwrap_or_default())
 }

@@ -3,11 +3,11 @@
 //!
 //! `UPDATE_README=1 cargo test --release --test it readme` writes the generated parts again.
 
-use crate::common::{expect_file, root, with_generated};
+use crate::common::{expect_file, root, table, with_generated};
 use grainbench::cases::registry::{self, CASES, read_grains};
 use grainbench::cases::runner;
 use grainbench::dem::convention::Convention;
-use grainbench::harness::case::PLAIN;
+use grainbench::harness::case::{Case, PLAIN};
 use grainbench::harness::claim::Claim;
 use grainbench::harness::course::of_case;
 use grainbench::harness::evidence::Evidence;
@@ -18,36 +18,27 @@ use grainbench::solver::Solver;
 use grainbench::solver::resolution::Resolution;
 use grainbench::studies::race::ThroughputBenchmark;
 use std::collections::BTreeSet;
-use std::fmt::Write as _;
 use std::path::Path;
 
 fn settings_table() -> String {
-    let mut table = "| solver | setting |\n|---|---|\n".to_owned();
-    for mpm in Mpm::ALL {
-        writeln!(table, "| `{}` | {} |", mpm.name, mpm.setting.words().join("; ")).unwrap();
-    }
-    table
+    table("solver | setting", Mpm::ALL.iter().map(|mpm| format!("`{}` | {}", mpm.name, mpm.setting.words().join("; "))))
 }
 
 fn cases_table() -> String {
-    let mut table = "| case | title | claims | evidence | solvers |\n|---|---|---|---|---|\n".to_owned();
-    for case in CASES {
+    let row = |case: &&Case| {
         let claims = (case.claims)();
         let list = |words: BTreeSet<String>| words.into_iter().collect::<Vec<_>>().join(", ");
         let evidence = list(claims.iter().map(|claim| claim.evidence().word().to_owned()).collect());
         let solvers =
             list(claims.iter().flat_map(|claim| claim.runs.iter().map(|run| format!("`{}`", run.solver))).collect());
-        writeln!(table, "| `{}` | {} | {} | {evidence} | {solvers} |", case.name, case.title, claims.len()).unwrap();
-    }
-    table
+        format!("`{}` | {} | {} | {evidence} | {solvers}", case.name, case.title, claims.len())
+    };
+    table("case | title | claims | evidence | solvers", CASES.iter().map(row))
 }
 
 fn conventions_table() -> String {
-    let mut table = "| solver | options |\n|---|---|\n".to_owned();
-    for convention in Convention::ALL {
-        writeln!(table, "| `{}` | {} |", convention.name, convention.words().join("; ")).unwrap();
-    }
-    table
+    let row = |convention: Convention| format!("`{}` | {}", convention.name, convention.words().join("; "));
+    table("solver | options", Convention::ALL.into_iter().map(row))
 }
 
 /// Returns the table of the stored throughput benchmark. `grainbench race` on an idle machine makes a new `race.json`.
