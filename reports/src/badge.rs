@@ -9,7 +9,6 @@ use crate::report::Report;
 /// Average width of a letter in a badge (px).
 const LETTER: usize = 7;
 
-/// Returns the badge as SVG.
 pub(crate) fn badge(report: &Report) -> String {
     let counts = Headline::of_report(report);
     let red = counts.red() + (counts.controls - counts.controls_red);

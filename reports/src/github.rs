@@ -36,8 +36,7 @@ pub fn summary(report: &Report) -> String {
     text
 }
 
-/// Returns one workflow command for each red result, each control that did not fail as required, and each other reason why
-/// the run is red.
+/// Returns one workflow command for each red result, each unmet negative control, and each other reason for red.
 #[must_use]
 pub fn annotations(report: &Report) -> Vec<String> {
     let error = |title: &str, message: &str| format!("::error title={}::{}", property(title), data(message));

@@ -77,7 +77,6 @@ impl Headline {
         self.outcomes.iter().sum()
     }
 
-    /// Returns the number of results with this colour.
     fn of_severity(self, severity: Severity) -> usize {
         OUTCOMES.into_iter().filter(|outcome| outcome.severity() == severity).map(|outcome| self.count(outcome)).sum()
     }

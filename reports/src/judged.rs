@@ -56,9 +56,8 @@ impl ExternalResults {
         Self { program, version, adapter, provenance: provenance.clone(), rows }
     }
 
-    /// Returns the differences between the stored results and present ones of the same solver, one line each. A line states
-    /// an outcome or control that differs, a result that is not stored, or an error that changed by more than the
-    /// tolerance.
+    /// Returns the differences between the stored results and present ones of the same solver, one line each: other outcomes
+    /// or controls, results that are not stored, and errors that changed by more than the tolerance.
     #[must_use]
     pub fn otherwise(&self, sections: &[Section]) -> Vec<String> {
         let now = Self::new([const { String::new() }; 3], &self.provenance, sections);

@@ -101,8 +101,7 @@ pub(crate) fn expected(expected: Option<ExpectedValue>, unit: &str) -> String {
     expected.map_or_else(|| "—".to_owned(), |expected| expected.words(|value| number::with_unit(value, unit)))
 }
 
-/// Returns `of SCALE` if the scale of the error differs from the magnitude of the expected value or of the nearest bound;
-/// none otherwise.
+/// Returns `of SCALE` if the scale differs from the magnitude of the expected value or of the nearest bound.
 pub(crate) fn scale_note(verdict: &Verdict) -> Option<String> {
     let scale = verdict.scale?;
     let own = verdict.expected.map_or(0.0, |expected| expected.nearest(verdict.value.unwrap_or(0.0)).abs());

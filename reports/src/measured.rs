@@ -78,8 +78,7 @@ pub struct Factor {
     pub seconds: [f64; 2],
     /// Number of quantities for which the solver reaches the error.
     pub reached: usize,
-    /// Geometric mean of the solver's time divided by the time of `dem`, and number of quantities for which both reach
-    /// the error.
+    /// Geometric mean of the solver's time divided by the time of `dem`, and number of quantities that both reach.
     pub over_dem: Option<(f64, usize)>,
 }
 
@@ -184,8 +183,7 @@ impl Costs {
         Self { stamp, quantities: study.diagrams.len(), lines: lines.collect(), example }
     }
 
-    /// Adds the solvers of another study that are not yet included. Their costs are relative to the cheapest solver of
-    /// their own study.
+    /// Adds further solvers of another study. Their costs are relative to the cheapest solver of their own study.
     pub fn add(&mut self, other: Self) {
         let is_new = |line: &Line| self.lines.iter().all(|known| known.solver != line.solver);
         let new: Vec<Line> = other.lines.into_iter().filter(is_new).collect();
@@ -199,8 +197,7 @@ fn is_asked(diagram: &Diagram, line: &str) -> bool {
     cost::of_line(diagram, line).any(|point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed))
 }
 
-/// Returns the Pareto front of a solver in a diagram. Times are divided by the time of the cheapest solver at an error of
-/// 1 %.
+/// Returns the Pareto front of a solver. Times are divided by the time of the cheapest solver at 1 %.
 fn places(diagram: &Diagram, line: &str, lines: &[&str]) -> Vec<(f64, f64)> {
     let Some(unit) = cheapest(diagram, lines, TARGETS[AT]) else { return Vec::new() };
     let front = cost::front(cost::of_line(diagram, line));

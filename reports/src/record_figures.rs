@@ -155,8 +155,7 @@ fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item
     (1..=count).filter_map(move |at| snapshots.get(at * last / count).copied())
 }
 
-/// Returns the quantities to plot: speed, stress if there are contacts or points, and plastic strain and rotation if
-/// they are not zero.
+/// Returns the quantities to plot: speed, stress if known, and plastic strain and rotation if they are not zero.
 fn quantities(records: &[NamedRecord<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
     let mut quantities = Vec::new();
@@ -192,8 +191,7 @@ fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {
     ))
 }
 
-/// Returns profiles of velocity and displacement across the flow, if the domain is periodic along exactly one axis, the
-/// direction of flow.
+/// Returns profiles of velocity and displacement across the flow, whose direction is the only periodic axis.
 fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
     let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {

@@ -68,7 +68,6 @@ pub fn results_json(report: &Report) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&results).map(|text| text + "\n")
 }
 
-/// Returns the table of all runs.
 pub(crate) fn points_table(report: &Report) -> Table<'_> {
     let columns = ["case", "variant", "solver", "resolution"].map(Column::text).into_iter();
     let columns = columns.chain(["time_step", "fraction"].map(Column::number));

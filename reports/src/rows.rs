@@ -13,7 +13,6 @@ pub(crate) fn expectation(expected: Option<ExpectedValue>) -> (Option<f64>, Stri
     (expected.and_then(ExpectedValue::value), bound.map_or_else(String::new, |bound| bound.to_string()))
 }
 
-/// Returns the table of all results.
 pub(crate) fn table(report: &Report) -> Table<'_> {
     let [text, number] = [Column::text, Column::number] as [fn(&'static str) -> Column; 2];
     let names = ["case", "variant", "solver", "resolution", "quantity", "unit"].map(text).into_iter();

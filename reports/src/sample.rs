@@ -250,7 +250,6 @@ fn nine_discs() -> Section {
     }
 }
 
-/// Returns the provenance of the report and of its stored measurements.
 fn report_provenance() -> Provenance {
     Provenance {
         version: "0.1.0".into(),

@@ -15,7 +15,6 @@ use std::f64::consts::TAU;
 const PIXELS: f64 = 640.0;
 /// Direction of the eye from the centre of the scene.
 const EYE: Vector3<f64> = Vector3::new(0.5, -0.8, 0.4);
-/// Direction of the light source.
 const LIGHT: Vector3<f64> = Vector3::new(0.1, -0.7, 0.8);
 /// Light intensity on surfaces that face away from the light source.
 const AMBIENT: f64 = 0.3;

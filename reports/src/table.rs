@@ -68,25 +68,21 @@ impl Column {
         Self::new(name, Format::Digits(3))
     }
 
-    /// Returns the column with a unit.
     pub(crate) fn unit(self, unit: impl Into<String>) -> Self {
         Self { unit: unit.into(), ..self }
     }
 
-    /// Returns the column with another CSS class of its cells.
     pub(crate) const fn class(mut self, class: &'static str) -> Self {
         self.class = class;
         self
     }
 
-    /// Returns the column with a least width (characters). In a narrow terminal it shrinks to it, and longer cells end with
-    /// `…`.
+    /// Returns the column with a least width (characters) in a narrow terminal, where longer cells end with `…`.
     pub(crate) const fn shrinks_to(mut self, least: usize) -> Self {
         self.least = Some(least);
         self
     }
 
-    /// Returns name and unit.
     fn title(&self) -> String {
         if self.unit.is_empty() { self.name.clone() } else { format!("{} ({})", self.name, self.unit) }
     }
@@ -167,7 +163,6 @@ impl<T: Into<Self>> From<Option<T>> for Cell {
     }
 }
 
-/// Implements the conversions of values to cells.
 macro_rules! cells {
     ($($type:ty: $value:ident => $cell:expr,)+) => {$(
         impl From<$type> for Cell {
@@ -197,7 +192,6 @@ pub struct Row {
 }
 
 impl Row {
-    /// Returns the row with a CSS class.
     pub(crate) const fn class(mut self, class: &'static str) -> Self {
         self.class = class;
         self

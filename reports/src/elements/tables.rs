@@ -28,8 +28,7 @@ fn place(course: &Course, cell: usize) -> impl Iterator<Item = Cell> {
     course.grid.at(cell).map(Cell::from).into_iter().chain(middle.map(Cell::from))
 }
 
-/// Returns a table with one row per element and frame. The column `mask` states the reason if the element is left out of
-/// averages.
+/// Returns a table with one row per element and frame. The column `mask` states why averages omit the element.
 pub(super) fn elements(course: &Course) -> Table<'_> {
     let columns = clock_heads().into_iter().chain(place_heads()).chain([Head::text("mask")]);
     let rows = course.frames.iter().flat_map(move |frame| {

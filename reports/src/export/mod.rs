@@ -98,7 +98,6 @@ pub fn write_remains(
     write_series(series, snapshots, formats, out)
 }
 
-/// Writes the time series and the snapshots.
 fn write_series(
     series: &Series,
     snapshots: &mut SnapshotStore,

@@ -3,8 +3,7 @@
 use crate::table::{Cell, Column, Format, Table};
 use grainbench_solver::record::Series;
 
-/// Returns the table with the columns `step`, `time (s)`, `NAME (unit)`, … and one row per sample. A short column ends
-/// with empty cells.
+/// Returns the table `step`, `time (s)`, `NAME (unit)`, … with one row per sample. A short column has empty cells.
 pub(crate) fn table(series: &Series) -> Table<'_> {
     let columns = [Column::new("step", Format::Count), Column::number("time").unit("s")].into_iter();
     let quantities = series.columns.iter().map(|column| Column::number(&column.name).unit(&column.unit));

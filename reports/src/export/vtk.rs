@@ -131,8 +131,7 @@ fn open(out: &mut impl Write, time: f64, points: usize, vertices: usize, lines: 
     )
 }
 
-/// Ends the element `data`, and writes the positions of the points and `count` cells of `size` points each. The cells use
-/// the points in order.
+/// Ends the element `data`, and writes the points and `count` cells of `size` consecutive points each.
 fn close(
     out: &mut impl Write,
     data: &str,

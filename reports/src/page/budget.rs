@@ -26,13 +26,11 @@ pub(crate) enum Rank {
 /// Part of the page that can be moved to a file.
 pub(crate) struct Part {
     pub(crate) rank: Rank,
-    /// The part in the page.
     pub(crate) whole: Markup,
     /// Replacement of a moved part: a link to its file or, for a figure, a lighter image.
     pub(crate) link: Markup,
     /// Path and text of the file; none if the file exists in any case.
     pub(crate) file: Option<(String, String)>,
-    /// True if the part was moved out of the page.
     pub(crate) is_moved: bool,
 }
 

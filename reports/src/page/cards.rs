@@ -66,8 +66,7 @@ pub(crate) fn rows<'a>(report: &'a Report, solver: &'a str) -> impl Iterator<Ite
     report.verdicts().filter(move |row| row.solver == solver)
 }
 
-/// Returns the rank of a wrong result: crashed runs first, then failures, then known errors. Within a rank, the larger
-/// error comes first.
+/// Returns the rank of a wrong result, from crashed runs to known errors, and within the rank the size of the error.
 fn wrongness(row: &Verdict) -> Option<(u8, f64)> {
     match row.outcome {
         Outcome::Broken => Some((2, f64::INFINITY)),

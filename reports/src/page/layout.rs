@@ -61,8 +61,7 @@ pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
     name
 }
 
-/// Returns the symbol and the CSS class of an outcome. The symbols differ, so that the meaning does not depend on
-/// colour.
+/// Returns the symbol and the CSS class of an outcome. The symbols differ also without colour.
 pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     let symbol = match outcome.severity() {
         Severity::Green => "✓",
@@ -72,7 +71,6 @@ pub(crate) const fn sign(outcome: Outcome) -> (&'static str, &'static str) {
     (symbol, class(outcome.severity()))
 }
 
-/// Renders a graph with its caption.
 pub(crate) fn captioned(figure: &Figure) -> Markup {
     html! {
         figure {

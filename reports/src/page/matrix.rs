@@ -84,12 +84,10 @@ fn fields_of(report: &Report) -> Vec<Physics> {
     fields
 }
 
-/// Results of a solver in a field of physics.
 struct FieldResults {
     /// Median |error| / scale of the judged results; none if no result has an error. The largest error would be that of the
     /// claim with the widest tolerance.
     error: Option<f64>,
-    /// Number of results of each outcome, with the most important outcome first.
     counts: Vec<(Outcome, usize)>,
 }
 

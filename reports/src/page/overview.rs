@@ -8,9 +8,8 @@ use crate::headline::{Headline, OUTCOMES};
 use crate::report::Report;
 use grainbench_harness::verdict::{Outcome, Severity};
 
-/// Renders the first screen. `has_rows` returns true if the page contains the results of a case.
-///
-/// `counts` counts all results, and `report` contains only the results that are shown.
+/// Renders the first screen. `has_rows` returns true if the page contains the results of a case. `counts` counts all
+/// results, and `report` contains only the results that are shown.
 pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], has_rows: &dyn Fn(&str) -> bool) -> Markup {
     let shown = Headline::of_report(report).rows();
     let cases = report.sections.len();
@@ -84,7 +83,6 @@ const fn meaning(outcome: Outcome) -> &'static str {
     }
 }
 
-/// Returns the counts in one sentence.
 fn headline(counts: Headline) -> String {
     if counts.rows() == 0 {
         return "Nothing was judged".to_owned();

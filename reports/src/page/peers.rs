@@ -80,8 +80,7 @@ fn cell(count: Headline, worst: Option<f64>) -> Markup {
     }
 }
 
-/// Returns the largest |error|/allowed of our results in a case, over the quantities and resolutions that external
-/// solvers also have.
+/// Returns the largest |error|/allowed of our results that external solvers also have.
 fn ours(report: &Report, case: &str) -> Option<f64> {
     let asked = report.judged.iter().flat_map(|results| &results.rows).map(|row| &row.result);
     let asked = asked.filter(|row| row.case == case);

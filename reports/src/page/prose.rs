@@ -39,8 +39,7 @@ fn tame(event: Event<'_>) -> Event<'_> {
     }
 }
 
-/// Returns the address of a link if it leads to a web page or to a place in this page; otherwise the address of the
-/// summary.
+/// Returns the address of a link to a web page or to a place in this page; otherwise the address of the summary.
 fn harmless(address: CowStr<'_>) -> CowStr<'_> {
     let known = ["https://", "http://", "#"];
     if known.iter().any(|start| address.starts_with(start)) { address } else { CowStr::Borrowed("#summary") }

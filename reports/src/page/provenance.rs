@@ -5,7 +5,6 @@ use maud::{Markup, html};
 use crate::number;
 use crate::report::Provenance;
 
-/// Renders the provenance at the end of the page.
 pub(crate) fn render(provenance: &Provenance) -> Markup {
     let options = if provenance.options.is_empty() { "none".to_owned() } else { provenance.options.join(", ") };
     let rows = [

@@ -24,7 +24,6 @@ const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
 /// plotted at the ends.
 const CHANGES: [f64; 2] = [1e-5, 10.0];
 
-/// Anchors and headings of the questions.
 const QUESTIONS: [(&str, &str); 3] =
     [("costs", "What accuracy costs"), ("stability", "What stays stable"), ("effects", "Which effects matter")];
 
@@ -160,7 +159,6 @@ fn steps(stability: &Stability) -> Markup {
     }
 }
 
-/// Returns a sentence about the largest stable time steps.
 fn limits(lines: &[&Hold]) -> String {
     let range = |[low, high]: [f64; 2]| format!("{}–{}", number::significant(low, 3), number::significant(high, 3));
     let exact: Vec<&&Hold> = lines.iter().filter(|line| line.limit.is_some()).collect();

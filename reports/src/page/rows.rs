@@ -11,8 +11,7 @@ use crate::line;
 use crate::number;
 use crate::table::{Column, head};
 
-/// Returns the anchor of a result, from a hash of case, variant, solver, resolution and quantity. It is therefore the same
-/// in every report.
+/// Returns the anchor of a result, from a hash of its key. It is therefore the same in every report.
 pub(crate) fn address(verdict: &Verdict) -> String {
     let mut hasher = blake3::Hasher::new();
     for part in verdict.key() {

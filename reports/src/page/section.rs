@@ -28,8 +28,7 @@ struct Details {
 }
 
 impl<'a> CaseSection<'a> {
-    /// Returns the section of a case. `names` contains the file names of its figures, and `taken` the anchors that the
-    /// page already uses.
+    /// Returns the section. `names` are the file names of its figures, and `taken` the anchors of the page so far.
     pub(crate) fn new(
         section: &'a Section,
         anchor: &'a str,

@@ -17,7 +17,6 @@ const LINES: usize = 6;
 /// Smallest error that the figure over all cases shows.
 const LEAST: f64 = 1e-10;
 
-/// Renders the failures, one line each.
 pub(crate) fn failing(report: &Report, anchors: &[String]) -> Markup {
     let failures = report.sections.iter().zip(anchors).flat_map(|(section, anchor)| {
         section.failures(line::verdict, line::control).map(move |(_, line)| (anchor, line))

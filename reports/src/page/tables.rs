@@ -8,7 +8,6 @@ use crate::report::RunCost;
 use crate::row;
 use crate::table::{Cell, Column, Format, Table};
 
-/// Renders the table of negative controls with their results.
 pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
     let columns = [
         Column::text("Result"),
@@ -35,7 +34,6 @@ pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
     }
 }
 
-/// Renders the table with the cost of every run.
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
     let has_variants = runs.iter().any(|run| !run.variant.is_empty());
     let columns = [Column::heading("Solver")].into_iter().chain(has_variants.then(|| Column::text("Variant")));

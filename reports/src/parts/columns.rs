@@ -2,17 +2,13 @@
 
 use nalgebra::Vector3;
 
-/// A value of a row.
 pub(super) enum Value<'r> {
-    /// Integer.
     Whole(&'r mut i64),
     /// Number, which may be NaN.
     Number(&'r mut f64),
     /// Number that may be absent.
     Told(&'r mut Option<f64>),
-    /// Boolean value.
     Flag(&'r mut bool),
-    /// Text.
     Word(&'r mut String),
 }
 
@@ -56,7 +52,6 @@ pub(super) trait Columns {
     }
 }
 
-/// Type of a table row.
 pub(super) trait Row: Sized {
     /// File name of the table, without extension.
     const TABLE: &'static str;

@@ -22,7 +22,6 @@ const TABLES: [&str; 6] =
 /// Name, hash and number of rows of a closed part.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
 pub(super) struct Seal {
-    /// Name of the part's folder.
     pub(super) name: String,
     /// Hash of all files of the part.
     hash: [u8; 32],

@@ -32,7 +32,6 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
 pub(super) struct Frame {
     pub(super) bounds: (Vector3<f64>, Vector3<f64>),
     pub(super) periodic: [bool; 3],
-    /// True if contacts were reported.
     pub(super) has_contacts: bool,
 }
 

@@ -55,10 +55,8 @@ pub enum StoreError {
 pub struct SnapshotStore {
     /// Folder of the parts or, for scratch, the folder in which a hidden folder is created when it is first needed.
     root: PathBuf,
-    /// True if the parts are in a hidden folder, which is deleted with the store. Otherwise they remain after the process has
-    /// ended.
+    /// True if the parts are in a hidden folder, which is deleted with the store.
     is_scratch: bool,
-    /// Hidden folder.
     scratch: Option<TempDir>,
     kept: CheckpointSnapshots,
     /// Size of the snapshots in memory (bytes).
@@ -73,7 +71,6 @@ pub struct SnapshotStore {
 /// Snapshots in a checkpoint: those in memory, and the list of closed parts.
 #[derive(Default, Serialize, Deserialize)]
 struct CheckpointSnapshots {
-    /// Snapshots in memory.
     waiting: Vec<Snapshot>,
     closed: Vec<Seal>,
     /// Number of all snapshots of the run.
@@ -87,16 +84,14 @@ struct CheckpointSnapshots {
 }
 
 impl SnapshotStore {
-    /// Returns a store for a run with output in `out`. The parts are on the same disk as `out`, and are deleted with
-    /// the store.
+    /// Returns a store for a run with output in `out`. The parts are on the same disk, and are deleted with the store.
     #[must_use]
     pub fn for_output(out: &Path) -> Self {
         let beside = if out.is_dir() { out } else { parent_of(out) };
         Self::at(beside.to_path_buf(), true)
     }
 
-    /// Returns a store for a run with checkpoints. The parts are in `<checkpoint>.parts`, so that another run can
-    /// continue from the checkpoint.
+    /// Returns a store whose parts are in `<checkpoint>.parts`, so that another run can continue from the checkpoint.
     #[must_use]
     pub fn for_checkpoint(checkpoint: &Path) -> Self {
         Self::at(parts_of(checkpoint), false)
@@ -193,8 +188,7 @@ impl SnapshotStore {
         self.in_short && self.kept.left_out
     }
 
-    /// Returns the largest number of rows of a snapshot that the run must deliver in full. A larger snapshot may be
-    /// reduced to a summary.
+    /// Returns the number of rows up to which the run must deliver a snapshot in full, not as a summary.
     #[must_use]
     pub const fn most_rows(&self) -> u64 {
         if self.in_short { READABLE } else { u64::MAX }
@@ -224,8 +218,7 @@ impl SnapshotStore {
         postcard::to_allocvec(&self.kept).map_err(|error| WriteError::new(&self.root, io::Error::other(error)))
     }
 
-    /// Deletes all parts that the store does not list. Call it only after a checkpoint that lists all parts was
-    /// written.
+    /// Deletes all parts that the store does not list. Call it only after writing a checkpoint that lists all parts.
     pub fn forget_others(&self) {
         if self.is_scratch {
             return;
@@ -332,7 +325,6 @@ impl SnapshotStore {
         Ok(self.kept.closed.iter().flat_map(of_part).collect())
     }
 
-    /// Writes the snapshots in memory to the open part.
     fn spill(&mut self) -> io::Result<()> {
         let folder = self.folder()?;
         let waiting = std::mem::take(&mut self.kept.waiting);
@@ -370,7 +362,6 @@ impl SnapshotStore {
     }
 }
 
-/// Returns the folder of the parts that belong to a checkpoint.
 fn parts_of(checkpoint: &Path) -> PathBuf {
     let mut name = checkpoint.as_os_str().to_owned();
     name.push(".parts");

@@ -146,8 +146,7 @@ impl<R: Row> TableReader<R> {
     }
 }
 
-/// Returns the values of a column that the file does not contain: NaN or null. An integer, flag or text column must
-/// exist.
+/// Returns the values of a column that the file lacks: NaN or null. Only columns of numbers may be missing.
 fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetError> {
     match shape {
         Values::Number(_) => Ok(Values::Number(vec![f64::NAN; count])),

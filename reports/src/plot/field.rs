@@ -31,8 +31,7 @@ const BARS: f64 = 72.0;
 const CLOCK: f64 = 50.0;
 /// Largest distance between the panels of a film (pixels of the film). The height of the time bar equals the actual distance.
 const SEAM: usize = 8;
-/// Ratio of the width of all panels of a film to the distance between them. It keeps the distance small for coarse
-/// pixels.
+/// Ratio of the width of all panels of a film to their distance, which is therefore small for coarse pixels.
 const SEAMS: usize = 64;
 /// Duration of each frame except the last, in units of 0.1 s.
 const PACE: u16 = 1;
@@ -355,8 +354,7 @@ fn clock(field: &Field, width: f64, y: f64) -> Markup {
     }
 }
 
-/// Returns a factor and the unit with the corresponding SI prefix. Units without prefixes are unchanged, with the
-/// factor 1.
+/// Returns a factor and the unit with its SI prefix. Units without prefixes have the factor 1.
 fn with_prefix(value: f64, unit: &str) -> (f64, String) {
     let prefixes: &[(f64, &str)] = match unit {
         "Pa" => &[(1e9, "G"), (1e6, "M"), (1e3, "k"), (1.0, "")],

@@ -15,8 +15,7 @@ const TALLEST: f64 = 620.0;
 const STICKING: &str = "#0072b2";
 const SLIPPING: &str = "#d55e00";
 
-/// Draws a force plot as a complete SVG document. Parts with coordinates that are not finite are left out, and a note
-/// states their number.
+/// Draws a force plot as an SVG document. A note states the number of parts without finite coordinates.
 pub(crate) fn draw(title: &str, plot: &ForcePlot) -> String {
     let finite = |point: &[f64; 2]| point[0].is_finite() && point[1].is_finite();
     let discs: Vec<_> = plot.discs.iter().filter(|(centre, radius, _)| finite(centre) && radius.is_finite()).collect();
@@ -97,8 +96,7 @@ fn bar_between(view: &View, bar: &ForceBar, width: f64) -> Markup {
     html! { g transform=(place) { (bar_along((to_x - x).hypot(to_y - y), width, bar.slipping)) } }
 }
 
-/// Draws a bar along x from the origin. Bars of slipping contacts are striped, so that they are distinct without
-/// colour.
+/// Draws a bar along x from the origin. Stripes distinguish slipping contacts without colour.
 fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
     let half = 0.5 * width;
     let colour = if slipping { SLIPPING } else { STICKING };

@@ -34,8 +34,7 @@ const DASHES: [Option<&str>; 4] = [None, Some("6 4"), Some("1 3"), None];
 /// Opacity of thin lines on sheets whose axes have different scales, where many lines cross.
 const THIN: f64 = 0.6;
 
-/// Draws lines as a complete SVG document. Lines with coordinates that are not finite are left out, and a note states
-/// their number.
+/// Draws lines as an SVG document. A note states the number of lines without finite coordinates.
 pub(crate) fn draw(title: &str, plot: &LinePlot) -> String {
     let count = plot.sheets.len().max(1) as f64;
     let some = |length: f64| if length > 0.0 { length } else { 1.0 };

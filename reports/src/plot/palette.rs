@@ -18,19 +18,12 @@ const DASHES: [(u32, u32); 4] = [(9, 5), (3, 4), (16, 5), (5, 10)];
 /// Shape of a marker.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) enum Marker {
-    /// Disc.
     Circle,
-    /// Square with horizontal edges.
     Square,
-    /// Triangle pointing up.
     Triangle,
-    /// Square on a corner.
     Diamond,
-    /// Triangle pointing down.
     Inverted,
-    /// Pentagon.
     Pentagon,
-    /// Star with five points.
     Star,
 }
 

@@ -23,7 +23,6 @@ pub(crate) struct Scale {
 /// A tick on an axis.
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Tick {
-    /// Value at the tick.
     pub(crate) value: f64,
     /// Label; none for minor ticks.
     pub(crate) label: Option<String>,

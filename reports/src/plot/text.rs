@@ -6,14 +6,11 @@ use maud::{Markup, html};
 /// A part of a text.
 #[derive(Debug, PartialEq, Eq)]
 pub(crate) enum Part<'a> {
-    /// Text on the baseline.
     Plain(&'a str),
-    /// Text of a subscript.
     Sub(&'a str),
 }
 
-/// Splits a text into plain parts and subscripts. Names such as `nine_discs` have no subscript, because more than one
-/// letter precedes the underscore.
+/// Splits a text into plain parts and subscripts. Names such as `nine_discs` have no subscript.
 fn parts(text: &str) -> Vec<Part<'_>> {
     let (mut parts, mut from) = (Vec::new(), 0);
     for (at, _) in text.match_indices('_') {

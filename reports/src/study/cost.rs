@@ -12,8 +12,7 @@ pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
 /// Smallest plotted error. Smaller errors are rounding errors and are plotted at this value.
 const LEAST: f64 = 1e-16;
 
-/// Returns the Pareto front in the order of time: all points for which no other point has both less error and less
-/// time.
+/// Returns the Pareto front in the order of time: points to which no other point is superior in both error and time.
 pub(crate) fn front<'a>(points: impl IntoIterator<Item = &'a Point>) -> Vec<&'a Point> {
     let mut sorted: Vec<(f64, f64, &Point)> =
         points.into_iter().filter_map(|point| point.place().map(|(error, time)| (time, error, point))).collect();
@@ -57,8 +56,7 @@ pub(crate) fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
         .is_some_and(|mine| others().filter_map(|other| time(diagram, other, target)).all(|other| mine <= other))
 }
 
-/// Returns true if a solver reaches the error `target`, but in a time that is shorter than the variation of its
-/// start-up time.
+/// Returns true if a solver reaches the error `target`, but in less time than the variation of its start-up.
 #[must_use]
 pub fn is_hidden(diagram: &Diagram, line: &str, target: f64) -> bool {
     let is_reached = |point: &Point| point.error.is_some_and(|error| error <= target) && point.wall_seconds.is_none();
@@ -102,7 +100,6 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
     format!("{}: {}.", number::fraction(target), parts.join("; "))
 }
 
-/// Returns the figure of error against time for the points of a diagram.
 pub(crate) fn figure(diagram: &Diagram) -> Figure {
     let drawn = |point: &Point| point.place().map(|(error, time)| (time, error.max(LEAST)));
     let errors = || diagram.points.iter().filter_map(drawn).map(|(_, error)| error);
@@ -249,7 +246,6 @@ fn scatter(diagrams: &[Diagram], unit: &str) -> Option<Figure> {
     ))
 }
 
-/// Returns the table of all points of a study.
 pub(super) fn points_table(diagrams: &[Diagram]) -> Table<'_> {
     let columns = ["case", "variant", "quantity", "solver", "resolution", "knobs", "standing"].map(Column::text);
     let times = ["error", "wall_seconds", "wall_spread", "cpu_seconds", "start_up_seconds"].map(Column::number);

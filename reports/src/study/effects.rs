@@ -26,7 +26,6 @@ pub enum EffectResult {
 }
 
 impl EffectResult {
-    /// Returns the name used in tables.
     const fn word(self) -> &'static str {
         match self {
             Self::Needed => "needed",
@@ -37,7 +36,6 @@ impl EffectResult {
         }
     }
 
-    /// Returns the colour of the result.
     pub(crate) const fn severity(self) -> Severity {
         match self {
             Self::Needed | Self::Inert => Severity::Green,
@@ -90,7 +88,6 @@ pub struct Entry {
     pub tried: Vec<String>,
 }
 
-/// Renders the section of the page.
 pub(crate) fn render(ledger: &[Entry]) -> Markup {
     let count = |worth: EffectResult| ledger.iter().filter(|entry| entry.worth == worth).count();
     html! {

@@ -38,7 +38,6 @@ pub enum Reduction {
 }
 
 impl Reduction {
-    /// Returns the reduction in words.
     pub(crate) fn word(self) -> String {
         match self {
             Self::End => "at the end".to_owned(),
@@ -69,7 +68,6 @@ pub enum Basis {
 }
 
 impl Basis {
-    /// Returns the method in words.
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Extrapolated => "extrapolated",
@@ -96,7 +94,6 @@ pub enum LevelStatus {
 }
 
 impl LevelStatus {
-    /// Returns the status in words.
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Measured => "measured",
@@ -192,8 +189,7 @@ pub struct Quantity {
     pub scale: f64,
     /// One reference value for each solver with at least two levels.
     pub estimates: Vec<Estimate>,
-    /// Values at all levels, for solvers with a reference value. The levels of each solver are in the order from coarse to
-    /// fine.
+    /// Values at all levels, for solvers with a reference value. Each solver's levels are from coarse to fine.
     pub points: Vec<EstimatedPoint>,
 }
 
@@ -255,7 +251,6 @@ pub struct SceneCost {
 }
 
 impl SceneCost {
-    /// Returns the solvers of the study.
     fn solvers(&self) -> Vec<&str> {
         let run = self.levels.iter().map(|level| level.solver.as_str());
         distinct(self.names.iter().map(String::as_str).chain(run))
@@ -274,8 +269,7 @@ impl SceneCost {
         }
     }
 
-    /// Returns the fastest setting of a solver with which the error of each quantity is certainly at most `target`, and its
-    /// time (s).
+    /// Returns the fastest setting whose errors of all quantities are certainly at most `target`, and its time (s).
     #[must_use]
     pub fn cheapest_for_all(&self, solver: &str, target: f64) -> Option<(&str, f64)> {
         let quantities = || self.quantities.iter().filter(|quantity| quantity.of_solver(solver).next().is_some());
@@ -416,7 +410,6 @@ fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
     )
 }
 
-/// Renders the section of the page.
 pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Markup {
     let figures = figures(cost);
     let folded = figures.len().saturating_sub(OPEN);
@@ -478,7 +471,6 @@ fn costs(cost: &SceneCost) -> Markup {
     Table::new("Which solver at 1 %", columns, cost.quantities.iter().map(row)).page("cases")
 }
 
-/// Returns the column of the names of quantities.
 fn quantity_column() -> Column {
     Column::heading("Quantity").class("name")
 }

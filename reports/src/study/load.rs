@@ -41,8 +41,7 @@ fn middle(load: &Load, value: fn(&TimingDifference) -> f64) -> f64 {
     median(&load.laps.iter().map(value).collect::<Vec<_>>())
 }
 
-/// Returns the figure of processor time per second of simulated time against the number of grains; none without
-/// timings.
+/// Returns the figure of processor time per simulated second against the number of grains, if there are timings.
 pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
     let timed = || loads.iter().filter(|load| !load.laps.is_empty());
     let curve = |solver: &str| {
@@ -64,7 +63,6 @@ pub(crate) fn figure(loads: &[Load]) -> Option<Figure> {
     })
 }
 
-/// Renders the table and the figure with their text.
 pub(crate) fn render(loads: &[Load]) -> Markup {
     const TIMES: [&str; 4] = ["Start-up", "A step", "A grain in a step", "A simulated second"];
     let columns = [Column::heading("Discs, solver")].into_iter();

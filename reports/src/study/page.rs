@@ -10,7 +10,6 @@ use crate::table::{Cell, Column, Format, Row, Table};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
-/// Renders the page of a study.
 pub(crate) fn render(study: &Study) -> String {
     let mut taken = BTreeSet::from(["summary".to_owned(), "provenance".to_owned()]);
     let mut sections = Vec::new();

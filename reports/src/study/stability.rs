@@ -60,7 +60,6 @@ impl Hardness {
         matches!(self, Self::Holds | Self::HoldsAtASmallerStep)
     }
 
-    /// Returns the name used in tables.
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Holds => "holds",
@@ -106,8 +105,7 @@ impl HardCaseResult {
     }
 }
 
-/// Returns figures of the largest stable time step: one against the exact limit, and one for each unit against the
-/// parameter.
+/// Returns figures of the largest stable step: against the exact limit, and for each unit against the parameter.
 #[must_use]
 pub fn figures(limits: &[Limit]) -> Vec<Figure> {
     let units = distinct(limits.iter().map(|limit| limit.unit.as_str()));

@@ -26,7 +26,6 @@ fn totals(lines: &[Hold]) -> Markup {
     Table::new("Totals", columns, lines.iter().map(row)).page("")
 }
 
-/// Renders the section of the page.
 pub(crate) fn render(study: &Study) -> Markup {
     if let ([first, ..], []) = (&study.limits[..], &study.hard[..])
         && first.scene.ends_with(".toml")
@@ -63,7 +62,6 @@ pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
     }
 }
 
-/// Renders the figures and tables.
 pub(crate) fn tables(stability: &Stability) -> Markup {
     html! {
         p.lead {

@@ -7,7 +7,6 @@ use crate::plot::{WIDTH, document, px};
 use maud::{Markup, html};
 use serde_json::Value;
 
-/// Number of panels side by side.
 const ACROSS: usize = 3;
 /// Space to the left of a panel for its numbers (drawing units).
 const LEFT: f64 = 58.0;

@@ -12,8 +12,7 @@ const DENSE: usize = 400;
 /// Number of markers on a line. They distinguish it from exact curves and from all other lines.
 const MARKS_ON_A_LINE: usize = 7;
 
-/// Returns an SVG path in tenths of a drawing unit. The first position is absolute, and all others are relative to the
-/// previous one.
+/// Returns an SVG path in tenths of a drawing unit. All positions after the first are relative to the previous one.
 fn path(places: &[Place]) -> String {
     let tenths = |(x, y): Place| ((10.0 * x).round() as i64, (10.0 * y).round() as i64);
     let mut text = String::new();
@@ -70,7 +69,6 @@ fn bars(ends: &[Place], look: &CurveStyle) -> Markup {
     html! { path transform="scale(.1)" d=(bars) fill="none" stroke=(look.colour) stroke-opacity=".3" stroke-width="50" {} }
 }
 
-/// Draws a cross for each failed run.
 fn crosses(places: impl Iterator<Item = Place>, look: &CurveStyle) -> Markup {
     let crosses: String = places.map(|(x, y)| format!("M{} {}l8 8m0 -8l-8 8", px(x - 4.0), px(y - 4.0))).collect();
     html! { path d=(crosses) fill="none" stroke=(look.colour) stroke-width="1.8" {} }

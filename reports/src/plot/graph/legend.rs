@@ -14,8 +14,7 @@ pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     curves.iter().map(|curve| wrap(&curve.label, TICK, 150.0)).collect()
 }
 
-/// Returns true if a curve has an entry in the legend. A curve without a label that shares the style of the previous
-/// curve has none.
+/// Returns true if a curve has an entry: a label, or another style than the previous curve.
 fn is_told(curve: &Curve) -> bool {
     !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed))
 }

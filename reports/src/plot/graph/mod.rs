@@ -47,8 +47,7 @@ struct Frame {
     bottom: f64,
 }
 
-/// Rectangle with two scales. Its plane is in tenths of drawing units, because the plotting library uses integer
-/// coordinates.
+/// Rectangle with two scales. Its plane is in tenths of drawing units, because plotters uses integer coordinates.
 struct Panel {
     frame: Frame,
     plane: Cartesian2d<Scale, Scale>,
@@ -86,8 +85,7 @@ impl Panel {
         self.place(&(self.plane.get_x_range().start, value)).1
     }
 
-    /// Returns the pieces of a curve. A line is interrupted at a missing point, because a line across the gap would
-    /// show data that do not exist.
+    /// Returns the pieces of a curve. A line across a missing point would show data that do not exist.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
         points
             .split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)))
@@ -104,7 +102,6 @@ pub(crate) struct Form {
     pub(crate) width: f64,
     /// Height (drawing units).
     pub(crate) height: f64,
-    /// True if the drawing has a legend.
     pub(crate) legend: bool,
 }
 
@@ -198,7 +195,6 @@ fn levels(curves: &[Curve]) -> Vec<f64> {
     if is_run_at_levels && is_shared && (2..=MOST).contains(&levels.len()) { levels } else { Vec::new() }
 }
 
-/// Returns the horizontal and the vertical scale of a graph.
 fn scales(graph: &Graph) -> (Scale, Scale) {
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
     let (log_x, log_y) = (graph.x.logarithmic, graph.y.logarithmic);
@@ -257,8 +253,7 @@ fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
             .any(|there| is_most(here.iter().filter(|a| there.iter().any(|b| is_near(a, b, UPON))).count(), here.len()))
 }
 
-/// Returns the style of each curve. Curves that are not dashed have the colours of their solvers; dashed curves have
-/// grey shades.
+/// Returns the style of each curve. Dashed curves have grey shades; other curves have the colours of their solvers.
 fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
