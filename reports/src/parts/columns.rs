@@ -1,6 +1,7 @@
 //! Conversion of rows to columns and back. Each type of row lists its columns once, for writing and for reading.
 
 use nalgebra::Vector3;
+use std::array;
 
 pub(super) enum Value<'r> {
     Whole(&'r mut i64),
@@ -12,43 +13,57 @@ pub(super) enum Value<'r> {
     Word(&'r mut String),
 }
 
-/// Visitor of the columns of a row, in a fixed order. One implementation reads values from the row; another one writes
-/// values to it.
+/// Visitor of the columns of a row, in a fixed order. One implementation reads the values; another one replaces them. The
+/// methods for the kinds of values return the values after the visit.
 pub(super) trait Columns {
     fn visit(&mut self, name: &'static str, value: Value<'_>);
 
-    /// Visits several numbers, such as the components of a vector.
-    fn numbers<'r, const N: usize>(&mut self, names: [&'static str; N], values: impl IntoIterator<Item = &'r mut f64>) {
-        for (name, value) in names.into_iter().zip(values) {
-            self.visit(name, Value::Number(value));
-        }
+    /// Visits an integer of any type. A stored value that does not fit the type becomes 0; our own files contain no such value.
+    fn whole<T: TryFrom<i64> + TryInto<i64> + Default>(&mut self, name: &'static str, value: Option<T>) -> T {
+        let mut number = value.map_or(0, |value| value.try_into().unwrap_or(i64::MAX));
+        self.visit(name, Value::Whole(&mut number));
+        T::try_from(number).unwrap_or_default()
+    }
+
+    fn number(&mut self, name: &'static str, value: Option<f64>) -> f64 {
+        let mut number = value.unwrap_or_default();
+        self.visit(name, Value::Number(&mut number));
+        number
+    }
+
+    fn told(&mut self, name: &'static str, mut value: Option<f64>) -> Option<f64> {
+        self.visit(name, Value::Told(&mut value));
+        value
+    }
+
+    fn flag(&mut self, name: &'static str, value: Option<bool>) -> bool {
+        let mut flag = value.unwrap_or_default();
+        self.visit(name, Value::Flag(&mut flag));
+        flag
+    }
+
+    fn word(&mut self, name: &'static str, value: Option<&str>) -> String {
+        let mut word = value.unwrap_or_default().to_owned();
+        self.visit(name, Value::Word(&mut word));
+        word
+    }
+
+    fn numbers<const N: usize>(&mut self, names: [&'static str; N], value: Option<[f64; N]>) -> [f64; N] {
+        array::from_fn(|at| self.number(names[at], value.map(|numbers| numbers[at])))
+    }
+
+    fn vector(&mut self, names: [&'static str; 3], value: Option<Vector3<f64>>) -> Vector3<f64> {
+        self.numbers(names, value.map(Into::into)).into()
     }
 
     /// Visits several numbers that are either all present or all absent.
-    fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<[f64; N]>) {
-        let mut all = true;
-        let mut numbers = value.unwrap_or([0.0; N]);
-        for (name, number) in names.into_iter().zip(&mut numbers) {
-            let mut component = value.is_some().then_some(*number);
-            self.visit(name, Value::Told(&mut component));
-            all &= component.is_some();
-            *number = component.unwrap_or(*number);
-        }
-        *value = all.then_some(numbers);
+    fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: Option<[f64; N]>) -> Option<[f64; N]> {
+        let numbers: [Option<f64>; N] = array::from_fn(|at| self.told(names[at], value.map(|numbers| numbers[at])));
+        numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
     }
 
-    /// Visits several boxed numbers that are either all present or all absent.
-    fn told_apart<const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<Box<[f64; N]>>) {
-        let mut numbers = value.as_deref().copied();
-        self.told_numbers(names, &mut numbers);
-        *value = numbers.map(Box::new);
-    }
-
-    /// Visits the components of a vector that may be absent.
-    fn told_vector(&mut self, names: [&'static str; 3], value: &mut Option<Vector3<f64>>) {
-        let mut components = value.map(Into::into);
-        self.told_numbers(names, &mut components);
-        *value = components.map(Vector3::from);
+    fn told_vector(&mut self, names: [&'static str; 3], value: Option<Vector3<f64>>) -> Option<Vector3<f64>> {
+        self.told_numbers(names, value.map(Into::into)).map(Vector3::from)
     }
 }
 
@@ -56,10 +71,8 @@ pub(super) trait Row: Sized {
     /// File name of the table, without extension.
     const TABLE: &'static str;
 
-    /// Returns a row with default values.
-    fn blank() -> Self;
-
-    fn visit(&mut self, columns: &mut impl Columns);
+    /// Visits the columns of a row, or of a row with default values. Returns the row with the values after the visits.
+    fn visit(row: Option<&Self>, columns: &mut impl Columns) -> Self;
 }
 
 /// Values of one column.
@@ -81,12 +94,12 @@ struct ColumnBuffer {
 }
 
 /// Returns the names and the values of the columns of some rows. Without rows, all columns are empty.
-pub(super) fn columns_of<R: Row>(rows: &mut [R]) -> Vec<(&'static str, Values)> {
+pub(super) fn columns_of<R: Row>(rows: &[R]) -> Vec<(&'static str, Values)> {
     let mut buffer = ColumnBuffer::default();
-    R::blank().visit(&mut buffer);
+    R::visit(None, &mut buffer);
     for row in rows {
         buffer.next = Some(0);
-        row.visit(&mut buffer);
+        R::visit(Some(row), &mut buffer);
     }
     buffer.columns
 }
@@ -125,12 +138,7 @@ struct RowWriter<'v> {
 
 /// Returns `count` rows with the values of the columns.
 pub(super) fn rows_of<R: Row>(columns: &[Values], count: usize) -> Vec<R> {
-    let row = |row: usize| {
-        let mut filled = R::blank();
-        filled.visit(&mut RowWriter { columns, row, next: 0 });
-        filled
-    };
-    (0..count).map(row).collect()
+    (0..count).map(|row| R::visit(None, &mut RowWriter { columns, row, next: 0 })).collect()
 }
 
 impl Columns for RowWriter<'_> {

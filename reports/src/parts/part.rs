@@ -115,7 +115,10 @@ impl OpenPart {
         }
         let directory = self.directory.path().join("part");
         let [frames, grains, contacts, walls, bodies, points] = &mut self.writers;
-        add(frames, &directory, &[], rows(first, snapshots, |snapshot| iter::once(Frame::from_snapshot(snapshot))))?;
+        let frame = |&Snapshot { bounds, periodic, ref contacts, .. }: &Snapshot| {
+            iter::once(Frame { bounds, periodic, has_contacts: contacts.is_some() })
+        };
+        add(frames, &directory, &[], rows(first, snapshots, frame))?;
         add(grains, &directory, &self.without, rows(first, snapshots, |snapshot| snapshot.grains.iter().cloned()))?;
         add(contacts, &directory, &[], rows(first, snapshots, |snapshot| snapshot.told_contacts().iter().copied()))?;
         add(walls, &directory, &[], rows(first, snapshots, |snapshot| snapshot.walls.iter().cloned()))?;

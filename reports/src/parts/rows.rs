@@ -1,9 +1,9 @@
 //! Rows of the tables of a part, one for each snapshot, grain, contact, wall, body or material point. Units are SI, as
 //! in [`grainbench_solver::record`].
 
-use super::columns::{Columns as Visit, Row, Value};
+use super::columns::{Columns as Visit, Row};
 use grainbench_scene::columns::{Chosen, Columns};
-use grainbench_solver::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, Snapshot, WallState};
+use grainbench_solver::record::{BodyState, ContactState, GrainState, Owner, Partner, PointState, WallState};
 use nalgebra::Vector3;
 
 const PLACE: [&str; 3] = ["x", "y", "z"];
@@ -28,111 +28,77 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
 }
 
 /// Data of a snapshot that no other table contains.
-#[derive(Default)]
 pub(super) struct Frame {
     pub(super) bounds: (Vector3<f64>, Vector3<f64>),
     pub(super) periodic: [bool; 3],
     pub(super) has_contacts: bool,
 }
 
-impl Frame {
-    pub(super) const fn from_snapshot(snapshot: &Snapshot) -> Self {
-        Self { bounds: snapshot.bounds, periodic: snapshot.periodic, has_contacts: snapshot.contacts.is_some() }
-    }
-}
-
 impl Row for Frame {
     const TABLE: &'static str = "snapshots";
 
-    fn blank() -> Self {
-        Self::default()
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        columns.numbers(["low_x", "low_y", "low_z"], &mut self.bounds.0);
-        columns.numbers(["high_x", "high_y", "high_z"], &mut self.bounds.1);
-        for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut self.periodic) {
-            columns.visit(name, Value::Flag(periodic));
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        const PERIODIC: [&str; 3] = ["periodic_x", "periodic_y", "periodic_z"];
+        let low = columns.vector(["low_x", "low_y", "low_z"], row.map(|row| row.bounds.0));
+        let high = columns.vector(["high_x", "high_y", "high_z"], row.map(|row| row.bounds.1));
+        Self {
+            bounds: (low, high),
+            periodic: [0, 1, 2].map(|axis| columns.flag(PERIODIC[axis], row.map(|row| row.periodic[axis]))),
+            has_contacts: columns.flag("contacts_told", row.map(|row| row.has_contacts)),
         }
-        columns.visit("contacts_told", Value::Flag(&mut self.has_contacts));
     }
 }
 
 impl Row for GrainState {
     const TABLE: &'static str = "grains";
 
-    fn blank() -> Self {
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        let boxed = |numbers: Option<[f64; 6]>| numbers.map(Box::new);
         Self {
-            id: 0,
-            material: 0,
-            radius: 0.0,
-            mass: 0.0,
-            position: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            spin: Vector3::zeros(),
-            angle: None,
-            force: None,
-            torque: None,
-            plastic_strain: 0.0,
-            virial: None,
-            mean_virial: None,
+            id: columns.whole("id", row.map(|row| row.id)),
+            material: columns.whole("material", row.map(|row| row.material)),
+            radius: columns.number("radius", row.map(|row| row.radius)),
+            mass: columns.number("mass", row.map(|row| row.mass)),
+            position: columns.vector(PLACE, row.map(|row| row.position)),
+            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
+            spin: columns.vector(SPIN, row.map(|row| row.spin)),
+            angle: columns.told("angle", row.and_then(|row| row.angle)),
+            force: columns.told_vector(FORCE, row.and_then(|row| row.force)),
+            torque: columns.told_vector(TORQUE, row.and_then(|row| row.torque)),
+            plastic_strain: columns.number("plastic_strain", row.map(|row| row.plastic_strain)),
+            virial: boxed(columns.told_numbers(VIRIAL, row.and_then(|row| row.virial.as_deref().copied()))),
+            mean_virial: boxed(
+                columns.told_numbers(MEAN_VIRIAL, row.and_then(|row| row.mean_virial.as_deref().copied())),
+            ),
         }
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        whole(columns, "id", &mut self.id);
-        whole(columns, "material", &mut self.material);
-        columns.visit("radius", Value::Number(&mut self.radius));
-        columns.visit("mass", Value::Number(&mut self.mass));
-        columns.numbers(PLACE, &mut self.position);
-        columns.numbers(VELOCITY, &mut self.velocity);
-        columns.numbers(SPIN, &mut self.spin);
-        columns.visit("angle", Value::Told(&mut self.angle));
-        columns.told_vector(FORCE, &mut self.force);
-        columns.told_vector(TORQUE, &mut self.torque);
-        columns.visit("plastic_strain", Value::Number(&mut self.plastic_strain));
-        columns.told_apart(VIRIAL, &mut self.virial);
-        columns.told_apart(MEAN_VIRIAL, &mut self.mean_virial);
     }
 }
 
 impl Row for ContactState {
     const TABLE: &'static str = "contacts";
 
-    fn blank() -> Self {
-        Self {
-            grain: 0,
-            partner: Partner::Wall(0),
-            point: Vector3::zeros(),
-            normal: Vector3::zeros(),
-            overlap: 0.0,
-            normal_force: 0.0,
-            shear_force: Vector3::zeros(),
-            slipping: false,
-        }
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        whole(columns, "grain", &mut self.grain);
-        let (word, mut number) = match self.partner {
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        let grain = columns.whole("grain", row.map(|row| row.grain));
+        let (kind, number) = match row.map_or(Partner::Wall(0), |row| row.partner) {
             Partner::Grain(id) => ("grain", i64::from(id)),
             Partner::Body(place) => ("body", i64::from(place)),
             Partner::Wall(place) => ("wall", i64::from(place)),
         };
-        let mut kind = word.to_owned();
-        columns.visit("partner", Value::Word(&mut kind));
-        columns.visit("partner_number", Value::Whole(&mut number));
-        self.partner = match kind.as_str() {
-            "grain" => Partner::Grain(number as u32),
-            "body" => Partner::Body(number as u32),
-            _ => Partner::Wall(number as u16),
-        };
-        columns.numbers(PLACE, &mut self.point);
-        columns.numbers(["normal_x", "normal_y", "normal_z"], &mut self.normal);
-        columns.visit("overlap", Value::Number(&mut self.overlap));
-        columns.visit("normal_force", Value::Number(&mut self.normal_force));
-        columns.numbers(["shear_x", "shear_y", "shear_z"], &mut self.shear_force);
-        columns.visit("slipping", Value::Flag(&mut self.slipping));
+        let (kind, number) = (columns.word("partner", Some(kind)), columns.whole("partner_number", Some(number)));
+        Self {
+            grain,
+            partner: match kind.as_str() {
+                "grain" => Partner::Grain(number as u32),
+                "body" => Partner::Body(number as u32),
+                _ => Partner::Wall(number as u16),
+            },
+            point: columns.vector(PLACE, row.map(|row| row.point)),
+            normal: columns.vector(["normal_x", "normal_y", "normal_z"], row.map(|row| row.normal)),
+            overlap: columns.number("overlap", row.map(|row| row.overlap)),
+            normal_force: columns.number("normal_force", row.map(|row| row.normal_force)),
+            shear_force: columns.vector(["shear_x", "shear_y", "shear_z"], row.map(|row| row.shear_force)),
+            slipping: columns.flag("slipping", row.map(|row| row.slipping)),
+        }
     }
 }
 
@@ -147,82 +113,52 @@ const CORNERS: [[&str; 3]; 4] = [
 impl Row for WallState {
     const TABLE: &'static str = "walls";
 
-    fn blank() -> Self {
-        Self { name: String::new(), corners: Vec::new(), infinite: false, force: None }
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        columns.visit("name", Value::Word(&mut self.name));
-        columns.visit("infinite", Value::Flag(&mut self.infinite));
-        let mut corners = [0, 1, 2, 3].map(|at| self.corners.get(at).copied());
-        for (names, corner) in CORNERS.into_iter().zip(&mut corners) {
-            columns.told_vector(names, corner);
-        }
-        self.corners = corners.into_iter().flatten().collect();
-        columns.told_vector(FORCE, &mut self.force);
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        let (name, infinite) =
+            (columns.word("name", row.map(|row| &*row.name)), columns.flag("infinite", row.map(|row| row.infinite)));
+        let corner = |at: usize| row.and_then(|row| row.corners.get(at).copied());
+        let corners = CORNERS.into_iter().enumerate();
+        let corners = corners.filter_map(|(at, names)| columns.told_vector(names, corner(at))).collect();
+        Self { name, infinite, corners, force: columns.told_vector(FORCE, row.and_then(|row| row.force)) }
     }
 }
 
 impl Row for BodyState {
     const TABLE: &'static str = "bodies";
 
-    fn blank() -> Self {
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
         Self {
-            name: String::new(),
-            mass: 0.0,
-            inertia: 0.0,
-            position: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            spin: Vector3::zeros(),
-            angle: 0.0,
-            force: Vector3::zeros(),
+            name: columns.word("name", row.map(|row| &*row.name)),
+            mass: columns.number("mass", row.map(|row| row.mass)),
+            inertia: columns.number("inertia", row.map(|row| row.inertia)),
+            position: columns.vector(PLACE, row.map(|row| row.position)),
+            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
+            spin: columns.vector(SPIN, row.map(|row| row.spin)),
+            angle: columns.number("angle", row.map(|row| row.angle)),
+            force: columns.vector(FORCE, row.map(|row| row.force)),
         }
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        columns.visit("name", Value::Word(&mut self.name));
-        columns.visit("mass", Value::Number(&mut self.mass));
-        columns.visit("inertia", Value::Number(&mut self.inertia));
-        columns.numbers(PLACE, &mut self.position);
-        columns.numbers(VELOCITY, &mut self.velocity);
-        columns.numbers(SPIN, &mut self.spin);
-        columns.visit("angle", Value::Number(&mut self.angle));
-        columns.numbers(FORCE, &mut self.force);
     }
 }
 
 impl Row for PointState {
     const TABLE: &'static str = "points";
 
-    fn blank() -> Self {
-        Self {
-            owner: Owner::Body(0),
-            position: Vector3::zeros(),
-            displacement: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            stress: [0.0; 6],
-            plastic_strain: 0.0,
-            rotation: 0.0,
-            volume: 0.0,
-        }
-    }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        let (word, mut number) = match self.owner {
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        let (kind, number) = match row.map_or(Owner::Body(0), |row| row.owner) {
             Owner::Grain(id) => ("grain", i64::from(id)),
             Owner::Body(place) => ("body", i64::from(place)),
         };
-        let mut kind = word.to_owned();
-        columns.visit("owner", Value::Word(&mut kind));
-        columns.visit("owner_number", Value::Whole(&mut number));
-        self.owner = if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) };
-        columns.numbers(PLACE, &mut self.position);
-        columns.numbers(["ux", "uy", "uz"], &mut self.displacement);
-        columns.numbers(VELOCITY, &mut self.velocity);
-        columns.numbers(["sxx", "syy", "szz", "sxy", "syz", "szx"], &mut self.stress);
-        columns.visit("plastic_strain", Value::Number(&mut self.plastic_strain));
-        columns.visit("rotation", Value::Number(&mut self.rotation));
-        columns.visit("volume", Value::Number(&mut self.volume));
+        let (kind, number) = (columns.word("owner", Some(kind)), columns.whole("owner_number", Some(number)));
+        Self {
+            owner: if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) },
+            position: columns.vector(PLACE, row.map(|row| row.position)),
+            displacement: columns.vector(["ux", "uy", "uz"], row.map(|row| row.displacement)),
+            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
+            stress: columns.numbers(["sxx", "syy", "szz", "sxy", "syz", "szx"], row.map(|row| row.stress)),
+            plastic_strain: columns.number("plastic_strain", row.map(|row| row.plastic_strain)),
+            rotation: columns.number("rotation", row.map(|row| row.rotation)),
+            volume: columns.number("volume", row.map(|row| row.volume)),
+        }
     }
 }
 
@@ -239,22 +175,12 @@ pub(super) struct SnapshotRow<R> {
 impl<R: Row> Row for SnapshotRow<R> {
     const TABLE: &'static str = R::TABLE;
 
-    fn blank() -> Self {
-        Self { snapshot: 0, step: 0, time: 0.0, row: R::blank() }
+    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
+        Self {
+            snapshot: columns.whole("snapshot", row.map(|row| row.snapshot)),
+            step: columns.whole("step", row.map(|row| row.step)),
+            time: columns.number("time", row.map(|row| row.time)),
+            row: R::visit(row.map(|row| &row.row), columns),
+        }
     }
-
-    fn visit(&mut self, columns: &mut impl Visit) {
-        whole(columns, "snapshot", &mut self.snapshot);
-        whole(columns, "step", &mut self.step);
-        columns.visit("time", Value::Number(&mut self.time));
-        self.row.visit(columns);
-    }
-}
-
-/// Visits an integer of any type. A stored value that does not fit the type leaves the integer unchanged; our own files
-/// contain no such value.
-fn whole<T: Copy + TryFrom<i64> + TryInto<i64>>(columns: &mut impl Visit, name: &'static str, value: &mut T) {
-    let mut number = (*value).try_into().unwrap_or(i64::MAX);
-    columns.visit(name, Value::Whole(&mut number));
-    *value = T::try_from(number).unwrap_or(*value);
 }

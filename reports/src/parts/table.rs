@@ -7,7 +7,6 @@ use std::sync::Arc;
 
 use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Physical};
 use parquet::column::reader::get_typed_column_reader;
-use parquet::column::writer::ColumnWriterImpl;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
 use parquet::file::properties::WriterProperties;
@@ -44,7 +43,7 @@ impl TableWriter {
         }
         // Bytes of the same significance are stored together, which compresses well. Leading bytes are similar, and the
         // last bytes of rounded numbers are zero.
-        let mut columns = columns_of::<R>(&mut []);
+        let mut columns = columns_of::<R>(&[]);
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
             let encoding = match values {
@@ -61,11 +60,11 @@ impl TableWriter {
     /// Adds rows of the type for which the table was created.
     pub(super) fn add<R: Row>(&mut self, mut rows: impl Iterator<Item = R>) -> io::Result<()> {
         loop {
-            let mut group: Vec<R> = rows.by_ref().take(GROUP).collect();
+            let group: Vec<R> = rows.by_ref().take(GROUP).collect();
             if group.is_empty() {
                 return Ok(());
             }
-            let mut columns = columns_of(&mut group);
+            let mut columns = columns_of(&group);
             drop(group);
             columns.retain(|(name, _)| !self.without.contains(name));
             self.table.add(&columns)?;
@@ -121,7 +120,7 @@ impl<R: Row> TableReader<R> {
         let group = file.get_row_group(self.group).map_err(io_error)?;
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
-        let shapes = columns_of::<R>(&mut []);
+        let shapes = columns_of::<R>(&[]);
         let names = group.metadata().schema_descr();
         let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
             let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {
@@ -213,28 +212,20 @@ fn write<W: Write + Send>(group: &mut SerializedRowGroupWriter<'_, W>, values: &
         return Err(ParquetError::General("more columns than the schema has".to_owned()));
     };
     match values {
-        Values::Whole(values) => batch(column.typed::<Int64Type>(), values, None)?,
-        Values::Number(values) => batch(column.typed::<DoubleType>(), values, None)?,
-        Values::Flag(values) => batch(column.typed::<BoolType>(), values, None)?,
+        Values::Whole(values) => column.typed::<Int64Type>().write_batch(values, None, None)?,
+        Values::Number(values) => column.typed::<DoubleType>().write_batch(values, None, None)?,
+        Values::Flag(values) => column.typed::<BoolType>().write_batch(values, None, None)?,
         Values::Word(values) => {
             let words: Vec<ByteArray> = values.iter().map(|word| ByteArray::from(word.as_str())).collect();
-            batch(column.typed::<ByteArrayType>(), &words, None)?;
+            column.typed::<ByteArrayType>().write_batch(&words, None, None)?
         }
         Values::Told(values) => {
             let levels: Vec<i16> = values.iter().map(|value| i16::from(value.is_some())).collect();
             let known: Vec<f64> = values.iter().copied().flatten().collect();
-            batch(column.typed::<DoubleType>(), &known, Some(&levels))?;
+            column.typed::<DoubleType>().write_batch(&known, Some(&levels), None)?
         }
-    }
+    };
     column.close()
-}
-
-fn batch<T: DataType>(
-    column: &mut ColumnWriterImpl<'_, T>,
-    values: &[T::T],
-    levels: Option<&[i16]>,
-) -> Result<(), ParquetError> {
-    column.write_batch(values, levels, None).map(drop)
 }
 
 /// Returns the values of a column, and a flag for each row: 1 if it has a value, 0 if not.
@@ -242,16 +233,8 @@ fn read<T: DataType>(
     reader: parquet::column::reader::ColumnReader,
     count: usize,
 ) -> Result<(Vec<T::T>, Vec<i16>), ParquetError> {
-    let mut reader = get_typed_column_reader::<T>(reader);
     let (mut values, mut levels) = (Vec::with_capacity(count), Vec::new());
-    let mut read = 0;
-    while read < count {
-        let (records, _, _) = reader.read_records(count - read, Some(&mut levels), None, &mut values)?;
-        if records == 0 {
-            break;
-        }
-        read += records;
-    }
+    get_typed_column_reader::<T>(reader).read_records(count, Some(&mut levels), None, &mut values)?;
     Ok((values, levels))
 }
 
