@@ -1,13 +1,14 @@
 //! Figures of a sweep: error against cost over all points.
 
-use super::Sweep;
+use super::{Point, Sweep};
 use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
-/// Returns the solvers with their resolution levels, in the order of the points.
-pub(super) fn levels(sweep: &Sweep) -> Vec<(String, String)> {
-    let levels = distinct(sweep.points.iter().map(|point| (&point.solver, &point.resolution)));
-    levels.into_iter().map(|(solver, level)| (solver.clone(), level.clone())).collect()
+/// Returns the solvers with their resolution levels and the points of each level, in the order of the points.
+pub(super) fn levels(sweep: &Sweep) -> Vec<(&str, &str, Vec<&Point>)> {
+    let points = |level: (&str, &str)| sweep.points.iter().filter(|point| point.level() == level).collect();
+    let levels = distinct(sweep.points.iter().map(Point::level)).into_iter();
+    levels.map(|(solver, level)| (solver, level, points((solver, level)))).collect()
 }
 
 /// Returns the value below which the fraction `part` of the values lies; none for an empty list. Sorts the values.
@@ -19,11 +20,10 @@ pub(super) fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
 /// Returns the figure of error against particle-steps, with one point for each solver and level.
 pub(super) fn work(sweep: &Sweep) -> Option<Figure> {
     let mut curves: Vec<Curve> = Vec::new();
-    for (solver, level) in levels(sweep) {
-        let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
-        let mut steps: Vec<f64> =
-            level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps as f64)).collect();
-        let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
+    for (solver, _, points) in levels(sweep) {
+        let ran = points.iter().filter_map(|point| point.left.ran);
+        let mut steps: Vec<f64> = ran.map(|ran| ran.particle_steps as f64).collect();
+        let mut errors: Vec<f64> = points.iter().filter_map(|point| point.error()).collect();
         let Some(middle) = quantile(&mut steps, 0.5) else { continue };
         for (label, part) in [("median", 0.5), ("90 % of the errors are below", 0.9)] {
             let Some(error) = quantile(&mut errors, part) else { continue };

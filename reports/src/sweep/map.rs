@@ -50,10 +50,10 @@ pub(super) fn draw(sweep: &Sweep) -> Option<(String, String)> {
     let names: Vec<&str> = sweep.quantities.iter().map(|quantity| quantity.words.as_str()).collect();
     let title = format!("Solvers within the tolerance: {}", names.join("; "));
     let body = html! {
-        @for (place, (solver, level)) in panels.iter().enumerate() {
+        @for (place, level) in panels.iter().enumerate() {
             @let left = LEFT + (place % columns) as f64 * (wide + LEFT + GAP);
             @let top = TOP + HEAD + (place / columns) as f64 * pitch;
-            (panel(sweep, [x, y], &axes, (solver, level), [left, top, wide]))
+            (panel(sweep, [x, y], &axes, level, [left, top, wide]))
         }
         (legend(TOP + pitch * rows as f64 + 12.0, sweep.line.as_ref()))
     };
@@ -127,19 +127,17 @@ fn panel(
     sweep: &Sweep,
     [x, y]: [usize; 2],
     axes: &[Marks; 2],
-    (solver, level): (&str, &str),
+    (solver, level, points): &(&str, &str, Vec<&Point>),
     [left, top, wide]: [f64; 3],
 ) -> Markup {
     let [across, up] = [axes[0].values.len(), axes[1].values.len()];
     let mut cells = vec![Vec::new(); across * up];
-    let is_in_panel = |point: &&Point| point.solver == solver && point.resolution == level;
-    let points: Vec<&Point> = sweep.points.iter().filter(is_in_panel).collect();
-    for point in &points {
+    for point in points {
         if let (Some(column), Some(row)) = (axes[0].cell(&point.factors[x]), axes[1].cell(&point.factors[y])) {
             cells[row * across + column].push(*point);
         }
     }
-    let [within, outside, ..] = counts(points);
+    let [within, outside, ..] = counts(points.iter().copied());
     let conclusive = within + outside;
     let share = if conclusive > 0 { number::fraction(within as f64 / conclusive as f64) } else { "—".to_owned() };
     let size = [wide / across as f64, HIGH / up as f64];

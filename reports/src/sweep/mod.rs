@@ -173,6 +173,10 @@ pub fn counts<'a>(points: impl IntoIterator<Item = &'a Point>) -> [usize; 4] {
 }
 
 impl Point {
+    fn level(&self) -> (&str, &str) {
+        (&self.solver, &self.resolution)
+    }
+
     /// Returns the colour of the worst result; none if no quantity has an expectation.
     pub(crate) fn severity(&self) -> Option<Severity> {
         self.left.looked.iter().filter_map(|looked| looked.verdict).map(Outcome::severity).max()

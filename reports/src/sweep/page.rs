@@ -51,16 +51,15 @@ fn factors(sweep: &Sweep) -> String {
 
 /// Renders a table with one row per solver and level: numbers of points by status, and errors.
 fn table(sweep: &Sweep) -> Markup {
-    let rows = levels(sweep).into_iter().map(|(solver, level)| {
-        let level_points = || sweep.points.iter().filter(|point| point.solver == solver && point.resolution == level);
-        let mut errors: Vec<f64> = level_points().filter_map(super::Point::error).collect();
+    let rows = levels(sweep).into_iter().map(|(solver, level, points)| {
+        let mut errors: Vec<f64> = points.iter().filter_map(|point| point.error()).collect();
         let [half, most, worst] = [0.5, 0.9, 1.0].map(|part| quantile(&mut errors, part));
-        let mut steps: Vec<u64> =
-            level_points().filter_map(|point| point.left.ran.map(|ran| ran.particle_steps)).collect();
+        let ran = points.iter().filter_map(|point| point.left.ran);
+        let mut steps: Vec<u64> = ran.map(|ran| ran.particle_steps).collect();
         steps.sort_unstable();
-        let [within, outside, amber, unjudged] = counts(level_points());
+        let [within, outside, amber, unjudged] = counts(points);
         let steps = steps.get(steps.len() / 2).copied();
-        row![&solver, &level, within, outside, amber, unjudged, half, most, worst, steps]
+        row![solver, level, within, outside, amber, unjudged, half, most, worst, steps]
     });
     let counts = ["Within", "Outside or broken", "Amber", "Not judged"].map(|name| Column::new(name, Format::Count));
     let errors = ["Median |error|", "90 % below", "Worst"].map(|name| Column::new(name, Format::Fraction));

@@ -1,6 +1,6 @@
 //! Table of a sweep, with one row for each point, solver, level and quantity.
 
-use super::{Point, RunCounts, Sweep};
+use super::{Point, Sweep};
 use crate::rows::expectation;
 use crate::table::{Cell, Column, Table};
 use grainbench_harness::verdict::Outcome;
@@ -39,9 +39,9 @@ pub(super) fn table(sweep: &Sweep) -> Table<'_> {
             cells.extend([looked.scale, looked.error, looked.allowed].map(Cell::from));
             cells.extend([looked.verdict.map_or("", Outcome::word).into(), detail.into()]);
             let ran = point.left.ran.as_ref();
-            let count = |value: fn(&RunCounts) -> Option<u64>| ran.and_then(value).map(|count| count as f64).into();
-            cells.extend([count(|ran| Some(ran.steps)), count(|ran| Some(ran.particle_steps))]);
-            cells.extend([count(|ran| ran.contact_evaluations), count(|ran| ran.node_updates)]);
+            let counts =
+                ran.map(|ran| [Some(ran.steps), Some(ran.particle_steps), ran.contact_evaluations, ran.node_updates]);
+            cells.extend(counts.unwrap_or_default().map(|count| count.map(|count| count as f64).into()));
             cells.extend([ran.map(|ran| ran.time_step), wall(point)].map(Cell::from));
             cells.into_iter().collect()
         })
