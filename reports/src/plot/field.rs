@@ -238,6 +238,7 @@ fn png(shades: Shades, (width, height): (u32, u32), frames: &[Vec<u8>]) -> io::R
 fn colour(shades: Shades, level: u8) -> [u8; 3] {
     let part = f64::from(level.saturating_sub(LOW)) / f64::from(HIGH - LOW);
     let (value, light) = (level.saturating_sub(LOW) / LIGHTS, level.saturating_sub(LOW) % LIGHTS);
+    let hue = f64::from(value.min(COLOURS - 1)) / f64::from(COLOURS - 1);
     let lit = |channel: u8| (f64::from(channel) * f64::from(light) / f64::from(LIGHTS - 1)).round() as u8;
     match (level, shades) {
         (VOID, Shades::Glow) => [0x30, 0x30, 0x38],
@@ -248,10 +249,7 @@ fn colour(shades: Shades, level: u8) -> [u8; 3] {
         (_, Shades::Amount) => colorous::CIVIDIS.eval_continuous(part).as_array(),
         (_, Shades::Glow) => colorous::MAGMA.eval_continuous(part).as_array(),
         (_, Shades::Signed) => colorous::PURPLE_ORANGE.eval_continuous(part).as_array(),
-        (_, Shades::Lit) => colorous::VIRIDIS
-            .eval_continuous(f64::from(value.min(COLOURS - 1)) / f64::from(COLOURS - 1))
-            .as_array()
-            .map(lit),
+        (_, Shades::Lit) => colorous::VIRIDIS.eval_continuous(hue).as_array().map(lit),
         (_, Shades::Fringes) => [(255.0 * part).round() as u8; 3],
     }
 }

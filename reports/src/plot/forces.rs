@@ -152,11 +152,8 @@ fn round_below(value: f64) -> f64 {
         return 0.0;
     }
     let decade = 10_f64.powf(value.log10().floor());
-    [5.0, 2.0, 1.0]
-        .into_iter()
-        .map(|multiple| multiple * decade)
-        .find(|round| *round <= value * (1.0 + 1e-9))
-        .unwrap_or(decade)
+    let rounds = [5.0, 2.0, 1.0].map(|multiple| multiple * decade);
+    rounds.into_iter().find(|round| *round <= value * (1.0 + 1e-9)).unwrap_or(decade)
 }
 
 #[cfg(test)]

@@ -27,17 +27,12 @@ pub(crate) enum Marker {
     Star,
 }
 
-const MARKERS: [Marker; 7] = [
-    Marker::Circle,
-    Marker::Square,
-    Marker::Triangle,
-    Marker::Diamond,
-    Marker::Inverted,
-    Marker::Pentagon,
-    Marker::Star,
-];
-
 impl Marker {
+    const ALL: [Self; 7] = {
+        use Marker::{Circle, Diamond, Inverted, Pentagon, Square, Star, Triangle};
+        [Circle, Square, Triangle, Diamond, Inverted, Pentagon, Star]
+    };
+
     /// Returns the corners of the shape, with y downwards. The shape is about as large as a disc of radius 1; the
     /// circle has no corners.
     pub(crate) fn corners(self) -> Vec<(f64, f64)> {
@@ -78,25 +73,16 @@ pub(crate) fn places(labels: &[&str]) -> Vec<usize> {
     solvers.iter().map(place).collect()
 }
 
-/// Returns the colour of a curve. `place` is an index from [`places`].
-pub(crate) fn colour(place: usize) -> &'static str {
-    COLOURS[place % COLOURS.len()]
+/// Returns the colour and the marker of a curve that is not dashed. `place` is an index from [`places`]. With seven markers
+/// and six colours, combinations repeat after 42 curves.
+pub(super) fn solid(place: usize) -> (&'static str, Marker) {
+    (COLOURS[place % COLOURS.len()], Marker::ALL[place % Marker::ALL.len()])
 }
 
-/// Returns the marker of a curve. `place` is an index from [`places`]. With seven markers and six colours, combinations
-/// repeat after 42 curves.
-pub(crate) fn marker(place: usize) -> Marker {
-    MARKERS[place % MARKERS.len()]
-}
-
-/// Returns the shade of a dashed curve. `place` is its index among the dashed curves.
-pub(crate) fn shade(place: usize) -> &'static str {
-    SHADES[place % SHADES.len()]
-}
-
-/// Returns the lengths of dash and gap of a dashed curve (drawing units). `place` is its index among the dashed curves.
-pub(crate) fn dash(place: usize) -> (u32, u32) {
-    DASHES[place % DASHES.len()]
+/// Returns the shade, the marker, and the lengths of dash and gap (drawing units) of a dashed curve. `place` is its index
+/// among the dashed curves.
+pub(super) fn dashed(place: usize) -> (&'static str, Marker, (u32, u32)) {
+    (SHADES[place % SHADES.len()], Marker::ALL[place % Marker::ALL.len()], DASHES[place % DASHES.len()])
 }
 
 #[cfg(test)]

@@ -6,7 +6,7 @@ mod curves;
 mod difference;
 mod legend;
 
-use grainbench_harness::figure::{Curve, Graph, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Graph, Stroke};
 use maud::{Markup, html};
 use plotters::coord::CoordTranslate;
 use plotters::coord::cartesian::Cartesian2d;
@@ -87,11 +87,9 @@ impl Panel {
 
     /// Returns the pieces of a curve. A line across a missing point would show data that do not exist.
     fn pieces(&self, points: &[(f64, f64)]) -> Vec<Vec<Place>> {
-        points
-            .split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)))
-            .filter(|piece| !piece.is_empty())
-            .map(|piece| curves::thin(piece.iter().map(|point| self.place(point)).collect()))
-            .collect()
+        let pieces = points.split(|point| !(self.x().shows(point.0) && self.y().shows(point.1)));
+        let places = |piece: &[(f64, f64)]| curves::thin(piece.iter().map(|point| self.place(point)).collect());
+        pieces.filter(|piece| !piece.is_empty()).map(places).collect()
     }
 }
 
@@ -114,14 +112,15 @@ impl Form {
 pub(crate) fn keys(graph: &Graph) -> Vec<(&str, Markup)> {
     let (x, y) = scales(graph);
     let labelled = graph.curves.iter().zip(looks(&graph.curves, &x, &y)).filter(|(curve, _)| !curve.label.is_empty());
-    let sample = |(curve, look): (&'_ Curve, CurveStyle)| {
-        html! {
+    let keys = labelled.map(|(curve, look)| {
+        let sample = html! {
             svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 26 12" width="26" height="12" aria-hidden="true" {
                 (curves::sample(curve.stroke, &look, (2.0, 6.0), (24.0, 6.0)))
             }
-        }
-    };
-    labelled.map(|(curve, look)| (curve.label.as_str(), sample((curve, look)))).collect()
+        };
+        (curve.label.as_str(), sample)
+    });
+    keys.collect()
 }
 
 /// Draws a graph as a complete SVG document.
@@ -140,13 +139,8 @@ pub(crate) fn draw_as(title: &str, graph: &Graph, form: Form) -> String {
     let legend = if form.legend { legend::lines(&graph.curves) } else { Vec::new() };
     let legend_width = legend.iter().flatten().map(|line| text_width(line, TICK)).fold(0.0, f64::max);
     let ticks = [Some(&y), difference.as_ref().map(|difference| &difference.scale)];
-    let tick_width = ticks
-        .iter()
-        .flatten()
-        .flat_map(|scale| scale.ticks())
-        .filter_map(|tick| tick.label)
-        .map(|label| text_width(&label, TICK))
-        .fold(0.0, f64::max);
+    let labels = ticks.iter().flatten().flat_map(|scale| scale.ticks()).filter_map(|tick| tick.label);
+    let tick_width = labels.map(|label| text_width(&label, TICK)).fold(0.0, f64::max);
     let frame = Frame {
         left: 44.0 + tick_width,
         right: if legend.is_empty() { form.width - 28.0 } else { form.width - legend_width - LEGEND_SAMPLE - 36.0 },
@@ -260,19 +254,20 @@ fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let mut coloured = palette::places(&labels).into_iter();
     let is_open = is_any_crowded(curves, x, y);
     let mut dashed = 0..;
-    let mut before = CurveStyle { colour: palette::colour(0), marker: palette::marker(0), dash: None, open: false };
+    let solid = |place: usize, open: bool| {
+        let (colour, marker) = palette::solid(place);
+        CurveStyle { colour, marker, dash: None, open }
+    };
+    let mut before = solid(0, false);
     let look = |curve: &Curve| match curve.stroke {
         Stroke::Beside | Stroke::Failed => before,
         Stroke::Bars => CurveStyle { colour: palette::FAINT, ..before },
         Stroke::Dashed => {
-            let here = dashed.next().unwrap_or_default();
-            let (colour, marker, dash) = (palette::shade(here), palette::marker(here), Some(palette::dash(here)));
-            CurveStyle { colour, marker, dash, open: false }
+            let (colour, marker, dash) = palette::dashed(dashed.next().unwrap_or_default());
+            CurveStyle { colour, marker, dash: Some(dash), open: false }
         }
         Stroke::Line | Stroke::Markers | Stroke::MarkedLine => {
-            let here = coloured.next().unwrap_or_default();
-            let open = is_open && curve.stroke == Stroke::Markers;
-            before = CurveStyle { colour: palette::colour(here), marker: palette::marker(here), dash: None, open };
+            before = solid(coloured.next().unwrap_or_default(), is_open && curve.stroke == Stroke::Markers);
             before
         }
     };
@@ -284,10 +279,8 @@ fn notes(graph: &Graph) -> Vec<String> {
     let points = || graph.curves.iter().flat_map(|curve| curve.points.iter());
     let finite = |point: &&(f64, f64)| point.0.is_finite() && point.1.is_finite();
     let infinite = points().count() - points().filter(finite).count();
-    let low = points()
-        .filter(finite)
-        .filter(|point| (graph.x.logarithmic && point.0 <= 0.0) || (graph.y.logarithmic && point.1 <= 0.0))
-        .count();
+    let is_low = |axis: &Axis, value: f64| axis.logarithmic && value <= 0.0;
+    let low = points().filter(finite).filter(|point| is_low(&graph.x, point.0) || is_low(&graph.y, point.1)).count();
     let notes = [(low, "at or below zero"), (infinite, "without a finite value")].into_iter();
     let notes = notes.filter(|(count, _)| *count > 0);
     notes.map(|(count, what)| format!("({} {what} not shown)", number::counted(count, "point"))).collect()
@@ -295,8 +288,6 @@ fn notes(graph: &Graph) -> Vec<String> {
 
 #[cfg(test)]
 mod tests {
-    use grainbench_harness::figure::Axis;
-
     use super::*;
 
     fn graph(logarithmic: bool, points: Vec<(f64, f64)>) -> Graph {
