@@ -1,7 +1,7 @@
 //! A small report for tests, with all kinds of results and figures.
 
 use crate::study::effects::{EffectResult, Entry, Shift};
-use crate::study::point::{Counts, Diagram, Point, PointStatus};
+use crate::study::point::{Diagram, Point, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
 use grainbench_harness::case::Physics;
 use grainbench_harness::control::FailureMode;
@@ -88,8 +88,7 @@ fn backspin() -> Section {
     known.evidence = Evidence::Paper;
     known.source = "Bardenhagen and others (2000), fig. 7".into();
     known.detail = Some("the contact of 2000 does not release, as its paper says".into());
-    let mut momentum = verdict(case, "dem", "momentum drift", 2.2e-16, 1.0, 1e-12);
-    momentum.quantity = "largest momentum drift".into();
+    let mut momentum = verdict(case, "dem", "largest momentum drift", 2.2e-16, 1.0, 1e-12);
     momentum.unit = "kg m/s".into();
     momentum.expected = Some(ExpectedValue::Value(0.0));
     momentum.scale = Some(0.5);
@@ -178,39 +177,23 @@ fn backspin() -> Section {
 fn nine_discs() -> Section {
     let case = "nine-discs";
     let radius = 0.05;
-    let mut discs = Vec::new();
-    let mut bars = Vec::new();
-    for place in 0..9 {
+    let disc = |place: u32| {
         let (column, row) = (f64::from(place % 3), f64::from(place / 3));
-        let centre = [0.06 + 0.1 * column + 0.012 * (row % 2.0), 0.05 + 0.098 * row];
-        discs.push((centre, radius, 0.4 * f64::from(place) - 1.0));
-    }
-    let force = |from: usize, to: usize, force: f64, slipping: bool| ForceBar {
-        from: discs[from].0,
-        to: discs[to].0,
-        force,
-        slipping,
+        ([0.06 + 0.1 * column + 0.012 * (row % 2.0), 0.05 + 0.098 * row], radius, 0.4 * f64::from(place) - 1.0)
     };
-    for (from, to, size, slipping) in [
-        (0, 1, 38.0, false),
-        (1, 2, 21.0, true),
-        (3, 4, 30.0, false),
-        (4, 5, 44.0, false),
-        (6, 7, 12.0, true),
-        (7, 8, 26.0, false),
-        (0, 3, 61.0, false),
-        (1, 4, 83.0, false),
-        (2, 5, 40.0, true),
-        (3, 6, 57.0, false),
-        (4, 7, 72.0, false),
-        (5, 8, 33.0, false),
-    ] {
-        bars.push(force(from, to, size, slipping));
-    }
-    for (disc, size) in [(0, 75.0), (1, 92.0), (2, 48.0)] {
-        let centre: [f64; 2] = discs[disc].0;
-        bars.push(ForceBar { from: centre, to: [centre[0], 0.0], force: size, slipping: false });
-    }
+    let discs: Vec<_> = (0..9).map(disc).collect();
+    // Neighbours in a row, neighbours in a column, and the lowest row with the floor.
+    let beside = (0..9_usize).filter(|at| at % 3 < 2).map(|at| (discs[at].0, discs[at + 1].0));
+    let above = (0..6).map(|at| (discs[at].0, discs[at + 3].0));
+    let below = discs[..3].iter().map(|([x, y], ..)| ([*x, *y], [*x, 0.0]));
+    let bars = (0_u32..).zip(beside.chain(above).chain(below));
+    let bar = |(at, (from, to)): (u32, ([f64; 2], [f64; 2]))| ForceBar {
+        from,
+        to,
+        force: f64::from(12 + 6 * at),
+        slipping: at % 4 == 1,
+    };
+    let bars = bars.map(bar).collect();
     let walls = vec![([0.0, 0.0], [0.34, 0.0]), ([0.0, 0.0], [0.0, 0.31]), ([0.34, 0.0], [0.34, 0.31])];
     let mut absent = verdict(case, "lammps", "force on the floor", 1.0, 214.9, 0.01);
     absent.unit = "N".into();
@@ -270,11 +253,8 @@ pub(crate) fn report() -> Report {
         stability: Some(Stability::from_study(&stability(), &|_| None)),
         effects: Some(Effects::from_study(&effects(), &|_| None)),
     };
-    report.judged = vec![ExternalResults::new(
-        ["other", "other 1.0", "0123"].map(str::to_owned),
-        &report.provenance,
-        &report.sections,
-    )];
+    let names = ["other", "other 1.0", "0123"].map(str::to_owned);
+    report.judged = vec![ExternalResults::new(names, &report.provenance, &report.sections)];
     report
 }
 
@@ -286,21 +266,16 @@ pub(crate) fn costs() -> Study {
         variant: "plain".into(),
         solver: solver.into(),
         resolution: "dt=.1".into(),
-        knobs: String::new(),
         quantity: quantity.into(),
         unit: "m".into(),
         standing: PointStatus::Measured,
         value: Some(1.0 + error),
         expected: Some(1.0),
         error: Some(error),
-        floor: None,
         wall_seconds: Some(wall),
-        wall_spread: None,
         cpu_seconds: Some(wall),
         start_up_seconds: Some(0.0),
-        repetitions: Vec::new(),
-        counts: Counts::default(),
-        detail: None,
+        ..Point::default()
     };
     let diagram = |quantity: &str, points: &[(&str, f64, f64)]| Diagram {
         case: "backspin".into(),
@@ -309,13 +284,12 @@ pub(crate) fn costs() -> Study {
         source: "rigid sphere under Coulomb friction".into(),
         points: points.iter().map(|(solver, error, wall)| point(solver, quantity, *error, *wall)).collect(),
     };
-    let mut study = Study::new(report_provenance());
-    study.diagrams = vec![
+    let diagrams = vec![
         diagram("velocity", &[("dem", 5e-4, 1e-3), ("dem", 1e-5, 3e-3), ("mpm", 8e-3, 0.1), ("rigid", 5e-3, 2e-3)]),
         diagram("spin", &[("dem", 5e-4, 4e-3), ("mpm", 8e-3, 0.4), ("rigid", 0.05, 2e-3)]),
     ];
-    study.sources = ["dem", "mpm", "rigid"].map(|solver| (solver.to_owned(), "as then".to_owned())).into();
-    study
+    let sources = ["dem", "mpm", "rigid"].map(|solver| (solver.to_owned(), "as then".to_owned())).into();
+    Study { diagrams, sources, ..Study::new(report_provenance()) }
 }
 
 /// Returns the stability of two solvers: largest stable time steps with and without an exact limit, and two hard cases.
@@ -339,21 +313,20 @@ pub(crate) fn stability() -> Study {
         resolution: "dt=.1".into(),
         detail: String::new(),
     };
-    let mut study = Study::new(report_provenance());
-    study.limits = vec![
+    let limits = vec![
         limit("dem", "√(m/k)", 0.0, 1.99, Some(2.0)),
         limit("lammps", "√(m/k)", 0.0, 1.99, Some(2.0)),
         limit("dem", "√(m/k)", 1.0, 1.15, Some(1.155)),
         limit("lammps", "√(m/k)", 1.0, 1.15, Some(1.155)),
         limit("mpm", "h/c", 25.0, 2.1, None),
     ];
-    study.hard = vec![
+    let hard = vec![
         hard("mass-ratio", "dem", Hardness::Holds),
         hard("mass-ratio", "lammps", Hardness::Holds),
         hard("fast-impact", "dem", Hardness::HoldsAtASmallerStep),
         hard("fast-impact", "lammps", Hardness::QuietlyWrong),
     ];
-    study
+    Study { limits, hard, ..Study::new(report_provenance()) }
 }
 
 /// Returns effects of two scenes. Without friction, the results change by a tenth, a fifth and a half of their scale.
@@ -378,13 +351,12 @@ pub(crate) fn effects() -> Study {
         time: None,
         tried: Vec::new(),
     };
-    let mut study = Study::new(report_provenance());
-    study.ledger = vec![
+    let ledger = vec![
         entry("friction", true, EffectResult::Needed, vec![shift(0.5), shift(-0.1), shift(0.2)]),
         entry("gravity", true, EffectResult::NotWorthSimulating, vec![shift(1e-7)]),
         entry("cohesion", false, EffectResult::Inert, Vec::new()),
     ];
-    study
+    Study { ledger, ..Study::new(report_provenance()) }
 }
 
 /// Returns a report in which every text would end its HTML element if it were not escaped.
