@@ -5,7 +5,7 @@ use crate::provenance::Provenance;
 use crate::study::Study;
 use crate::study::cost::{self, TARGETS, time};
 use crate::study::effects::Entry;
-use crate::study::point::{Diagram, PointStatus};
+use crate::study::point::{Diagram, Point, PointStatus};
 use crate::study::stability::{HardCaseResult, Hardness, Limit};
 use grainbench_harness::statistics::range;
 use serde::{Deserialize, Serialize};
@@ -21,7 +21,6 @@ pub struct Measurements {
     /// Largest stable time steps and hard cases of each solver.
     pub stability: Option<Stability>,
     /// Influence of physical effects on the results.
-    #[serde(default)]
     pub effects: Option<Effects>,
 }
 
@@ -44,7 +43,6 @@ pub struct Costs {
     /// One entry per solver, our solvers first.
     pub lines: Vec<Line>,
     /// Example for the first screen: the first quantity among those for which the most solvers reach an error of 1 %.
-    #[serde(default)]
     pub example: Option<Diagram>,
 }
 
@@ -72,7 +70,6 @@ pub struct Factor {
     pub compared: usize,
     /// Geometric mean of the solver's time divided by the time of the cheapest solver at an error of 1 %. It covers the
     /// quantities for which another solver also reaches 1 %; none if there are none.
-    #[serde(default)]
     pub place: Option<f64>,
     /// Shortest and longest time over the quantities (s).
     pub seconds: [f64; 2],
@@ -170,9 +167,10 @@ impl Costs {
     pub fn from_study(study: &Study, today: &dyn Fn(&str) -> Option<String>) -> Self {
         let mut names = cost::lines(&study.diagrams);
         names.retain(|name| study.diagrams.iter().any(|diagram| cost::of_line(diagram, name).next().is_some()));
+        let is_run = |point: &Point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed);
         let lines = names.iter().map(|name| Line {
             solver: (*name).to_owned(),
-            asked: study.diagrams.iter().filter(|diagram| is_asked(diagram, name)).count(),
+            asked: study.diagrams.iter().filter(|diagram| cost::of_line(diagram, name).any(is_run)).count(),
             points: study.diagrams.iter().flat_map(|diagram| places(diagram, name, &names)).collect(),
             factors: TARGETS.map(|target| factor(study, name, &names, target)),
         });
@@ -191,10 +189,6 @@ impl Costs {
         self.stamp.changed.extend(other.stamp.changed.iter().filter(is_added).cloned());
         self.lines.extend(new);
     }
-}
-
-fn is_asked(diagram: &Diagram, line: &str) -> bool {
-    cost::of_line(diagram, line).any(|point| matches!(point.standing, PointStatus::Measured | PointStatus::Failed))
 }
 
 /// Returns the Pareto front of a solver. Times are divided by the time of the cheapest solver at 1 %.

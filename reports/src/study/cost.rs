@@ -6,6 +6,7 @@ use crate::number;
 use crate::plot::palette::SOLVERS;
 use crate::table::{Cell, Column, Format, Table};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use std::collections::BTreeSet;
 
 /// Errors for which the cost is stated, as fractions of the scale of the quantity.
 pub const TARGETS: [f64; 3] = [0.1, 0.01, 0.001];
@@ -75,15 +76,12 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
         lines.iter().filter_map(|line| cheapest(diagram, line, target).map(|point| (*line, point))).collect();
     reached.sort_by(|a, b| a.1.wall_seconds.unwrap_or(0.0).total_cmp(&b.1.wall_seconds.unwrap_or(0.0)));
     let best = reached.first().and_then(|(_, point)| point.wall_seconds).unwrap_or(f64::NAN);
-    let mut parts: Vec<String> = reached
-        .iter()
-        .map(|(line, point)| {
-            let wall = point.wall_seconds.unwrap_or(f64::NAN);
-            let times =
-                if wall > best { format!(" (× {})", number::significant(wall / best, 2)) } else { String::new() };
-            format!("{line} {} in {}{times}", point.setting(), number::seconds(wall))
-        })
-        .collect();
+    let part = |(line, point): &(&str, &Point)| {
+        let wall = point.wall_seconds.unwrap_or(f64::NAN);
+        let times = if wall > best { format!(" (× {})", number::significant(wall / best, 2)) } else { String::new() };
+        format!("{line} {} in {}{times}", point.setting(), number::seconds(wall))
+    };
+    let mut parts: Vec<String> = reached.iter().map(part).collect();
     if parts.is_empty() {
         parts.push("no solver reaches it".to_owned());
     }
@@ -167,13 +165,10 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
     let mut bars = Vec::new();
     for (floor, knobs) in names {
         let on = |point: &&Point| point.floor.as_deref() == Some(floor) && point.knobs == knobs;
-        let places: Vec<(f64, f64)> = of_line(diagram, line)
-            .filter(on)
-            .filter_map(|point| point.place().map(|(error, time)| (time, error)))
-            .collect();
-        let times = || places.iter().map(|(time, _)| *time);
+        let places: Vec<(f64, f64)> = of_line(diagram, line).filter(on).filter_map(Point::place).collect();
+        let times = || places.iter().map(|(_, time)| *time);
         let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
-        if let Some((_, error)) = places.iter().max_by(|a, b| a.0.total_cmp(&b.0)) {
+        if let Some((error, _)) = places.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
             bars.extend([(first, error.max(LEAST)), (last, error.max(LEAST))]);
         }
     }
@@ -183,10 +178,9 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
 /// Returns figures of measured against expected values over all cases, one for each unit. For each quantity, a solver
 /// has the point with its smallest error.
 pub(crate) fn scatters(diagrams: &[Diagram]) -> Vec<Figure> {
-    let mut units: Vec<&str> = diagrams.iter().flat_map(|d| &d.points).map(|point| point.unit.as_str()).collect();
-    units.sort_unstable();
-    units.dedup();
-    units.iter().filter_map(|unit| scatter(diagrams, unit)).collect()
+    let points = diagrams.iter().flat_map(|diagram| &diagram.points);
+    let units: BTreeSet<&str> = points.map(|point| point.unit.as_str()).collect();
+    units.into_iter().filter_map(|unit| scatter(diagrams, unit)).collect()
 }
 
 /// Returns the point with the smallest error of a solver, for each diagram whose quantity has this unit.
@@ -201,12 +195,8 @@ fn best<'a>(diagrams: &'a [Diagram], unit: &'a str, line: &'a str) -> Vec<&'a Po
 /// Returns the bias and the spread of measured/expected. The bias is the geometric mean, and the spread is the standard
 /// deviation of the natural logarithm.
 fn bias(points: &[&Point]) -> Option<(f64, f64)> {
-    let logs: Vec<f64> = points
-        .iter()
-        .filter_map(|point| Some(point.value? / point.expected?))
-        .filter(|ratio| ratio.is_finite() && *ratio > 0.0)
-        .map(f64::ln)
-        .collect();
+    let ratios = points.iter().filter_map(|point| Some(point.value? / point.expected?));
+    let logs: Vec<f64> = ratios.filter(|ratio| ratio.is_finite() && *ratio > 0.0).map(f64::ln).collect();
     let count = logs.len() as f64;
     let mean = logs.iter().sum::<f64>() / count;
     let variance = logs.iter().map(|log| (log - mean).powi(2)).sum::<f64>() / (count - 1.0).max(1.0);
@@ -221,11 +211,8 @@ fn scatter(diagrams: &[Diagram], unit: &str) -> Option<Figure> {
         let Some((factor, spread)) = bias(&points) else { continue };
         let [factor, spread] = [factor - 1.0, spread].map(number::fraction);
         let label = format!("{line}: bias {factor}, spread {spread}");
-        let places: Vec<(f64, f64)> = points
-            .iter()
-            .filter_map(|point| Some((point.expected?.abs(), point.value?.abs())))
-            .filter(|(expected, value)| *expected > 0.0 && *value > 0.0)
-            .collect();
+        let places = points.iter().filter_map(|point| Some((point.expected?.abs(), point.value?.abs())));
+        let places: Vec<_> = places.filter(|(expected, value)| *expected > 0.0 && *value > 0.0).collect();
         for (expected, _) in &places {
             span = (span.0.min(*expected), span.1.max(*expected));
         }

@@ -314,16 +314,13 @@ impl SceneCost {
             .collect();
         reached.sort_by(|a, b| a.2.total_cmp(&b.2));
         let fastest = reached.first().map_or(f64::NAN, |first| first.2);
-        let mut parts: Vec<String> = reached
-            .iter()
-            .map(|(solver, setting, seconds)| {
-                let times = seconds / fastest;
-                let times =
-                    if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
-                let margin = margin_words(solver, setting, limits).unwrap_or_default();
-                format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
-            })
-            .collect();
+        let part = |(solver, setting, seconds): &(&str, &str, f64)| {
+            let times = seconds / fastest;
+            let times = if times > 1.0 { format!(" (× {})", number::significant(times, 2)) } else { String::new() };
+            let margin = margin_words(solver, setting, limits).unwrap_or_default();
+            format!("{solver} {}{times} with {setting}{margin}", number::seconds(*seconds))
+        };
+        let mut parts: Vec<String> = reached.iter().map(part).collect();
         if parts.is_empty() {
             parts.push(format!("no solver reaches it within the budget of {}", number::seconds(self.budget)));
         }
@@ -346,12 +343,6 @@ impl SceneCost {
             count => format!(" in each of {count} quantities"),
         };
         format!("{}{of_all}: {}.", number::fraction(target), parts.join("; "))
-    }
-
-    /// Returns the solvers with a reference value of at least one quantity.
-    fn estimated(&self) -> Vec<&str> {
-        let has = |solver: &&str| self.quantities.iter().any(|quantity| quantity.of_solver(solver).next().is_some());
-        self.solvers().into_iter().filter(has).collect()
     }
 }
 
@@ -378,7 +369,7 @@ pub fn figures(cost: &SceneCost) -> Vec<Figure> {
 fn error_figure(cost: &SceneCost, quantity: &Quantity) -> Figure {
     let place = |point: &EstimatedPoint| (point.wall_seconds, point.error.max(0.1 * point.uncertainty).max(LEAST));
     let mut curves = Vec::new();
-    for solver in cost.estimated() {
+    for solver in cost.solvers() {
         let mut points: Vec<_> = quantity.of_solver(solver).map(place).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         curves.push(Curve::new(solver, Stroke::MarkedLine, points));
@@ -527,12 +518,8 @@ pub(crate) fn difference_words(difference: &Difference<'_>) -> String {
 }
 
 fn agreement(cost: &SceneCost) -> Markup {
-    let rows: Vec<(&Quantity, Vec<Difference<'_>>)> = cost
-        .quantities
-        .iter()
-        .map(|quantity| (quantity, quantity.differences()))
-        .filter(|(_, differences)| !differences.is_empty())
-        .collect();
+    let rows = cost.quantities.iter().map(|quantity| (quantity, quantity.differences()));
+    let rows: Vec<_> = rows.filter(|(_, differences)| !differences.is_empty()).collect();
     html! {
         @if !rows.is_empty() {
             h3 { "Agreement between the methods" }

@@ -80,9 +80,9 @@ pub(crate) fn render(loads: &[Load]) -> Markup {
     html! {
         h3 { "From one grain to ten thousand" }
         p {
-            "Most quantities above need one or two grains. Here discs are stacked in a box, and each solver has a "
-            "usual resolution. The table shows the processor time of one thread: a long run minus a short run, so "
-            "start-up cancels."
+            "Most quantities above need one or two grains. Here discs are stacked in a box, and each solver has a \
+             usual resolution. The table shows the processor time of one thread: a long run minus a short run, so \
+             start-up cancels."
         }
         @if let Some(figure) = figure(loads) { (captioned(&figure)) }
         (table.page("cases"))

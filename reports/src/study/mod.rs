@@ -16,7 +16,7 @@ use self::effects::Entry;
 use self::estimate::SceneCost;
 use self::load::Load;
 use self::point::{Change, Diagram};
-use self::stability::{HardCaseResult, Limit};
+use self::stability::{HardCaseResult, Hardness, Limit};
 use self::step::Model;
 use crate::provenance::Provenance;
 use grainbench_harness::verdict::Severity;
@@ -37,7 +37,6 @@ pub struct Study {
     #[serde(default, skip_serializing_if = "Vec::is_empty")]
     pub scenes: Vec<SceneCost>,
     /// Cost of the parts of a step.
-    #[serde(default)]
     pub model: Option<Model>,
     /// Cost of a step against the number of grains.
     #[serde(default)]
@@ -46,7 +45,6 @@ pub struct Study {
     #[serde(default)]
     pub changes: Vec<Change>,
     /// Name of the earlier study with which this study was compared.
-    #[serde(default)]
     pub against: Option<String>,
     /// Largest stable time steps.
     #[serde(default)]
@@ -76,11 +74,12 @@ impl Study {
         let is_unfinished = self.provenance.options.iter().any(|words| words.split(": ").next() == Some("unfinished"));
         let mut points = self.diagrams.iter().flat_map(|diagram| &diagram.points);
         let mut quantities = self.scenes.iter().flat_map(|scene| &scene.quantities);
+        let holds = |row: &HardCaseResult| matches!(row.standing, Hardness::Holds | Hardness::HoldsAtASmallerStep);
         // In a study of the cost of one scene, limits and effects are additions.
         let measures = if self.scenes.is_empty() {
             points.any(|point| point.error.is_some())
                 || self.limits.iter().any(|limit| limit.found.is_some())
-                || self.hard.iter().any(|row| row.standing.holds())
+                || self.hard.iter().any(holds)
                 || !self.ledger.is_empty()
         } else {
             quantities.any(|quantity| !quantity.estimates.is_empty())

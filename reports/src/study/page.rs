@@ -2,7 +2,7 @@
 
 use super::point::{Diagram, Point, PointStatus};
 use super::{Study, cost, effects, estimate, load, stability_page, step};
-use crate::measured::Costs;
+use crate::measured::{Costs, Factor, Line};
 use crate::number::{self, TimeUnit};
 use crate::page::{captioned, provenance, shell, slug, summary, unique};
 use crate::row;
@@ -51,24 +51,17 @@ pub(crate) fn render(study: &Study) -> String {
 /// Returns one sentence for each error, about the cost over all cases.
 fn conclusions(study: &Study, costs: &Costs) -> Vec<String> {
     let sentence = |(at, target): (usize, f64)| {
-        let parts: Vec<String> = costs
-            .lines
-            .iter()
-            .filter_map(|line| {
-                let factor = line.factors[at]?;
-                let wins =
-                    study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, &line.solver, target)).count();
-                Some(format!(
-                    "{} reaches it in {} of {} quantities and is the cheapest in {wins}; its mean cost is {} times the \
-                     cheapest over the {} quantities that other solvers also reach",
-                    line.solver,
-                    factor.reached,
-                    line.asked,
-                    number::significant(factor.times, 2),
-                    factor.compared
-                ))
-            })
-            .collect();
+        let part = |line: &Line| {
+            let Factor { times, compared, reached, .. } = line.factors[at]?;
+            let Line { solver, asked, .. } = line;
+            let wins = study.diagrams.iter().filter(|diagram| cost::is_cheapest(diagram, solver, target)).count();
+            let times = number::significant(times, 2);
+            Some(format!(
+                "{solver} reaches it in {reached} of {asked} quantities and is the cheapest in {wins}; its mean cost is \
+                 {times} times the cheapest over the {compared} quantities that other solvers also reach"
+            ))
+        };
+        let parts: Vec<String> = costs.lines.iter().filter_map(part).collect();
         let parts = if parts.is_empty() { "no solver reaches it".to_owned() } else { parts.join("; ") };
         format!("{}: {parts}.", number::fraction(target))
     };
@@ -174,14 +167,9 @@ fn cost_section(diagram: &Diagram, anchor: &str) -> Markup {
 
 /// Renders the reasons why points have no error. Each reason appears once per solver.
 fn reasons(diagram: &Diagram) -> Markup {
-    let mut reasons: Vec<(&str, &str)> = diagram
-        .points
-        .iter()
-        .filter(|point| point.standing != PointStatus::Failed)
-        .filter_map(|point| point.detail.as_deref().map(|detail| (point.solver.as_str(), detail)))
-        .collect();
-    reasons.sort_unstable();
-    reasons.dedup();
+    let points = diagram.points.iter().filter(|point| point.standing != PointStatus::Failed);
+    let reasons: BTreeSet<_> =
+        points.filter_map(|point| point.detail.as_ref().map(|detail| (&point.solver, detail))).collect();
     html! { @for (solver, reason) in reasons { p.note { (solver) ": " (reason) } } }
 }
 

@@ -55,11 +55,6 @@ pub enum Hardness {
 }
 
 impl Hardness {
-    /// Returns true if the required property holds at some time step.
-    pub(crate) const fn holds(self) -> bool {
-        matches!(self, Self::Holds | Self::HoldsAtASmallerStep)
-    }
-
     pub(crate) const fn word(self) -> &'static str {
         match self {
             Self::Holds => "holds",

@@ -65,9 +65,8 @@ pub(crate) fn largest_steps(rows: &[Limit]) -> Markup {
 pub(crate) fn tables(stability: &Stability) -> Markup {
     html! {
         p.lead {
-            "The largest stable step of each solver, found by bisection between stable and failed runs, with the exact \
-             limit if "
-            "there is one. Hard cases follow, each with its requirement."
+            "The largest stable step of each solver, found by bisection between stable and failed runs, with the \
+             exact limit if there is one. Hard cases follow, each with its requirement."
         }
         h3 { "Totals" }
         (totals(&stability.lines))

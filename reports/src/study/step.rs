@@ -56,14 +56,13 @@ pub(crate) fn render(model: &Model) -> Markup {
     html! {
         h3 { "Cost of a step by part" }
         p {
-            "Processor time of one thread for one part of a step, from a long run minus a short run. The time of a "
-            "step is the sum over its grains, listed pairs and contacts. The time to rebuild the list of pairs is \
-             excluded. "
-            "The scenes have ten thousand discs, sixteen thousand spheres and up to 58 thousand points, which fit "
-            "partly into caches; in larger scenes the same parts cost more. The last columns show what this machine "
-            "can transfer and compute in the same time: " (number::significant(streamed, 3)) " B/ns read from and "
-            "written to memory outside the caches, and " (number::significant(computed, 3)) " multiplications and "
-            "additions per nanosecond in registers."
+            "Processor time of one thread for one part of a step, from a long run minus a short run. The time of a \
+             step is the sum over its grains, listed pairs and contacts. The time to rebuild the list of pairs is \
+             excluded. The scenes have ten thousand discs, sixteen thousand spheres and up to 58 thousand points, \
+             which fit partly into caches; in larger scenes the same parts cost more. The last columns show what this \
+             machine can transfer and compute in the same time: " (number::significant(streamed, 3)) " B/ns read from and \
+             written to memory outside the caches, and " (number::significant(computed, 3)) " multiplications and \
+             additions per nanosecond in registers."
         }
         (table.page("cases"))
     }

@@ -91,11 +91,9 @@ pub fn named_figures(study: &Study) -> Vec<(String, Figure)> {
         let figure = cost::figure(diagram);
         (format!("cost-{}-{}-{}", diagram.case, diagram.variant, figure.name), figure)
     });
-    let others = cost::scatters(&study.diagrams)
-        .into_iter()
-        .chain(load::figure(&study.loads))
-        .chain(stability::figures(&study.limits))
-        .chain(study.scenes.iter().flat_map(estimate::figures));
+    let others = cost::scatters(&study.diagrams).into_iter().chain(load::figure(&study.loads));
+    let others = others.chain(stability::figures(&study.limits));
+    let others = others.chain(study.scenes.iter().flat_map(estimate::figures));
     let all = diagrams.chain(others.map(|figure| (figure.name.clone(), figure)));
     let mut names = BTreeSet::new();
     all.map(|(stem, figure)| (shared::unique(&shared::slug(&stem), &mut names), figure)).collect()
