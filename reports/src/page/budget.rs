@@ -76,7 +76,6 @@ pub(crate) fn fit(parts: &mut [&mut Part], weight: usize, limit: usize) -> Vec<(
     }
     // A large part may make room for smaller parts that were moved before it. The most important of these parts return
     // first.
-    let mut beside = Vec::new();
     for at in away.into_iter().rev() {
         let with = weight + parts[at].gain();
         if with <= limit {
@@ -85,10 +84,7 @@ pub(crate) fn fit(parts: &mut [&mut Part], weight: usize, limit: usize) -> Vec<(
             parts[at].is_moved = true;
         }
     }
-    for part in parts.iter_mut().filter(|part| part.is_moved) {
-        beside.extend(part.file.take());
-    }
-    beside
+    parts.iter_mut().filter(|part| part.is_moved).filter_map(|part| part.file.take()).collect()
 }
 
 #[cfg(test)]

@@ -3,6 +3,7 @@
 use grainbench_harness::case::Physics;
 use grainbench_harness::verdict::{Outcome, Severity, Verdict};
 use maud::{Markup, html};
+use std::collections::BTreeSet;
 
 use super::cards::{self, meaning};
 use crate::headline::used_tolerance;
@@ -78,10 +79,7 @@ fn short(worst: f64) -> String {
 
 /// Returns the fields of physics of a report in their order.
 fn fields_of(report: &Report) -> Vec<Physics> {
-    let mut fields: Vec<Physics> = report.sections.iter().map(|section| section.physics).collect();
-    fields.sort_unstable();
-    fields.dedup();
-    fields
+    report.sections.iter().map(|section| section.physics).collect::<BTreeSet<_>>().into_iter().collect()
 }
 
 struct FieldResults {

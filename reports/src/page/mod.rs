@@ -3,7 +3,6 @@
 
 pub(crate) mod budget;
 mod cards;
-mod contents;
 pub(crate) mod figures;
 mod layout;
 mod matrix;
@@ -60,7 +59,7 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
         sections.push(CaseSection::new(section, anchor, names, &mut taken)?);
     }
-    let contents = contents::render(report, &anchors);
+    let contents = overview::contents(report, &anchors);
     let studies = questions::sections(&report.measured);
     let foot = html! { (studies) (peers::render(report)) (provenance::render(&report.provenance)) };
     // The first screen is largest if the page contains all results.

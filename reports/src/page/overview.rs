@@ -1,5 +1,5 @@
-//! First screen of the page: counts, failures, three questions, one card per solver, and the matrix of cases and
-//! solvers.
+//! Contents and first screen of the page: counts, failures, three questions, one card per solver, and the matrix of
+//! cases and solvers.
 
 use maud::{Markup, PreEscaped, html};
 
@@ -68,6 +68,38 @@ pub(crate) fn render(report: &Report, counts: Headline, anchors: &[String], has_
     }
 }
 
+/// Renders the table of contents, which stays visible while the page scrolls. Each case shows its number of red or amber
+/// results.
+pub(crate) fn contents(report: &Report, anchors: &[String]) -> Markup {
+    html! {
+        nav.contents aria-label="Contents" {
+            details open {
+                summary { "Contents" }
+                ul {
+                    li { a href="#summary" { "Summary" } }
+                    @for (id, heading, _) in questions::stored(&report.measured) { li { a href={ "#" (id) } { (heading) } } }
+                    @for (section, anchor) in report.sections.iter().zip(anchors) {
+                        @let counts = Headline::of_section(section);
+                        @let wrong = counts.red();
+                        li {
+                            a href={ "#" (anchor) } data-case=(section.name) {
+                                @if wrong > 0 { span.n.fail { "✗ " (wrong) } }
+                                @else if counts.amber() > 0 {
+                                    span.n.amber title={ (counts.amber()) " amber results" } { "▲ " (counts.amber()) }
+                                }
+                                (section.name)
+                            }
+                        }
+                    }
+                    @if !report.judged.is_empty() { li { a href="#peers" { "External solvers" } } }
+                    li { a href="#provenance" { "Provenance" } }
+                }
+            }
+            button #theme type="button" hidden { "Dark or light" }
+        }
+    }
+}
+
 /// Returns the meaning of an outcome. The page shows it beside the results with this outcome.
 const fn meaning(outcome: Outcome) -> &'static str {
     match outcome {
@@ -108,11 +140,8 @@ fn headline(counts: Headline) -> String {
 /// Renders the number of known errors of each solver; empty for an outcome other than `known`.
 fn by_solver(report: &Report, outcome: Outcome) -> Markup {
     let count = |solver: &str| cards::rows(report, solver).filter(|row| row.outcome == outcome).count();
-    let counts: Vec<(&str, usize)> = cards::solvers(report)
-        .into_iter()
-        .map(|solver| (solver, count(solver)))
-        .filter(|(_, count)| *count > 0 && outcome == Outcome::Known)
-        .collect();
+    let counts = cards::solvers(report).into_iter().map(|solver| (solver, count(solver)));
+    let counts: Vec<(&str, usize)> = counts.filter(|(_, count)| *count > 0 && outcome == Outcome::Known).collect();
     html! {
         @if !counts.is_empty() {
             " errors: "

@@ -18,17 +18,15 @@ pub(crate) fn render(report: &Report) -> Markup {
             section id="peers" {
                 h2 { "External solvers" }
                 p.claim {
-                    "Results of external programs (SOLVER.toml) for the solver-independent claims, each with its "
-                    "negative control. The first table states where and when the programs ran. They did not run for \
+                    "Results of external programs (SOLVER.toml) for the solver-independent claims, each with its \
+                     negative control. The first table states where and when the programs ran. They did not run for \
                      this report."
                 }
                 (programs(judged).page("cases"))
                 p.note {
                     "For each case the table shows the largest error / tolerance, and passed / applicable results. \
-                     Other results are unsupported. "
-                    "The second column shows the largest error / tolerance of the same claims with our solvers, if \
-                     this run "
-                    "evaluated them."
+                     Other results are unsupported. The second column shows the largest error / tolerance of the same \
+                     claims with our solvers, if this run evaluated them."
                 }
                 (by_case(report).page("cases"))
             }

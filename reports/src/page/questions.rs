@@ -120,10 +120,8 @@ fn accuracy(report: &Report, costs: &Costs) -> Markup {
 /// does not hold for a solver at the default time step. The last row counts all other hard cases.
 fn steps(stability: &Stability) -> Markup {
     let figure = stability::figures(&stability.limits).into_iter().find(|figure| figure.name == "stable-step-springs");
-    let lines: Vec<&Hold> = palette::SOLVERS
-        .iter()
-        .filter_map(|solver| stability.lines.iter().find(|line| line.solver == **solver))
-        .collect();
+    let hold = |solver: &&str| stability.lines.iter().find(|line| line.solver == **solver);
+    let lines: Vec<&Hold> = palette::SOLVERS.iter().filter_map(hold).collect();
     let found = |case: &str, solver: &str| stability.hard.iter().find(|row| row.case == case && row.solver == solver);
     let severity = |case: &str, line: &Hold| found(case, &line.solver).and_then(HardCaseResult::severity);
     let is_held =
@@ -233,10 +231,9 @@ fn changes(effects: &Effects) -> Markup {
         }
         p { "A claim fails " b { (most) } " scenes." }
         p.note {
-            "Each mark is the median change in one scene, over the claims that fail, or over all claims if none fails. \
-             The cost is the median of the "
-            "processor time with the effect divided by the time without it, if at least three scenes were measured. "
-            "Changes below 10⁻⁵ or above 10 are drawn at the ends of the axis."
+            "Each mark is the median change in one scene, over the claims that fail, or over all claims if none \
+             fails. The cost is the median of the processor time with the effect divided by the time without it, if \
+             at least three scenes were measured. Changes below 10⁻⁵ or above 10 are drawn at the ends of the axis."
         }
     }
 }

@@ -72,12 +72,10 @@ pub(crate) fn factors(costs: &Costs) -> Markup {
         (over_dem(costs))
         p.note {
             "The table shows the geometric mean over the target quantities for which the solver and at least one more \
-             solver reach the error, and "
-            "below it the number of quantities for which the solver reaches the error. The figure shows times divided \
-             by the time of the cheapest solver at "
-            "1 %. Joined markers are errors of 10, 1 and 0.1 %. Small markers are settings for which no other setting \
-             of this solver is both "
-            "faster and more accurate. Errors below 10⁻¹⁰ are omitted. Times are those of the stepping loop. Measured " "
+             solver reach the error, and below it the number of quantities for which the solver reaches the error. \
+             The figure shows times divided by the time of the cheapest solver at 1 %. Joined markers are errors of \
+             10, 1 and 0.1 %. Small markers are settings for which no other setting of this solver is both faster and \
+             more accurate. Errors below 10⁻¹⁰ are omitted. Times are those of the stepping loop. Measured " "
             "(stamp.provenance.day()) " on " (stamp.provenance.machine) ", commit " (stamp.provenance.commit)
             "; " code { "grainbench cost --update-stored" } " repeats the measurement, also for the report of all \
                  cases."
@@ -103,14 +101,10 @@ fn cell(factor: Option<&Factor>, asked: usize) -> Markup {
 /// Renders the cost of `mpm` divided by the cost of `dem`, for each error that both reach.
 fn over_dem(costs: &Costs) -> Markup {
     let Some(line) = costs.lines.iter().find(|line| line.solver == "mpm") else { return html! {} };
-    let parts: Vec<String> = line
-        .factors
-        .iter()
-        .zip(TARGETS)
-        .filter_map(|(factor, target)| {
-            let (times, count) = factor.as_ref()?.over_dem?;
-            Some(format!("at {} × {} ({count} quantities)", number::fraction(target), number::significant(times, 2)))
-        })
-        .collect();
+    let part = |(factor, target): (&Option<Factor>, f64)| {
+        let (times, count) = factor.as_ref()?.over_dem?;
+        Some(format!("at {} × {} ({count} quantities)", number::fraction(target), number::significant(times, 2)))
+    };
+    let parts: Vec<String> = line.factors.iter().zip(TARGETS).filter_map(part).collect();
     html! { @if !parts.is_empty() { p { b { "mpm / dem" } ", time at an equal error: " (parts.join(", ")) "." } } }
 }
