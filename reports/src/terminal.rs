@@ -42,8 +42,7 @@ pub fn summary_table_within(report: &Report, width: usize) -> String {
 /// reasons come first, and a last line counts the others.
 fn amber_lines(report: &Report) -> Vec<String> {
     let mut groups: BTreeMap<(&str, &str), Vec<&str>> = BTreeMap::new();
-    let rows = report.verdicts();
-    for row in rows.filter(|row| row.outcome.severity() == Severity::Amber) {
+    for row in report.verdicts().filter(|row| row.outcome.severity() == Severity::Amber) {
         let reason = row.detail.as_deref().unwrap_or("no reason is stated");
         groups.entry((row.outcome.word(), reason)).or_default().push(&row.solver);
     }

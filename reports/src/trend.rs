@@ -12,7 +12,7 @@ use grainbench_store::{ReadError, StagedDir};
 use maud::{Markup, html};
 use serde::Deserialize;
 use serde_json::{Map, Value};
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 /// Largest number of changed results that are listed.
@@ -43,11 +43,10 @@ struct Results {
     points: Vec<Map<String, Value>>,
 }
 
-#[derive(Deserialize)]
+#[derive(Default, Deserialize)]
+#[serde(default)]
 struct ReportProvenance {
-    #[serde(default)]
     commit: String,
-    #[serde(default)]
     date: String,
 }
 
@@ -152,15 +151,12 @@ fn verdicts(columns: &[Column]) -> Figure {
 /// Returns the figure of counts, each divided by the count of the first report.
 fn counts(columns: &[Column], shared: &[&String]) -> Option<Figure> {
     let first = columns.first()?;
-    let curves: Vec<Curve> = COUNTED
-        .iter()
-        .filter(|name| first.sum(name, shared) > 0)
-        .map(|name| {
-            let one = first.sum(name, shared) as f64;
-            let part = |(column, at): (&Column, u32)| (f64::from(at), column.sum(name, shared) as f64 / one);
-            Curve::new(name.replace('_', " "), Stroke::MarkedLine, columns.iter().zip(1_u32..).map(part).collect())
-        })
-        .collect();
+    let curve = |name: &&str| {
+        let one = first.sum(name, shared) as f64;
+        let part = |(column, at): (&Column, u32)| (f64::from(at), column.sum(name, shared) as f64 / one);
+        Curve::new(name.replace('_', " "), Stroke::MarkedLine, columns.iter().zip(1_u32..).map(part).collect())
+    };
+    let curves: Vec<Curve> = COUNTED.iter().filter(|name| first.sum(name, shared) > 0).map(curve).collect();
     (!curves.is_empty()).then(|| {
         Figure::graph(
             "trend-counts",
@@ -201,9 +197,7 @@ fn changed<'a>(id: &str, none: &str, count: usize, table: Table<'a>) -> Markup {
 
 /// Renders a table of the results whose outcome differs between reports.
 fn changed_rows(columns: &[Column]) -> Markup {
-    let mut names: Vec<&String> = columns.iter().flat_map(|column| column.rows.keys()).collect();
-    names.sort();
-    names.dedup();
+    let mut names: BTreeSet<&String> = columns.iter().flat_map(|column| column.rows.keys()).collect();
     let outcomes = |name: &String| -> Vec<Option<Outcome>> {
         columns.iter().map(|column| column.rows.get(name).copied()).collect()
     };

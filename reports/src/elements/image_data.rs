@@ -1,5 +1,6 @@
 //! Granular elements as VTK image data (XML, ASCII) for ParaView and VisIt, with one value per cell.
 
+use crate::export::vtk;
 use grainbench_fields::column::COLUMNS;
 use grainbench_fields::course::{Course, Frame};
 use std::io::{self, Write};
@@ -30,9 +31,6 @@ pub(super) fn write(course: &Course, frame: &Frame, mut out: impl Write) -> io::
         }
         writeln!(out, "</DataArray>")?;
     }
-    writeln!(out, "<DataArray type=\"UInt8\" Name=\"masked\" format=\"ascii\">")?;
-    for masked in &frame.masked {
-        writeln!(out, "{}", u8::from(masked.any()))?;
-    }
-    writeln!(out, "</DataArray>\n</CellData>\n</Piece>\n</ImageData>\n</VTKFile>")
+    vtk::whole(&mut out, "UInt8", "masked", frame.masked.iter().map(|masked| i64::from(masked.any())))?;
+    writeln!(out, "</CellData>\n</Piece>\n</ImageData>\n</VTKFile>")
 }

@@ -3,7 +3,7 @@
 use crate::table::{Cell, Column as Head, Format, Table};
 use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
-use grainbench_fields::course::{Course, of_means};
+use grainbench_fields::course::{Course, Frame, of_means};
 use grainbench_fields::trails::Trails;
 
 /// Returns the column of a quantity, with an ending of its name.
@@ -17,9 +17,13 @@ fn place_heads() -> impl Iterator<Item = Head> {
     indices.into_iter().chain(["x", "y", "z"].map(|name| Head::number(name).unit("m")))
 }
 
-/// Returns the step and the time of a frame as columns.
 fn clock_heads() -> [Head; 2] {
     [Head::new("step", Format::Count), Head::number("time").unit("s")]
+}
+
+/// Returns the step and the time of a frame.
+fn clock(frame: &Frame) -> [Cell; 2] {
+    [frame.step.into(), Cell::finite(Some(frame.time))]
 }
 
 /// Returns the indices of a cell along the axes, followed by the coordinates of its centre (m).
@@ -33,11 +37,8 @@ pub(super) fn elements(course: &Course) -> Table<'_> {
     let columns = clock_heads().into_iter().chain(place_heads()).chain([Head::text("mask")]);
     let rows = course.frames.iter().flat_map(move |frame| {
         (0..frame.elements.len()).map(move |cell| {
-            let mut row = vec![Cell::from(frame.step), Cell::finite(Some(frame.time))];
-            row.extend(place(course, cell));
-            row.push(frame.masked[cell].words().into());
-            row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value(column, frame, cell))));
-            row.into_iter().collect()
+            let names = clock(frame).into_iter().chain(place(course, cell)).chain([frame.masked[cell].words().into()]);
+            names.chain(COLUMNS.iter().map(|column| Cell::finite(course.value(column, frame, cell)))).collect()
         })
     });
     Table::new("elements", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
@@ -50,11 +51,9 @@ pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Table<'a> {
     let columns = columns.chain([Head::number("hencky_strain").unit("1")]);
     let rows = trails.stops.iter().map(move |stop| {
         let frame = &course.frames[stop.frame];
-        let mut row = vec![Cell::from(stop.tracer), Cell::from(frame.step), Cell::finite(Some(frame.time))];
-        row.extend(stop.position.iter().map(|along| Cell::from(*along)));
-        row.push(Cell::finite(stop.strain));
-        row.extend(COLUMNS.iter().map(|column| Cell::finite(course.value_at(column, frame, stop.position))));
-        row.into_iter().collect()
+        let place = stop.position.iter().map(|along| Cell::from(*along)).chain([Cell::finite(stop.strain)]);
+        let values = COLUMNS.iter().map(|column| Cell::finite(course.value_at(column, frame, stop.position)));
+        [stop.tracer.into()].into_iter().chain(clock(frame)).chain(place).chain(values).collect()
     });
     Table::new("tracers", columns.chain(COLUMNS.iter().map(|column| head(column, ""))), rows)
 }
@@ -64,16 +63,13 @@ pub(super) fn trails<'a>(course: &'a Course, trails: &'a Trails) -> Table<'a> {
 pub(super) fn means(course: &Course, blocks: usize) -> Table<'_> {
     let both = |column: &Column| ["", "_half_width"].map(|ending| head(column, ending));
     let rows = (0..course.grid.cells()).map(move |cell| {
-        let mut row: Vec<Cell> = place(course, cell).collect();
-        row.extend(COLUMNS.iter().flat_map(|column| {
+        let means = COLUMNS.iter().flat_map(|column| {
             let found: Option<Mean> = course.mean_in(column, cell, blocks);
             [found.map(|mean| mean.value), found.and_then(|mean| mean.half_width)].map(Cell::finite)
-        }));
+        });
         let whole = course.element_of_means(cell);
-        row.extend(
-            of_means().map(|column| Cell::finite(whole.and_then(|element| (column.of)(&element, &course.grains)))),
-        );
-        row.into_iter().collect()
+        let of_means = of_means().map(|column| whole.and_then(|element| (column.of)(&element, &course.grains)));
+        place(course, cell).chain(means).chain(of_means.map(Cell::finite)).collect()
     });
     let columns = place_heads().chain(COLUMNS.iter().flat_map(both));
     Table::new("means", columns.chain(of_means().map(|column| head(column, "_of_means"))), rows)

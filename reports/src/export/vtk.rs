@@ -166,7 +166,7 @@ fn array<const N: usize, T: Debug>(
     writeln!(out, "</DataArray>")
 }
 
-fn whole(out: &mut impl Write, kind: &str, name: &str, values: impl Iterator<Item = i64>) -> io::Result<()> {
+pub(crate) fn whole(out: &mut impl Write, kind: &str, name: &str, values: impl Iterator<Item = i64>) -> io::Result<()> {
     array(out, kind, name, values.map(|value| [value]))
 }
 
