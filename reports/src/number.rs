@@ -154,38 +154,23 @@ mod tests {
 
     #[test]
     fn values_have_six_digits() {
-        assert_eq!(value(1.4285714285), "1.42857");
-        assert_eq!(value(1.391), "1.391");
-        assert_eq!(value(-0.05), "−0.05");
-        assert_eq!(value(123_456.7), "123457");
-        assert_eq!(value(1_234_567.0), "1.23457×10⁶");
-        assert_eq!(value(999_999.9), "1×10⁶");
-        assert_eq!(value(1.5e-9), "1.5×10⁻⁹");
-        assert_eq!(value(0.0), "0");
-        assert_eq!(value(f64::NAN), "not a number");
-        assert_eq!(with_unit(2.0, "m/s"), "2\u{202f}m/s");
-        assert_eq!(with_unit(2.0, "1"), "2");
+        assert_eq!([1.4285714285, 1.391, -0.05, 123_456.7].map(value), ["1.42857", "1.391", "−0.05", "123457"]);
+        assert_eq!([1_234_567.0, 999_999.9, 1.5e-9].map(value), ["1.23457×10⁶", "1×10⁶", "1.5×10⁻⁹"]);
+        assert_eq!([0.0, f64::NAN].map(value), ["0", "not a number"]);
+        assert_eq!(["m/s", "1"].map(|unit| with_unit(2.0, unit)), ["2\u{202f}m/s", "2"]);
     }
 
     #[test]
     fn errors_have_two_digits() {
-        assert_eq!(error(Some(-0.0263)), "−2.6\u{202f}%");
-        assert_eq!(error(Some(0.02)), "+2\u{202f}%");
-        assert_eq!(error(Some(3.14e-12)), "+3.1×10⁻¹²");
-        assert_eq!(error(Some(0.0)), "0");
-        assert_eq!(error(None), "—");
-        assert_eq!(fraction(1.2), "120\u{202f}%");
-        assert_eq!(fraction(0.000_999), "0.1\u{202f}%");
-        assert_eq!(fraction(5e4), "5.0×10⁴");
+        let errors = [Some(-0.0263), Some(0.02), Some(3.14e-12), Some(0.0), None];
+        assert_eq!(errors.map(error), ["−2.6\u{202f}%", "+2\u{202f}%", "+3.1×10⁻¹²", "0", "—"]);
+        assert_eq!([1.2, 0.000_999, 5e4].map(fraction), ["120\u{202f}%", "0.1\u{202f}%", "5.0×10⁴"]);
     }
 
     #[test]
     fn counts_and_times_read_easily() {
-        assert_eq!(count(1_234_567), "1\u{202f}234\u{202f}567");
-        assert_eq!(count(999), "999");
+        assert_eq!([1_234_567, 999].map(count), ["1\u{202f}234\u{202f}567", "999"]);
         assert_eq!([counted(1, "task"), counted(20, "task")], ["1 task", "20 tasks"]);
-        assert_eq!(seconds(0.000_4), "400\u{202f}µs");
-        assert_eq!(seconds(2.13), "2.13\u{202f}s");
-        assert_eq!(seconds(0.0), "0\u{202f}s");
+        assert_eq!([0.000_4, 2.13, 0.0].map(seconds), ["400\u{202f}µs", "2.13\u{202f}s", "0\u{202f}s"]);
     }
 }
