@@ -200,24 +200,21 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
         _ => return Vec::new(),
     };
     let (from, to) = (["x", "y"][across], ["x", "y"][along]);
-    [(Motion::Displacement, "displacement", "m"), (Motion::Velocity, "velocity", "m/s")]
-        .into_iter()
-        .map(|(motion, word, unit)| {
-            let curves = records.iter().map(|named| {
-                let until: Vec<Snapshot> =
-                    named.record.snapshots.iter().filter(|snapshot| snapshot.time <= end).cloned().collect();
-                let points = profile(&until, motion, across, along, SLICES);
-                Curve::new(named.name.clone(), Stroke::Line, points)
-            });
-            Figure::graph(
-                word,
-                &format!("Profile of {word} at the end"),
-                &format!("Mean {word} of the material along {to}, in slices along {from}."),
-                [Axis::linear(&format!("{from} (m)")), Axis::linear(&format!("{word} along {to} ({unit})"))],
-                curves.collect(),
-            )
-        })
-        .collect()
+    let graph = |(motion, word, unit): (Motion, &str, &str)| {
+        let curves = records.iter().map(|named| {
+            let until = named.record.snapshots.iter().filter(|snapshot| snapshot.time <= end);
+            let points = profile(&until.cloned().collect::<Vec<_>>(), motion, across, along, SLICES);
+            Curve::new(named.name.clone(), Stroke::Line, points)
+        });
+        Figure::graph(
+            word,
+            &format!("Profile of {word} at the end"),
+            &format!("Mean {word} of the material along {to}, in slices along {from}."),
+            [Axis::linear(&format!("{from} (m)")), Axis::linear(&format!("{word} along {to} ({unit})"))],
+            curves.collect(),
+        )
+    };
+    [(Motion::Displacement, "displacement", "m"), (Motion::Velocity, "velocity", "m/s")].map(graph).into()
 }
 
 /// Returns the file name, the title and the caption of a quantity's figure.

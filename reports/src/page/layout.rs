@@ -52,13 +52,8 @@ pub(crate) fn slug(name: &str) -> String {
 
 /// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.
 pub(crate) fn unique(stem: &str, taken: &mut BTreeSet<String>) -> String {
-    let mut name = stem.to_owned();
-    let mut next = 2;
-    while !taken.insert(name.clone()) {
-        name = format!("{stem}-{next}");
-        next += 1;
-    }
-    name
+    let mut names = std::iter::once(stem.to_owned()).chain((2..).map(|next| format!("{stem}-{next}")));
+    names.find(|name| taken.insert(name.clone())).unwrap_or_default()
 }
 
 /// Returns the symbol and the CSS class of an outcome. The symbols differ also without colour.

@@ -126,24 +126,23 @@ pub(crate) fn frames(field: &Field) -> io::Result<Frames> {
     let (wide, high) = (width as usize, height as usize);
     let seam = seam((width, height), field.panels.len());
     let full = wide * field.panels.len() + seam * (field.panels.len() - 1);
-    let levels = (0..field.times.len())
-        .map(|frame| {
-            let mut levels = vec![VOID; full * (high + 2 * seam)];
-            for (at, panel) in field.panels.iter().enumerate() {
-                let left = at * (wide + seam);
-                for (row, line) in panel.frames[frame].levels.chunks(wide).enumerate() {
-                    levels[row * full + left..row * full + left + wide].copy_from_slice(line);
-                }
+    // On black, the level of the rim would be too dark for the bar.
+    let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
+    let levels_of = |frame: usize| {
+        let mut levels = vec![VOID; full * (high + 2 * seam)];
+        for (at, panel) in field.panels.iter().enumerate() {
+            let left = at * (wide + seam);
+            for (row, line) in panel.frames[frame].levels.chunks(wide).enumerate() {
+                levels[row * full + left..row * full + left + wide].copy_from_slice(line);
             }
-            // On black, the level of the rim would be too dark for the bar.
-            let ink = if field.shades == Shades::Glow { HIGH } else { RIM };
-            let done = (position(&field.times, frame) * full as f64).round() as usize;
-            for row in high + seam..high + 2 * seam {
-                levels[row * full..row * full + done.min(full)].fill(ink);
-            }
-            levels
-        })
-        .collect();
+        }
+        let done = (position(&field.times, frame) * full as f64).round() as usize;
+        for row in high + seam..high + 2 * seam {
+            levels[row * full..row * full + done.min(full)].fill(ink);
+        }
+        levels
+    };
+    let levels = (0..field.times.len()).map(levels_of).collect();
     Ok(Frames { width: full as u32, height: height + 2 * seam as u32, levels })
 }
 

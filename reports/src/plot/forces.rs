@@ -103,13 +103,12 @@ fn bar_along(length: f64, width: f64, slipping: bool) -> Markup {
     // Stripes as narrow as a thin bar would look grey.
     let gap = width.clamp(4.0, 8.0);
     let count = if slipping { (length / gap).floor() as u32 } else { 0 };
-    let stripes: String = (0..count)
-        .map(|stripe| {
-            let x = (f64::from(stripe) + 0.5) * gap;
-            let lean = half.min(0.45 * gap);
-            format!("M{} {}L{} {}", px(x - lean), px(half), px(x + lean), px(-half))
-        })
-        .collect();
+    let lean = half.min(0.45 * gap);
+    let stripe = |stripe: u32| {
+        let x = (f64::from(stripe) + 0.5) * gap;
+        format!("M{} {}L{} {}", px(x - lean), px(half), px(x + lean), px(-half))
+    };
+    let stripes: String = (0..count).map(stripe).collect();
     html! {
         rect x="0" y=(px(-half)) width=(px(length)) height=(px(width)) fill=(colour) {}
         @if !stripes.is_empty() { path d=(stripes) stroke="#fff" stroke-width="1.4" fill="none" {} }

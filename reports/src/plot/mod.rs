@@ -102,18 +102,15 @@ impl View {
 /// Returns the approximate width of a text (drawing units) at a font size. Font metrics are unknown, so widths of the
 /// letters of DejaVu Sans are used, the widest of [`FONTS`].
 pub(crate) fn text_width(text: &str, size: f64) -> f64 {
-    let letters: f64 = text
-        .chars()
-        .map(|letter| match letter {
-            '⁰'..='⁹' | '¹' | '²' | '³' | '₀'..='₉' => 0.42,
-            'i' | 'j' | 'l' | 't' | 'f' | '.' | ',' | ' ' | '(' | ')' | ':' | THIN => 0.36,
-            '0'..='9' => 0.64,
-            '×' | '−' | '=' | '+' => 0.84,
-            'm' | 'w' | 'M' | 'W' => 0.9,
-            _ => 0.6,
-        })
-        .sum();
-    letters * size
+    let width = |letter: char| match letter {
+        '⁰'..='⁹' | '¹' | '²' | '³' | '₀'..='₉' => 0.42,
+        'i' | 'j' | 'l' | 't' | 'f' | '.' | ',' | ' ' | '(' | ')' | ':' | THIN => 0.36,
+        '0'..='9' => 0.64,
+        '×' | '−' | '=' | '+' => 0.84,
+        'm' | 'w' | 'M' | 'W' => 0.9,
+        _ => 0.6,
+    };
+    text.chars().map(width).sum::<f64>() * size
 }
 
 /// Returns a drawing as a complete SVG document. A title that is wider than the drawing has smaller letters.

@@ -37,14 +37,12 @@ impl Marker {
     /// circle has no corners.
     pub(crate) fn corners(self) -> Vec<(f64, f64)> {
         let polygon = |count: u32, radii: &[f64], first: f64| {
-            (0..count)
-                .zip(radii.iter().cycle())
-                .map(|(corner, radius)| {
-                    let turn = first + 360.0 * f64::from(corner) / f64::from(count);
-                    let (sine, cosine) = turn.to_radians().sin_cos();
-                    (radius * cosine, -radius * sine)
-                })
-                .collect()
+            let corner = |(corner, radius): (u32, &f64)| {
+                let turn = first + 360.0 * f64::from(corner) / f64::from(count);
+                let (sine, cosine) = turn.to_radians().sin_cos();
+                (radius * cosine, -radius * sine)
+            };
+            (0..count).zip(radii.iter().cycle()).map(corner).collect()
         };
         match self {
             Self::Circle => Vec::new(),

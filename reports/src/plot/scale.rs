@@ -129,9 +129,7 @@ impl Scale {
         let exponent = if !(1e-2..1e5).contains(&largest) { largest.log10().floor() as i32 } else { 0 };
         let unit = 10_f64.powi(exponent);
         let decimals = (-(step / unit).log10() - 1e-9).ceil().clamp(0.0, 15.0) as usize;
-        let mut ticks = Vec::new();
-        let mut number = first;
-        while number <= last && ticks.len() < 50 {
+        let tick = |number: f64| {
             let value = number * step;
             let mantissa = format!("{:.decimals$}", value / unit).replace('-', "−");
             let label = if number == 0.0 {
@@ -141,10 +139,10 @@ impl Scale {
             } else {
                 format!("{mantissa}×{}", power_of_ten(exponent))
             };
-            ticks.push(Tick { value, label: Some(label) });
-            number += 1.0;
-        }
-        ticks
+            Tick { value, label: Some(label) }
+        };
+        let numbers = std::iter::successors(Some(first), |number| Some(number + 1.0));
+        numbers.take_while(|number| *number <= last).take(50).map(tick).collect()
     }
 
     fn logarithmic_ticks(&self) -> Vec<Tick> {

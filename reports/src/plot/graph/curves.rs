@@ -86,14 +86,11 @@ fn marks(places: impl Iterator<Item = Place>, look: &CurveStyle, filled: bool, r
         (true, false) => look.colour,
         (false, _) => "#fff",
     };
-    let outline: String = places
-        .map(|(x, y)| {
-            let places: Vec<Place> =
-                corners.iter().map(|(across, down)| (x + radius * across, y + radius * down)).collect();
-            let text = places.iter().map(|(x, y)| format!("{} {}", px(*x), px(*y))).collect::<Vec<_>>();
-            format!("M{}z", text.join("L"))
-        })
-        .collect();
+    let polygon = |(x, y): Place| {
+        let corner = |(across, down): &Place| format!("{} {}", px(x + radius * across), px(y + radius * down));
+        format!("M{}z", corners.iter().map(corner).collect::<Vec<_>>().join("L"))
+    };
+    let outline: String = places.map(polygon).collect();
     html! {
         @if !outline.is_empty() {
             path d=(outline) fill=(inside) stroke=(look.colour) stroke-width="1.6" {}
@@ -142,18 +139,15 @@ pub(super) fn sample(stroke: Stroke, look: &CurveStyle, from: Place, to: Place) 
 /// Returns points on a polyline at equal distances along x.
 fn along(piece: &[Place], count: usize, shift: f64) -> Vec<Place> {
     let (Some(first), Some(last)) = (piece.first(), piece.last()) else { return Vec::new() };
-    (0..count)
-        .filter_map(|index| {
-            let at = first.0 + (last.0 - first.0) * (index as f64 + shift) / count as f64;
-            piece.windows(2).find_map(|pair| {
-                let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
-                if (ax - at) * (bx - at) > 0.0 || ax == bx {
-                    return None;
-                }
-                Some((at, ay + (at - ax) / (bx - ax) * (by - ay)))
-            })
+    let point = |index: usize| {
+        let at = first.0 + (last.0 - first.0) * (index as f64 + shift) / count as f64;
+        piece.windows(2).find_map(|pair| {
+            let ((ax, ay), (bx, by)) = (pair[0], pair[1]);
+            let is_outside = (ax - at) * (bx - at) > 0.0 || ax == bx;
+            (!is_outside).then(|| (at, ay + (at - ax) / (bx - ax) * (by - ay)))
         })
-        .collect()
+    };
+    (0..count).filter_map(point).collect()
 }
 
 /// Reduces a dense curve: keeps the first, lowest, highest and last point in each interval of two drawing units.

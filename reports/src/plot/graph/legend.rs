@@ -66,14 +66,12 @@ fn tops(graph: &Graph, legend: &[Vec<String>], panel: &Panel, labelled: &[usize]
     ends.sort_by(|a, b| a.1.total_cmp(&b.1));
     // Entries that would overlap move down, and entries below the lower edge then move up.
     let mut free = first;
-    let mut placed: Vec<(usize, f64)> = ends
-        .into_iter()
-        .map(|(at, wanted)| {
-            let top = wanted.max(free);
-            free = top + height(at) + 4.0;
-            (at, top)
-        })
-        .collect();
+    let place = |(at, wanted): (usize, f64)| {
+        let top = wanted.max(free);
+        free = top + height(at) + 4.0;
+        (at, top)
+    };
+    let mut placed: Vec<(usize, f64)> = ends.into_iter().map(place).collect();
     let mut lowest = frame.bottom + 14.0;
     for (at, top) in placed.iter_mut().rev() {
         *top = top.min(lowest - height(*at));
