@@ -9,13 +9,10 @@ use thiserror::Error;
 
 use crate::badge::badge;
 use crate::junit::junit_xml;
-use crate::page;
-use crate::plot;
 use crate::report::Report;
 use crate::results::{points_table, results_json};
-use crate::row;
-use crate::rows;
 use crate::table::{Cell, Column, Table};
+use crate::{page, plot, row, rows};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir, WriteError};
 

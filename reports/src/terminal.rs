@@ -160,7 +160,6 @@ mod tests {
     /// Results with the same reason share a line, and a result without judgement is no failure.
     #[test]
     fn amber_results_have_their_reasons() {
-        use grainbench_harness::verdict::Outcome;
         let mut report = sample::report();
         for row in report.sections.iter_mut().flat_map(|section| &mut section.verdicts) {
             (row.outcome, row.detail) = (Outcome::NotAvailable, Some("it is not installed".to_owned()));

@@ -16,8 +16,7 @@ use std::path::PathBuf;
 use grainbench_solver::record::{Record, Series, Snapshot};
 
 use crate::parts::{READABLE, SnapshotStore};
-use grainbench_store::StagedDir;
-use grainbench_store::WriteError;
+use grainbench_store::{StagedDir, WriteError};
 
 /// Format of snapshots.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]

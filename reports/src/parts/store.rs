@@ -15,8 +15,7 @@ use thiserror::Error;
 
 use super::part::{OpenPart, PartReader, Seal, files, rows_of};
 use super::rows::left_out;
-use grainbench_store::{WriteError, parent_of};
-use grainbench_store::{remove_leftovers, temporary_in};
+use grainbench_store::{WriteError, parent_of, remove_leftovers, temporary_in};
 
 /// Largest number of rows (grains, contacts and points) of a small run, whose snapshots are written as readable text.
 pub const READABLE: u64 = 200_000;

@@ -214,17 +214,14 @@ impl Quantity {
 
     /// Returns the differences between the reference values of all pairs of solvers.
     pub(crate) fn differences(&self) -> Vec<Difference<'_>> {
-        let mut found = Vec::new();
-        for (at, a) in self.estimates.iter().enumerate() {
-            for b in &self.estimates[at + 1..] {
-                found.push(Difference {
-                    solvers: [&a.solver, &b.solver],
-                    size: (a.value - b.value).abs() / self.scale,
-                    uncertainty: a.uncertainty.hypot(b.uncertainty) / self.scale,
-                });
-            }
-        }
-        found
+        let differences = self.estimates.iter().enumerate().flat_map(|(at, a)| {
+            self.estimates[at + 1..].iter().map(move |b| Difference {
+                solvers: [&a.solver, &b.solver],
+                size: (a.value - b.value).abs() / self.scale,
+                uncertainty: a.uncertainty.hypot(b.uncertainty) / self.scale,
+            })
+        });
+        differences.collect()
     }
 }
 
