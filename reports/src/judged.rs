@@ -124,11 +124,8 @@ mod tests {
     #[test]
     fn rows_stand_with_their_controls_and_are_read_back() {
         let report = sample::report();
-        let judged = ExternalResults::new(
-            ["other", "other 1.0", "hash"].map(str::to_owned),
-            &report.provenance,
-            &report.sections,
-        );
+        let names = ["other", "other 1.0", "hash"].map(str::to_owned);
+        let judged = ExternalResults::new(names, &report.provenance, &report.sections);
         let read = |text: &str| parse_json::<ExternalResults>(Path::new("judged.json"), text.as_bytes());
         let text = serde_json::to_string(&judged).unwrap();
         assert_eq!(read(&text).unwrap(), judged);

@@ -66,20 +66,15 @@ fn tried(control: &ControlResult) -> String {
     let error = control
         .error
         .map_or_else(|| "no error value".to_owned(), |error| format!("off {}", number::fraction(error.abs())));
-    let how = control.how.word();
+    let ControlResult { solver, quantity, wrong_physics, .. } = control;
+    let (how, allowed) = (control.how.word(), number::fraction(control.allowed));
     let end = match control.error {
         _ if control.turned_red => format!("failed by {how}, as required"),
         Some(error) if error.abs() <= control.allowed => format!("passed, but must fail by {how}"),
         _ => format!("failed, but not by {how} as required"),
     };
     let detail = control.detail.as_ref().map_or_else(String::new, |detail| format!("; {detail}"));
-    format!(
-        "{} · {}: with {}, {error}, allowed {}: {end}{detail}",
-        control.solver,
-        control.quantity,
-        control.wrong_physics,
-        number::fraction(control.allowed),
-    )
+    format!("{solver} · {quantity}: with {wrong_physics}, {error}, allowed {allowed}: {end}{detail}")
 }
 
 /// Returns the word that describes an expected value, by kind of evidence.

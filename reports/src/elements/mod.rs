@@ -59,12 +59,8 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
         );
         let [x, y, z] = summary.cell.map(|size| number::significant(size, 3));
         let title = format!("Granular elements, cells of {x} × {y} × {z} m");
-        write_page(
-            &mut out,
-            &summary.source,
-            &[summary.words()],
-            &[Figure::field("elements", &title, &caption, field)],
-        )?;
+        let figure = Figure::field("elements", &title, &caption, field);
+        write_page(&mut out, &summary.source, &[summary.words()], &[figure])?;
     }
     Ok(out.commit()?)
 }

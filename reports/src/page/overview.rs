@@ -124,13 +124,8 @@ fn headline(counts: Headline) -> String {
         1 => format!("1 is {word}"),
         _ => format!("{count} are {word}"),
     };
-    let results = format!(
-        "{} of {} results pass, {}, {}",
-        counts.pass(),
-        counts.rows(),
-        colour(counts.red(), "red"),
-        colour(counts.amber(), "amber")
-    );
+    let [red, amber] = [colour(counts.red(), "red"), colour(counts.amber(), "amber")];
+    let results = format!("{} of {} results pass, {red}, {amber}", counts.pass(), counts.rows());
     match counts.controls {
         0 => results,
         controls => format!("{results}; {} of {controls} negative controls fail as they must", counts.controls_red),

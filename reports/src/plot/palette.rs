@@ -1,8 +1,5 @@
 //! Colours, markers and dashes that are distinct without colour vision and in grey print.
 
-/// Colour of secondary text.
-pub(crate) const FAINT: &str = "#666";
-
 /// Colours of Okabe and Ito without yellow and black. Yellow is too pale on white, and dashed curves are black.
 pub(super) const COLOURS: [&str; 6] = ["#0072b2", "#d55e00", "#009e73", "#cc79a7", "#e69f00", "#56b4e9"];
 

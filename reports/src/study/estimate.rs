@@ -455,12 +455,10 @@ fn costs(cost: &SceneCost) -> Markup {
         let cells = solvers.iter().map(|solver| cell(quantity, solver));
         [breakable(&quantity.name).into()].into_iter().chain(cells).collect()
     };
-    let columns = [quantity_column()].into_iter().chain(solvers.iter().map(|solver| Column::text(*solver)));
+    let columns = [Column::heading("Quantity").class("name")]
+        .into_iter()
+        .chain(solvers.iter().map(|solver| Column::text(*solver)));
     Table::new("Which solver at 1 %", columns, cost.quantities.iter().map(row)).page("cases")
-}
-
-fn quantity_column() -> Column {
-    Column::heading("Quantity").class("name")
 }
 
 /// Renders a name that breaks only after a dot.
@@ -475,7 +473,7 @@ fn interval(point: &EstimatedPoint) -> String {
 
 fn references(cost: &SceneCost) -> Markup {
     let columns = [
-        quantity_column(),
+        Column::heading("Quantity").class("name"),
         Column::text("Solver"),
         Column::text("Reference").class("n"),
         Column::text("Uncertainty").class("n"),
@@ -544,13 +542,8 @@ pub(crate) fn softer_words(cost: &SceneCost) -> Vec<String> {
         let own = || points().filter(move |(_, point)| point.setting == setting);
         let certain = |point: &EstimatedPoint| point.error - point.uncertainty;
         let (quantity, worst) = own().max_by(|a, b| certain(a.1).total_cmp(&certain(b.1)))?;
-        Some(format!(
-            "{} {setting}: {}, largest change {} in {}",
-            worst.solver,
-            number::seconds(worst.wall_seconds),
-            interval(worst),
-            quantity.name
-        ))
+        let (solver, time, change) = (&worst.solver, number::seconds(worst.wall_seconds), interval(worst));
+        Some(format!("{solver} {setting}: {time}, largest change {change} in {}", quantity.name))
     };
     settings.into_iter().filter_map(sentence).collect()
 }

@@ -110,15 +110,12 @@ pub fn figures(limits: &[Limit]) -> Vec<Figure> {
     against_exact(limits).into_iter().chain(maps).collect()
 }
 
-/// Points of a curve: parameter and largest stable time step.
-type Points = Vec<(f64, f64)>;
-
 fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
     let knob = rows.first()?.knob.clone();
     let exact = rows.iter().any(|row| row.exact.is_some());
-    let points = |curve: &dyn Fn(&Limit) -> Option<f64>| -> Points {
-        let mut points: Points = rows.iter().filter_map(|row| Some((row.at?, curve(row)?))).collect();
+    let points = |curve: &dyn Fn(&Limit) -> Option<f64>| -> Vec<(f64, f64)> {
+        let mut points: Vec<_> = rows.iter().filter_map(|row| Some((row.at?, curve(row)?))).collect();
         points.sort_by(|a, b| a.0.total_cmp(&b.0));
         points
     };

@@ -57,12 +57,11 @@ pub(super) fn draw(sweep: &Sweep) -> Option<(String, String)> {
         }
         (legend(TOP + pitch * rows as f64 + 12.0, sweep.line.as_ref()))
     };
-    let labels = [x, y].map(|place| sweep.factors[place].label.as_str());
+    let [across, up] = [x, y].map(|place| sweep.factors[place].label.as_str());
     let caption = format!(
-        "A cell is a pair of {} and {}: green if every point is within the tolerance for all values of the other \
+        "A cell is a pair of {across} and {up}: green if every point is within the tolerance for all values of the other \
          factors, yellow with a dot if some points are, red with a cross if none is. The number over a panel is the \
          fraction of its conclusive points within the tolerance.",
-        labels[0], labels[1]
     );
     Some((caption, document(&title, [WIDTH, height], &body)))
 }

@@ -261,7 +261,7 @@ fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let mut before = solid(0, false);
     let look = |curve: &Curve| match curve.stroke {
         Stroke::Beside | Stroke::Failed => before,
-        Stroke::Bars => CurveStyle { colour: palette::FAINT, ..before },
+        Stroke::Bars => CurveStyle { colour: "#666", ..before },
         Stroke::Dashed => {
             let (colour, marker, dash) = palette::dashed(dashed.next().unwrap_or_default());
             CurveStyle { colour, marker, dash: Some(dash), open: false }
