@@ -22,15 +22,29 @@ const TERMS: LockTerms = LockTerms { wait: Duration::from_secs(10), abandoned_af
 pub struct StagedDir {
     target: PathBuf,
     /// Temporary directory with the new files in `new` and, during the commit, backups of replaced files in `old`.
-    holder: Option<TempDir>,
+    holder: TempDir,
     /// Files in the order in which they were written.
     files: Vec<PathBuf>,
     /// Names of `files` as a set, to find a file that was written twice.
     names: BTreeSet<PathBuf>,
-    /// Missing parents of the target that were created, outermost first. They are removed if nothing is committed.
-    made: Vec<PathBuf>,
+    /// Parents of the target that were created. This field follows `holder`, because the folders must be empty when they
+    /// are removed.
+    made: CreatedFolders,
     /// True to write a manifest with the files.
     manifest: bool,
+}
+
+/// Created folders, outermost first, which are removed if nothing is committed.
+#[derive(Debug, Default)]
+struct CreatedFolders(Vec<PathBuf>);
+
+impl Drop for CreatedFolders {
+    fn drop(&mut self) {
+        for path in self.0.iter().rev() {
+            // A folder that is not empty is in use by another process.
+            let _ = fs::remove_dir(path);
+        }
+    }
 }
 
 impl StagedDir {
@@ -41,36 +55,8 @@ impl StagedDir {
     /// it.
     pub fn new(target: impl Into<PathBuf>) -> Result<Self, WriteError> {
         let target = target.into();
-        let (files, names, made) = (Vec::new(), BTreeSet::new(), Vec::new());
-        let mut staged = Self { target, holder: None, files, names, made, manifest: true };
-        staged.prepare().map_err(|source| WriteError::new(&staged.target, source))?;
-        Ok(staged)
-    }
-
-    fn prepare(&mut self) -> io::Result<()> {
-        if self.target.exists() && !self.target.is_dir() {
-            return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file with this name exists"));
-        }
-        // If the directory exists, new files are collected inside it, because it may be `.` or have a read-only parent.
-        let parent = if self.target.is_dir() { self.target.as_path() } else { parent_of(&self.target) };
-        let mut missing: Vec<_> = parent
-            .ancestors()
-            .filter(|path| !path.as_os_str().is_empty() && !path.exists())
-            .map(Path::to_path_buf)
-            .collect();
-        missing.reverse();
-        for path in missing {
-            fs::create_dir(&path)?;
-            self.made.push(path);
-        }
-        // Temporary files of an ended process are next to the directory if the directory was new, otherwise inside it.
-        // A failed removal does not prevent writing.
-        let _ = remove_leftovers(parent_of(&self.target));
-        let _ = remove_leftovers(parent);
-        let holder = temporary_in(parent)?;
-        fs::create_dir(holder.path().join("new"))?;
-        self.holder = Some(holder);
-        Ok(())
+        let (holder, made) = prepare(&target).map_err(|source| WriteError::new(&target, source))?;
+        Ok(Self { target, holder, files: Vec::new(), names: BTreeSet::new(), made, manifest: true })
     }
 
     /// Turns the manifest off, for directories whose files are listed in another file.
@@ -105,11 +91,10 @@ impl StagedDir {
         let name = name.as_ref();
         let shown = self.target.join(name);
         let write = || -> io::Result<()> {
-            let inside = name.components().all(|part| matches!(part, Component::Normal(_)));
-            if !inside || name.as_os_str().is_empty() {
+            if !is_inside(name) || name.as_os_str().is_empty() {
                 return Err(io::Error::new(io::ErrorKind::InvalidInput, "the path leads out of the output directory"));
             }
-            let path = self.staging()?.join("new").join(name);
+            let path = self.holder.path().join("new").join(name);
             fs::create_dir_all(parent_of(&path))?;
             let mut out = io::BufWriter::new(fs::File::create(path)?);
             fill(&mut out)?;
@@ -131,7 +116,7 @@ impl StagedDir {
         let name = name.as_ref();
         self.write(name, "")?;
         let place = || -> io::Result<()> {
-            let path = self.staging()?.join("new").join(name);
+            let path = self.holder.path().join("new").join(name);
             fs::remove_file(&path)?;
             fs::hard_link(from, &path).or_else(|_| fs::copy(from, &path).map(drop))
         };
@@ -161,7 +146,7 @@ impl StagedDir {
     /// Moves all files to the directory. If `keep` is true, files of an earlier run are kept. `after` is called after
     /// each operation on the disk; tests end the process there.
     fn put_in_place(mut self, keep: bool, after: &mut dyn FnMut()) -> Result<(), WriteError> {
-        let holder = self.staging().map_err(|source| WriteError::new(&self.target, source))?.to_path_buf();
+        let holder = self.holder.path();
         let at_target = |source| WriteError::new(&self.target, source);
         let mut manifest = Manifest { whole: true, files: self.files.clone() };
         if !self.target.exists() {
@@ -173,7 +158,7 @@ impl StagedDir {
                 Err(_) if self.target.is_dir() => {}
                 done => {
                     after();
-                    self.made.clear();
+                    self.made.0.clear();
                     return done.map_err(at_target);
                 }
             }
@@ -181,10 +166,10 @@ impl StagedDir {
         self.refuse_others()?;
         let _lock = Lock::acquire(&self.target, TERMS).map_err(at_target)?;
         after();
-        let mut moves = Moves { target: &self.target, holder: &holder, done: Vec::new() };
+        let mut moves = Moves { target: &self.target, holder, done: Vec::new() };
         if !self.manifest {
             moves.undone_by_error(|moves| moves.replace_all(&self.files, after))?;
-            self.made.clear();
+            self.made.0.clear();
             return Ok(());
         }
         let stood = Manifest::read(&self.target).map(|before| before.files).unwrap_or_default();
@@ -208,18 +193,17 @@ impl StagedDir {
         })?;
         after();
         stale.iter().filter(|_| !keep).for_each(|name| remove_empty_folders(&self.target, name));
-        self.made.clear();
+        self.made.0.clear();
         Ok(())
     }
 
     /// Checks that no page or manifest of another program is replaced, and that no folder of the new files is a
     /// symbolic link.
     fn refuse_others(&self) -> Result<(), WriteError> {
-        if self.manifest {
-            refuse_foreign(&self.target, &[MANIFEST])?;
-        }
-        if self.names.contains(Path::new(PAGE)) {
-            refuse_foreign(&self.target, &[PAGE])?;
+        for (name, is_written) in [(MANIFEST, self.manifest), (PAGE, self.names.contains(Path::new(PAGE)))] {
+            if is_written {
+                refuse_foreign(&self.target, name)?;
+            }
         }
         let folders: BTreeSet<&Path> = self.names.iter().filter_map(|name| name.parent()).collect();
         for folder in folders {
@@ -230,10 +214,29 @@ impl StagedDir {
         }
         Ok(())
     }
+}
 
-    fn staging(&self) -> io::Result<&Path> {
-        self.holder.as_ref().map(TempDir::path).ok_or_else(|| io::Error::other("the output directory was not prepared"))
+/// Creates the missing parents of a target, and a temporary directory with the folder `new`.
+fn prepare(target: &Path) -> io::Result<(TempDir, CreatedFolders)> {
+    if target.exists() && !target.is_dir() {
+        return Err(io::Error::new(io::ErrorKind::NotADirectory, "a file with this name exists"));
     }
+    // If the directory exists, new files are collected inside it, because it may be `.` or have a read-only parent.
+    let parent = if target.is_dir() { target } else { parent_of(target) };
+    let missing = parent.ancestors().filter(|path| !path.as_os_str().is_empty() && !path.exists());
+    let missing: Vec<_> = missing.map(Path::to_path_buf).collect();
+    let mut made = CreatedFolders::default();
+    for path in missing.into_iter().rev() {
+        fs::create_dir(&path)?;
+        made.0.push(path);
+    }
+    // Temporary files of an ended process are next to the directory if the directory was new, otherwise inside it.
+    // A failed removal does not prevent writing.
+    let _ = remove_leftovers(parent_of(target));
+    let _ = remove_leftovers(parent);
+    let holder = temporary_in(parent)?;
+    fs::create_dir(holder.path().join("new"))?;
+    Ok((holder, made))
 }
 
 /// Moves of files into and out of a directory, which are undone after an error.
@@ -268,8 +271,23 @@ impl Moves<'_> {
     /// Moves a file to a name in the directory and keeps a backup of the file that it replaces.
     fn replace(&mut self, new: &Path, name: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         let (place, old) = (self.target.join(name), self.holder.join("old").join(name));
-        let kept = replace(new, &place, &old, after).map_err(|source| WriteError::new(&place, source))?;
-        self.done.push((place, kept));
+        let is_there = place.is_file();
+        let mut moved = || -> io::Result<()> {
+            fs::create_dir_all(parent_of(&place))?;
+            after();
+            if is_there {
+                fs::create_dir_all(parent_of(&old))?;
+                if fs::hard_link(&place, &old).is_err() {
+                    fs::copy(&place, &old)?;
+                }
+                after();
+            }
+            fs::rename(new, &place)?;
+            after();
+            Ok(())
+        };
+        moved().map_err(|source| WriteError::new(&place, source))?;
+        self.done.push((place, is_there.then_some(old)));
         Ok(())
     }
 
@@ -277,9 +295,7 @@ impl Moves<'_> {
     /// ignored.
     fn remove(&mut self, name: &Path, after: &mut dyn FnMut()) -> Result<(), WriteError> {
         let (place, old) = (self.target.join(name), self.holder.join("old").join(name));
-        let is_linked = name.parent().is_some_and(|folder| link_on_the_way(self.target, folder).is_some());
-        let is_inside = name.components().all(|part| matches!(part, Component::Normal(_)));
-        if is_linked || !is_inside || !fs::symlink_metadata(&place).is_ok_and(|found| !found.is_dir()) {
+        if !stays_inside(self.target, name) || !fs::symlink_metadata(&place).is_ok_and(|found| !found.is_dir()) {
             return Ok(());
         }
         let moved = fs::create_dir_all(parent_of(&old)).and_then(|()| fs::rename(&place, &old));
@@ -301,26 +317,30 @@ const TITLE: &str = "<title>grainbench";
 /// # Errors
 /// When the directory contains such a file of another program.
 pub fn refuse_other_programs(directory: &Path) -> Result<(), WriteError> {
-    refuse_foreign(directory, &[PAGE, MANIFEST])
+    [PAGE, MANIFEST].into_iter().try_for_each(|name| refuse_foreign(directory, name))
 }
 
-fn refuse_foreign(directory: &Path, names: &[&str]) -> Result<(), WriteError> {
-    for name in names {
-        let path = directory.join(name);
-        if fs::symlink_metadata(&path).is_err() {
-            continue;
-        }
-        let is_ours = if *name == MANIFEST {
-            Manifest::read(directory).is_some()
-        } else {
-            fs::read(&path).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains(TITLE))
-        };
-        if !is_ours {
-            let message = format!("expected no file, or a `{name}` that grainbench wrote; found another file");
-            return Err(WriteError::new(path, io::Error::new(io::ErrorKind::AlreadyExists, message)));
-        }
+fn refuse_foreign(directory: &Path, name: &str) -> Result<(), WriteError> {
+    let path = directory.join(name);
+    let is_ours = || match name {
+        MANIFEST => Manifest::read(directory).is_some(),
+        _ => fs::read(&path).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains(TITLE)),
+    };
+    if fs::symlink_metadata(&path).is_err() || is_ours() {
+        return Ok(());
     }
-    Ok(())
+    let message = format!("expected no file, or a `{name}` that grainbench wrote; found another file");
+    Err(WriteError::new(path, io::Error::new(io::ErrorKind::AlreadyExists, message)))
+}
+
+/// Returns true if a name has no parts such as `..` and is not absolute.
+fn is_inside(name: &Path) -> bool {
+    name.components().all(|part| matches!(part, Component::Normal(_)))
+}
+
+/// Returns true if a name leads to a file inside a directory, and not through a symbolic link.
+fn stays_inside(directory: &Path, name: &Path) -> bool {
+    is_inside(name) && name.parent().is_none_or(|folder| link_on_the_way(directory, folder).is_none())
 }
 
 /// Returns the first symbolic link on the path from a directory to a folder inside it.
@@ -333,39 +353,9 @@ fn link_on_the_way(directory: &Path, folder: &Path) -> Option<PathBuf> {
 
 /// Removes the folders that contained a file of an earlier run, if they are empty.
 fn remove_empty_folders(directory: &Path, name: &Path) {
-    let is_inside = name.components().all(|part| matches!(part, Component::Normal(_)));
-    let is_linked = name.parent().is_some_and(|folder| link_on_the_way(directory, folder).is_some());
-    if is_linked || !is_inside {
-        return;
-    }
-    for folder in name.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
-        let _ = fs::remove_dir(directory.join(folder));
-    }
-}
-
-/// Moves `new` to `place`. If `place` exists, makes a backup at `old` and returns its path.
-fn replace(new: &Path, place: &Path, old: &Path, after: &mut dyn FnMut()) -> io::Result<Option<PathBuf>> {
-    fs::create_dir_all(parent_of(place))?;
-    after();
-    let kept = place.is_file();
-    if kept {
-        fs::create_dir_all(parent_of(old))?;
-        if fs::hard_link(place, old).is_err() {
-            fs::copy(place, old)?;
-        }
-        after();
-    }
-    fs::rename(new, place)?;
-    after();
-    Ok(kept.then(|| old.to_path_buf()))
-}
-
-impl Drop for StagedDir {
-    fn drop(&mut self) {
-        self.holder = None;
-        for path in self.made.iter().rev() {
-            // A folder that is not empty is in use by another process.
-            let _ = fs::remove_dir(path);
+    if stays_inside(directory, name) {
+        for folder in name.ancestors().skip(1).filter(|folder| !folder.as_os_str().is_empty()) {
+            let _ = fs::remove_dir(directory.join(folder));
         }
     }
 }
@@ -469,7 +459,7 @@ mod tests {
         staged(&target, "old").commit().unwrap();
         let before = Manifest::read(&target);
         let new = staged(&target, "new");
-        let prepared = new.staging().unwrap().join("whole");
+        let prepared = new.holder.path().join("whole");
         let error = new.put_in_place(false, &mut || drop(fs::remove_dir_all(&prepared)));
         assert!(error.is_err());
         assert_eq!((found_in(&target), Manifest::read(&target)), (run_of("old"), before));
