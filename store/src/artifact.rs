@@ -83,14 +83,9 @@ pub fn read_json<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
 /// When the content is another value. The error names the position in the file.
 pub fn parse_json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, ReadError> {
     let mut json = serde_json::Deserializer::from_slice(bytes);
-    let value = serde_path_to_error::deserialize(&mut json).map_err(|error| {
-        let place = error.path().to_string();
-        (place, error.into_inner())
-    });
-    let value = value.and_then(|value| match json.end() {
-        Ok(()) => Ok(value),
-        Err(error) => Err((".".to_owned(), error)),
-    });
+    let value =
+        serde_path_to_error::deserialize(&mut json).map_err(|error| (error.path().to_string(), error.into_inner()));
+    let value = value.and_then(|value| json.end().map(|()| value).map_err(|error| (".".to_owned(), error)));
     value.map_err(|(place, error)| {
         // The message of the parser ends with line and column, which the error states separately.
         let words = error.to_string();
@@ -217,7 +212,6 @@ impl Directory {
     }
 
     /// Returns the path of the file of a key.
-    #[must_use]
     fn path<K: Artifact>(&self, key: &str) -> PathBuf {
         self.folder.as_deref().unwrap_or(Path::new("")).join(format!("{key}.{}", K::ENDING))
     }
