@@ -19,7 +19,7 @@ use crate::run_files::{Snapshots, in_order, shown};
 /// If the file is damaged, contains no grains, or has another number of grains than the scene.
 pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&'static str>, OutputError> {
     let name = shown(file);
-    let none = || OutputError::NoGrains(name.clone());
+    let none = || OutputError::no_grains(&name);
     let files = in_order(&[file.to_owned()])?;
     let mut reader = Snapshots::open(files.first().ok_or_else(none)?, u64::MAX, false)?;
     let mut snapshot = DumpSnapshot::default();

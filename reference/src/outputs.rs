@@ -59,63 +59,33 @@ pub enum OutputError {
     /// A file is truncated, for example because a job was killed.
     #[error("{0} (--partial judges the complete frames before it)")]
     Cut(ReadError),
-    /// Files are numbered by frames, and no file contains their times.
-    #[error("{}: expected a column `Time` (s) or --frame-interval, found only frame numbers", one_line(.0))]
-    NoFrameTime(String),
-    /// The given time step differs from that of the files.
-    #[error("--time-step: expected the time step of the files, {}, found {given} s", steps_in_words(*.told))]
-    OtherTimeStep {
-        /// Shortest and longest time step of the files (s).
-        told: [f64; 2],
-        /// Given time step (s).
-        given: f64,
-    },
-    /// No file contains the time step.
-    #[error(
-        "{}: expected times in the file (`ITEM: TIME`), a log with the time step, or --time-step, found none",
-        one_line(.0)
-    )]
-    NoTime(String),
+    /// The files or options are not consistent, or they lack grains, times or a time step.
+    #[error(transparent)]
+    Run(ReadError),
     /// The units are not supported: name of the file and units.
     #[error(
         "{}: expected the units `si`, or no units if the scene is dimensionless; found {}",
         one_line(.0), quoted(.1)
     )]
     Units(String, String),
-    /// A dump and its log have different units.
-    #[error("{}: expected the units {} of the dump, found {}", one_line(.log), quoted(.of_dump), quoted(.of_log))]
-    MixedUnits {
-        /// Name of the log.
-        log: String,
-        /// Units of the dump.
-        of_dump: String,
-        /// Units of the log.
-        of_log: String,
-    },
-    /// A log belongs to another run.
-    #[error(
-        "{}: expected {} s from step {first} to step {last}, as in the files, found {of_log} s; the log belongs to \
-         another run",
-        one_line(.log), .of_files
-    )]
-    OtherLog {
-        /// Name of the log.
-        log: String,
-        /// First step of the files.
-        first: u64,
-        /// Last step of the files.
-        last: u64,
-        /// Time between these steps in the files (s).
-        of_files: f64,
-        /// Time between these steps in the log (s).
-        of_log: f64,
-    },
     /// The files are neither a single table nor only dumps.
     #[error("{}: expected a single table, or only dumps", one_line(.0))]
     MixedFiles(String),
-    /// The files contain no grains.
-    #[error("{}: expected a dump with grains, found a dump without grains", one_line(.0))]
-    NoGrains(String),
+}
+
+impl OutputError {
+    /// Returns the error of a file that cannot belong to the run, or of an option. `name` is the name of the file or option.
+    fn run(name: &str, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self::Run(ReadError::whole(name, expected, found))
+    }
+
+    pub(crate) fn no_grains(name: &str) -> Self {
+        Self::run(name, "a dump with grains", "a dump without grains")
+    }
+
+    fn no_time(name: &str) -> Self {
+        Self::run(name, "times in the file (`ITEM: TIME`), a log with the time step, or --time-step", "none")
+    }
 }
 
 impl From<ReadError> for OutputError {
@@ -223,8 +193,8 @@ impl Outputs {
         if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {
-            let (of_dump, of_log) = (of_dump.clone(), of_log.clone());
-            return Err(OutputError::MixedUnits { log: shown(path), of_dump, of_log });
+            let expected = format!("the units {} of the dump", quoted(of_dump));
+            return Err(OutputError::run(&shown(path), expected, quoted(of_log)));
         }
         outputs.ends = survey.ends.unwrap_or_default();
         outputs.set_clock(of_log, Clock::of_samples(&survey.timed))?;
@@ -283,7 +253,8 @@ impl Outputs {
             if let (Some(clock), Some(given)) = (clock, given)
                 && !clock.is_constant(given, first, last, tolerance)
             {
-                return Err(OutputError::OtherTimeStep { told: clock.range(first, last), given });
+                let expected = format!("the time step of the files, {}", steps_in_words(clock.range(first, last)));
+                return Err(OutputError::run("--time-step", expected, format!("{given} s")));
             }
         }
         let of_both = of_log.as_ref().zip(of_files.as_ref());
@@ -292,7 +263,8 @@ impl Outputs {
             && (of_log - of_files).abs() > 1e-3 * of_files
         {
             let log = self.sources.log.as_deref().map(shown).unwrap_or_default();
-            return Err(OutputError::OtherLog { log, first, last, of_files, of_log });
+            let expected = format!("{of_files} s from step {first} to step {last}, as in the files");
+            return Err(OutputError::run(&log, expected, format!("{of_log} s; the log belongs to another run")));
         }
         self.clock = given.map(Clock::constant).or(of_log).or(of_files);
         Ok(())
@@ -397,9 +369,9 @@ impl Outputs {
                 before = snapshot;
             }
         }
-        let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
         if last.is_none() {
-            return Err(OutputError::NoGrains(named));
+            let named = self.sources.files.first().map(|file| shown(file)).unwrap_or_default();
+            return Err(OutputError::no_grains(&named));
         }
         let mut observed = observer.finish();
         self.add_logged(scene, &decks, &mut observed);
@@ -442,9 +414,11 @@ impl Outputs {
     fn time(&self, name: &str, snapshot: &DumpSnapshot) -> Result<f64, OutputError> {
         match (self.told_time(snapshot), &self.clock) {
             (Some(time), _) => Ok(time - self.origin.time.unwrap_or_default()),
-            (None, _) if snapshot.numbering == Numbering::Frames => Err(OutputError::NoFrameTime(name.to_owned())),
+            (None, _) if snapshot.numbering == Numbering::Frames => {
+                Err(OutputError::run(name, "a column `Time` (s) or --frame-interval", "only frame numbers"))
+            }
             (None, Some(clock)) => Ok(clock.between(self.origin.step, snapshot.step)),
-            (None, None) => Err(OutputError::NoTime(name.to_owned())),
+            (None, None) => Err(OutputError::no_time(name)),
         }
     }
 
@@ -495,7 +469,7 @@ impl Outputs {
             (None, Some(step), Some(clock)) => {
                 table.values(step).map(|step| clock.between(first, step as u64)).collect()
             }
-            (None, _, _) => return Err(OutputError::NoTime(name)),
+            (None, _, _) => return Err(OutputError::no_time(&name)),
         };
         let steps = match (step, self.time_step()) {
             (Some(step), _) => table.values(step).map(|step| (step as u64).saturating_sub(first)).collect::<Vec<_>>(),

@@ -40,6 +40,11 @@ impl ReadError {
         }
     }
 
+    /// Returns an error about a file as a whole, or about an option.
+    pub(crate) fn whole(file: &str, expected: impl Into<String>, found: impl Into<String>) -> Self {
+        Self { line: None, ..Self::at(file, 0, expected, found) }
+    }
+
     /// Marks the error as a truncation of the input, for example because a job was killed.
     pub(crate) fn cut(self) -> Self {
         Self { is_cut: true, ..self }
