@@ -1,7 +1,7 @@
 //! Manifest `SOLVER.toml`, which describes the commands, the features and the output of a program.
 
 use crate::names::Names;
-use crate::read::read_error::{one_line, quoted};
+use crate::read::read_error::{ReadError, one_line, quoted};
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::material::ConstitutiveKind;
@@ -10,7 +10,6 @@ use grainbench_scene::toml_error::TomlError;
 use serde::Deserialize;
 use std::collections::BTreeMap;
 use std::path::{Component, Path};
-use thiserror::Error;
 
 /// Characters that names of programs may contain in addition to letters and digits.
 const IN_NAMES: &str = "-_.+ ";
@@ -195,20 +194,6 @@ impl Default for Limits {
     }
 }
 
-/// Error in a manifest, with file, position, expected and actual content.
-#[derive(Clone, Debug, PartialEq, Eq, Error)]
-#[error("{file}: {place}expected {expected}, found {found}")]
-pub struct ManifestError {
-    /// Path of the manifest.
-    pub file: String,
-    /// Key or line of the error followed by a colon; empty for the whole file.
-    pub place: String,
-    /// Expected content.
-    pub expected: String,
-    /// Actual content.
-    pub found: String,
-}
-
 impl Manifest {
     /// Returns the command to start: `run` or, if the manifest has one, `worker`.
     #[must_use]
@@ -220,15 +205,11 @@ impl Manifest {
     ///
     /// # Errors
     /// If the manifest is not valid. The error contains the position, the expected and the actual content.
-    pub fn read(path: &Path) -> Result<Self, ManifestError> {
-        let file = one_line(&path.to_string_lossy());
-        let error = |place: &str, expected: &str, found: String| ManifestError {
-            file: file.clone(),
-            place: if place.is_empty() { String::new() } else { format!("{place}: ") },
-            expected: expected.to_owned(),
-            found,
-        };
-        let text = written(path).map_err(|(expected, found)| error("", expected, found))?;
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
+        let file = path.to_string_lossy();
+        let error =
+            |place: &str, expected: &str, found: String| ReadError::whole(&format!("{file}: {place}"), expected, found);
+        let text = written(path).map_err(|(expected, found)| ReadError::whole(&file, expected, found))?;
         let wrong = |reason: toml::de::Error| {
             let TomlError { line, expected, found, .. } = TomlError::new(&text, &reason);
             error(&format!("line {line}"), &expected, one_line(&found))

@@ -15,9 +15,7 @@ mod manifest;
 mod resolved;
 
 pub use can::{inexpressible, named_features};
-pub use manifest::{
-    Capabilities, GrainFormat, Grains, Limits, Manifest, ManifestError, Output, ParameterValues, SceneFormat, Wall,
-};
+pub use manifest::{Capabilities, GrainFormat, Grains, Limits, Manifest, Output, ParameterValues, SceneFormat, Wall};
 pub use resolved::{DiscretizedScene, Resolved, schema};
 
 pub use crate::execution::CANNOT;
@@ -26,8 +24,8 @@ use crate::deck::Stepping;
 use crate::execution::process::{self, Deadline, ERRORS, ProcessStart, SCREEN, on_path};
 use crate::execution::{self, Launch, Protocol, Worker, most_bytes, output, plain_file};
 use crate::observer::DumpRecord;
-use crate::outputs::{OutputError, Outputs, Sources};
-use crate::read::read_error::one_line;
+use crate::outputs::{Outputs, Sources};
+use crate::read::read_error::{ReadError, one_line};
 use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::scene::Scene;
@@ -80,7 +78,7 @@ impl ExternalProgram {
     ///
     /// # Errors
     /// If the manifest is not valid.
-    pub fn read(path: &Path) -> Result<Self, ManifestError> {
+    pub fn read(path: &Path) -> Result<Self, ReadError> {
         let manifest = Manifest::read(path)?;
         let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
         let folder = fs::canonicalize(folder).unwrap_or_else(|_| folder.to_owned());
@@ -355,12 +353,11 @@ fn observe_grains(
     folder: &Path,
     (grains, contacts): (&Grains, Option<&str>),
 ) -> Result<DumpRecord, Failure> {
-    let output_failure = |error: OutputError| Failure::Output(without(folder, &error.to_string()));
     let names = grains.names();
     let observed = match grains.format {
         GrainFormat::Csv => {
             let path = plain_file(folder, &grains.path)?;
-            grain_table::observe(scene, &path, &grains.path, &names, stepping).map_err(output)
+            grain_table::observe(scene, &path, &grains.path, &names, stepping).map_err(|error| error.to_string())
         }
         GrainFormat::Lammps | GrainFormat::Npz | GrainFormat::Vtk => {
             let mut files = if grains.format == GrainFormat::Vtk {
@@ -375,13 +372,11 @@ fn observe_grains(
             let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
             let snapshot_steps = recorder.snapshot_steps().to_vec();
             let sources = Sources { files, names, time_step, most_rows, snapshot_steps, ..Sources::default() };
-            Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(output_failure)
+            Outputs::survey(sources).and_then(|outputs| outputs.observe(scene)).map_err(|error| error.to_string())
         }
     };
-    observed.map_err(|failure| match failure {
-        Failure::Output(reason) => Failure::Output(without(folder, &reason)),
-        other => other,
-    })
+    // The path of the folder is removed from the reason, because the folder is temporary.
+    observed.map_err(|reason| Failure::Output(reason.replace(&format!("{}/", folder.display()), "")))
 }
 
 /// Returns the files in the folder that match a pattern with `*`, or the single file of a path without `*`.
@@ -396,11 +391,6 @@ fn of_pattern(folder: &Path, pattern: &str) -> Result<Vec<PathBuf>, Failure> {
         files if files.is_empty() => Err(Failure::Output(format!("{pattern}: expected a file, found none"))),
         files => Ok(files),
     }
-}
-
-/// Removes the path of the scratch folder from a text, because the folder is temporary.
-fn without(folder: &Path, text: &str) -> String {
-    text.replace(&format!("{}/", folder.display()), "")
 }
 
 impl Solver for ExternalProgram {

@@ -309,9 +309,7 @@ impl Resolved {
             columns: Recorder::new(scene, 1.0, 1).finish().0.columns.into_iter().map(|column| column.name).collect(),
         }
     }
-}
 
-impl Resolved {
     /// Writes the resolved scene as JSON or TOML.
     ///
     /// # Errors
