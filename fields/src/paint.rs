@@ -51,18 +51,14 @@ impl Painting {
         };
         // A pixel in the overlap of two discs shows the disc in which it lies deeper.
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
-        let shifts = image_shifts(snapshot, 2);
+        let (shifts, view) = (image_shifts(snapshot, 2), self.view);
         for (place, grain) in snapshot.grains.iter().enumerate() {
             for shift in &shifts {
                 let centre = [grain.position.x + shift.x, grain.position.y + shift.y];
-                let (columns, rows) = self.view.pixels_around(centre, grain.radius);
-                for (column, row) in rows.flat_map(|row| columns.clone().map(move |column| (column, row))) {
-                    let seen = self.view.centre(column, row);
-                    let arm = Vector2::new(seen[0] - centre[0], seen[1] - centre[1]);
-                    let at = (row * self.view.width + column) as usize;
+                view.visit_around(centre, grain.radius, |at, arm| {
                     let inside = grain.radius - arm.norm();
                     if inside < 0.0 || inside <= depth[at] {
-                        continue;
+                        return;
                     }
                     depth[at] = inside;
                     self.owners[at] = grain.id;
@@ -77,7 +73,7 @@ impl Painting {
                             (grain.velocity.xy() + turning).norm()
                         }
                     };
-                }
+                });
             }
         }
     }

@@ -71,20 +71,15 @@ fn lay(snapshot: &Snapshot, view: View, mut show: impl FnMut(usize, f64, u32)) {
     let shifts = image_shifts(snapshot, 2);
     for (number, point) in snapshot.points.iter().enumerate() {
         let (place, width) = (inside(snapshot, point.position), point.volume.sqrt());
-        let reach = BLUR * width;
         for shift in &shifts {
             let centre = [place.x + shift.x, place.y + shift.y];
-            let (columns, rows) = view.pixels_around(centre, reach);
-            for row in rows {
-                for column in columns.clone() {
-                    let seen = view.centre(column, row);
-                    let [across, up] = [0, 1].map(|axis| (seen[axis] - centre[axis]) / width);
-                    let distance = across * across + up * up;
-                    if distance < BLUR * BLUR {
-                        show((row * view.width + column) as usize, distance, number as u32);
-                    }
+            view.visit_around(centre, BLUR * width, |at, arm| {
+                let (across, up) = (arm.x / width, arm.y / width);
+                let distance = across * across + up * up;
+                if distance < BLUR * BLUR {
+                    show(at, distance, number as u32);
                 }
-            }
+            });
         }
     }
 }

@@ -1,8 +1,7 @@
 //! Visible part of a two-dimensional snapshot.
 
 use grainbench_solver::record::{GrainState, Snapshot};
-use nalgebra::Vector3;
-use std::ops::Range;
+use nalgebra::{Vector2, Vector3};
 
 /// Visible part of the plane, in square pixels.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -68,22 +67,22 @@ impl View {
         [self.low[0] + f64::from(self.width) * self.pixel, self.low[1] + f64::from(self.height) * self.pixel]
     }
 
-    /// Returns the visible columns and rows of the square around a position (m) with half width `reach` (m).
-    pub(crate) fn pixels_around(&self, place: [f64; 2], reach: f64) -> (Range<u32>, Range<u32>) {
+    /// Visits the visible pixels of the square around a position (m) with half width `reach` (m), with the rows from the
+    /// top. The arguments of `visit` are the index of the pixel and the vector from the position to its centre (m).
+    pub(crate) fn visit_around(&self, place: [f64; 2], reach: f64, mut visit: impl FnMut(usize, Vector2<f64>)) {
         let range = |axis: usize, count: u32| {
             let at = |place: f64| ((place - self.low[axis]) / self.pixel).floor().clamp(0.0, f64::from(count)) as u32;
             at(place[axis] - reach)..(at(place[axis] + reach) + 1).min(count)
         };
-        let (columns, up) = (range(0, self.width), range(1, self.height));
-        (columns, self.height - up.end..self.height - up.start)
-    }
-
-    /// Returns the centre of a pixel (m), with rows from the top.
-    pub(crate) fn centre(&self, column: u32, row: u32) -> [f64; 2] {
-        [
-            self.low[0] + (f64::from(column) + 0.5) * self.pixel,
-            self.low[1] + (f64::from(self.height - 1 - row) + 0.5) * self.pixel,
-        ]
+        let centre = |axis: usize, number: u32| self.low[axis] + (f64::from(number) + 0.5) * self.pixel;
+        let columns = range(0, self.width);
+        for up in range(1, self.height).rev() {
+            for column in columns.clone() {
+                let row = self.height - 1 - up;
+                let arm = Vector2::new(centre(0, column) - place[0], centre(1, up) - place[1]);
+                visit((row * self.width + column) as usize, arm);
+            }
+        }
     }
 }
 
