@@ -13,7 +13,7 @@
 //! virial then belongs to the cell that contains the grain's centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
-use grainbench_solver::record::{GrainState, Partner, Snapshot};
+use grainbench_solver::record::{Partner, Snapshot};
 use nalgebra::Matrix3;
 
 /// Kind of stress of grains.
@@ -44,22 +44,6 @@ pub fn tells_interval(snapshot: &Snapshot) -> bool {
     snapshot.points.is_empty() && snapshot.grains.iter().any(|grain| grain.mean_virial.is_some())
 }
 
-/// Returns the sum of the virials of the grains in each cell (J), or `None` if a grain has no virial.
-fn of_grains(
-    snapshot: &Snapshot,
-    grid: &Grid,
-    virial_of: impl Fn(&GrainState) -> Option<[f64; 6]>,
-) -> Option<Vec<Matrix3<f64>>> {
-    let mut stress = vec![Matrix3::zeros(); grid.cells()];
-    for grain in &snapshot.grains {
-        let virial = virial_of(grain)?;
-        if let Some(cell) = grid.find(grain.position) {
-            stress[cell] += symmetric(virial);
-        }
-    }
-    Some(stress)
-}
-
 const fn symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
     Matrix3::new(xx, xy, zx, xy, yy, yz, zx, yz, zz)
 }
@@ -71,10 +55,14 @@ const fn symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {
 pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which: Stress) -> Option<Vec<Matrix3<f64>>> {
     let mut stress = vec![Matrix3::zeros(); grid.cells()];
     let grains_alone = snapshot.points.is_empty();
-    if grains_alone && which == Stress::Interval {
-        stress = of_grains(snapshot, grid, |grain| grain.mean_virial.as_deref().copied())?;
-    } else if grains_alone && snapshot.contacts.is_none() {
-        stress = of_grains(snapshot, grid, |grain| grain.virial.as_deref().copied())?;
+    if grains_alone && (which == Stress::Interval || snapshot.contacts.is_none()) {
+        for grain in &snapshot.grains {
+            let virial = if which == Stress::Interval { &grain.mean_virial } else { &grain.virial };
+            let virial = symmetric(*virial.as_deref()?);
+            if let Some(cell) = grid.find(grain.position) {
+                stress[cell] += virial;
+            }
+        }
     } else if grains_alone {
         let contacts = snapshot.contacts.as_ref()?;
         let homes: Vec<Option<usize>> = snapshot.grains.iter().map(|grain| grid.find(grain.position)).collect();
