@@ -11,7 +11,6 @@ use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use std::collections::BTreeMap;
 use std::io::Read;
-use std::ops::Range;
 use std::path::Path;
 use zip::ZipArchive;
 
@@ -60,18 +59,8 @@ struct Course {
     columns: Vec<NumberColumn>,
     /// Numbers of each column, and true if the column has different numbers for each moment.
     numbers: Vec<(Vec<f64>, bool)>,
-    /// Contacts of all moments, if the file contains them.
-    contacts: Option<Contacts>,
-}
-
-/// Contacts of grains at several moments.
-#[derive(Debug)]
-struct Contacts {
-    columns: Vec<NumberColumn>,
-    /// Range of the rows of each moment.
-    ranges: Vec<Range<usize>>,
-    /// Numbers of each column.
-    numbers: Vec<Vec<f64>>,
+    /// Contacts of all moments, and first row and number of rows of each moment, if the file contains them.
+    contacts: Option<(Table, Vec<[usize; 2]>)>,
 }
 
 /// Known arrays of grains: name, columns, and true if the array is required.
@@ -185,9 +174,9 @@ impl Course {
             None => (None, place),
         };
         let (grains, step) = (self.grains, *self.steps.get(moment)?);
-        let (kind, table) = if let Some(Contacts { columns, ranges, numbers }) = contacts {
-            let row = |row: usize| numbers.iter().map(move |column| column[row]);
-            (DumpKind::Entries, Table::new(columns.clone(), ranges[moment].clone().flat_map(row).collect()))
+        let (kind, table) = if let Some((contacts, rows)) = contacts {
+            let [first, count] = rows[moment];
+            (DumpKind::Entries, contacts.part(first, count))
         } else {
             let number =
                 |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
@@ -199,12 +188,15 @@ impl Course {
     }
 }
 
-/// Returns the contacts in the arrays, if there are any. `steps` are the steps of the moments. An error consists of the
-/// expected and the actual content.
-fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Contacts>, (String, String)> {
+/// Returns the contacts in the arrays with first row and number of rows of each moment, if there are any. `steps` are the
+/// steps of the moments. An error consists of the expected and the actual content.
+fn contacts(
+    arrays: &BTreeMap<String, Array>,
+    steps: &[u64],
+) -> Result<Option<(Table, Vec<[usize; 2]>)>, (String, String)> {
     let Some(step) = arrays.get(CONTACT_STEP) else { return Ok(None) };
     let rows = step.numbers.len();
-    let mut contacts = Contacts { columns: Vec::new(), ranges: Vec::new(), numbers: Vec::new() };
+    let (mut names, mut parts) = (Vec::new(), Vec::new());
     for (key, columns) in CONTACT {
         let expected = || format!("the shape ({rows}, {}) of the array `{key}`", columns.len());
         let array = arrays.get(key).ok_or_else(|| (expected(), "no such array".to_owned()))?;
@@ -214,24 +206,22 @@ fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Co
         if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
             return Err((format!("finite numbers in the array `{key}`"), wrong.to_string()));
         }
-        for (component, column) in columns.iter().enumerate() {
-            contacts.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
-            contacts.numbers.push(array.numbers.iter().skip(component).step_by(columns.len()).copied().collect());
-        }
+        names.extend(columns.iter().map(|name| NumberColumn { digits: array.digits, ..NumberColumn::new(name) }));
+        parts.push((columns.len(), &array.numbers));
     }
-    let mut row = 0;
+    let numbers = |row: usize| parts.iter().flat_map(move |&(width, numbers)| &numbers[row * width..(row + 1) * width]);
+    let contacts = Table::new(names, (0..rows).flat_map(numbers).copied().collect());
+    let (mut ranges, mut row) = (Vec::new(), 0);
     for &moment in steps {
-        let start = row;
-        while row < rows && step.numbers[row] == moment as f64 {
-            row += 1;
-        }
-        contacts.ranges.push(start..row);
+        let count = step.numbers[row..].iter().take_while(|step| **step == moment as f64).count();
+        ranges.push([row, count]);
+        row += count;
     }
     if row < rows {
         let expected = format!("steps of the grains in ascending order in the array `{CONTACT_STEP}`");
         return Err((expected, format!("{} in row {}", step.numbers[row], row + 1)));
     }
-    Ok(Some(contacts))
+    Ok(Some((contacts, ranges)))
 }
 
 /// Returns all arrays of a file by name.
