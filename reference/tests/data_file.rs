@@ -8,6 +8,7 @@ use std::path::Path;
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use grainbench_reference::stored::compressed;
 use grainbench_reference::{DataFile, parse_data, read_data_file};
 
 const SOUND: &str = include_str!("../../tests/scenes/two-grains.data");
@@ -22,12 +23,6 @@ fn fault(bytes: impl AsRef<[u8]>) -> String {
     assert!(!shown.contains('\n'), "{shown}");
     assert!(error.line().is_some());
     shown
-}
-
-fn gzip(bytes: &[u8]) -> Vec<u8> {
-    let mut encoder = GzEncoder::new(Vec::new(), Compression::best());
-    encoder.write_all(bytes).unwrap();
-    encoder.finish().unwrap()
 }
 
 #[test]
@@ -67,15 +62,15 @@ fn line_ends_of_other_systems_and_a_missing_last_one_do_not_matter() {
 
 #[test]
 fn gzip_is_recognised_by_its_bytes() {
-    let packed = gzip(SOUND.as_bytes());
+    let packed = compressed(SOUND);
     assert_eq!(parse_data(&packed[..], "data").unwrap(), read(SOUND));
     let (head, tail) = SOUND.split_at(SOUND.len() / 2);
-    let both = [gzip(head.as_bytes()), gzip(tail.as_bytes())].concat();
+    let both = [compressed(head), compressed(tail)].concat();
     assert_eq!(parse_data(&both[..], "data").unwrap(), read(SOUND));
     // Data may arrive one byte at a time, for example from a pipe.
     assert_eq!(parse_data(BufReader::with_capacity(1, &packed[..]), "data").unwrap(), read(SOUND));
 
-    assert_eq!(fault(gzip(b"")), "data:1: expected a data file that begins with a title, found an empty file");
+    assert_eq!(fault(compressed("")), "data:1: expected a data file that begins with a title, found an empty file");
     let cut = fault(&packed[..packed.len() / 2]);
     assert!(cut.starts_with("data:") && cut.contains("expected readable data"), "{cut}");
     let mut flipped = packed;

@@ -4,14 +4,12 @@
 
 use std::collections::BTreeSet;
 use std::fs;
-use std::io::{Read as _, Write as _};
+use std::io::Read as _;
 use std::path::Path;
 
-use flate2::Compression;
 use flate2::read::GzDecoder;
-use flate2::write::GzEncoder;
 use grainbench_reference::deck::Program;
-use grainbench_reference::stored::{StoredRun, drift, folder};
+use grainbench_reference::stored::{StoredRun, compressed, drift, folder};
 use grainbench_solver::record::{Column, Series};
 use grainbench_store::key::of_file;
 use tempfile::TempDir;
@@ -42,13 +40,7 @@ fn edit(folder: &Path, name: &str, from: &str, to: &str, vouch: bool) {
     }
     assert!(text.contains(from), "{text}");
     let text = text.replacen(from, to, 1);
-    if name.ends_with(".gz") {
-        let mut encoder = GzEncoder::new(fs::File::create(&path).unwrap(), Compression::default());
-        encoder.write_all(text.as_bytes()).unwrap();
-        encoder.finish().unwrap();
-    } else {
-        fs::write(&path, text).unwrap();
-    }
+    fs::write(&path, if name.ends_with(".gz") { compressed(&text) } else { text.into_bytes() }).unwrap();
     if vouch {
         edit(folder, "provenance.toml", &before, &of_file(&path), false);
     }

@@ -193,12 +193,6 @@ impl Coordinate {
         if tilted == 0.0 { straight } else { straight + tilted }
     }
 
-    /// Returns the derivative of the coordinate with respect to the column [`Self::column`].
-    #[must_use]
-    pub fn scale(&self) -> f64 {
-        self.scale
-    }
-
     /// Returns the indices of the columns that contribute to the coordinate, with the derivative of the coordinate for
     /// each.
     pub fn parts(&self) -> impl Iterator<Item = (usize, f64)> {
