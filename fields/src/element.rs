@@ -120,14 +120,6 @@ pub fn mean_grain(snapshot: &Snapshot, space: Dimension) -> Option<(f64, f64)> {
     (count > 0.0).then_some((diameter / count, density / count))
 }
 
-/// Returns the stress T times the cell volume V, summed over all cells (J; J/m for discs); `None` if the stress is
-/// unknown. The sum is the same for all grids that contain all centres.
-#[must_use]
-pub fn whole_stress(elements: &[Element], grid: &Grid) -> Option<Matrix3<f64>> {
-    let weighted_stress = |element: &Element| element.stress.map(|stress| stress * grid.volume());
-    elements.iter().map(weighted_stress).sum()
-}
-
 /// Returns the mean velocity at a position (m/s), interpolated linearly between the centres of non-empty cells.
 #[must_use]
 pub fn velocity_at(
