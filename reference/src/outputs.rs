@@ -189,7 +189,7 @@ impl Outputs {
             let digits = outputs.look(&file, &mut survey)?;
             outputs.digits.push(digits);
         }
-        share(&mut outputs.digits, outputs.files.iter().all(RunFile::is_of_a_moment));
+        share(&mut outputs.digits, outputs.files.iter().all(|file| file.moment.is_some()));
         if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {

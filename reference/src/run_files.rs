@@ -75,24 +75,17 @@ pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
     format: &'static Format,
-    moment: Option<Moment>,
+    pub(crate) moment: Option<Moment>,
     /// First step of a file with several snapshots, if it is known.
     begins: Option<u64>,
 }
 
 /// Step and time of a file with one snapshot.
 #[derive(Clone, Copy, Debug, PartialEq)]
-struct Moment {
+pub(crate) struct Moment {
     step: u64,
     /// Time (s), if a collection of files contains it.
     time: Option<f64>,
-}
-
-impl RunFile {
-    /// Returns true if the file contains one snapshot only.
-    pub(crate) const fn is_of_a_moment(&self) -> bool {
-        self.moment.is_some()
-    }
 }
 
 /// Returns files sorted by step, which is often not the order of their names. A collection is replaced by the files

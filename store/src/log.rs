@@ -63,10 +63,6 @@ impl State {
             Self::Crashed => "crashed",
         }
     }
-
-    fn from_word(word: &str) -> Option<Self> {
-        [Self::Done, Self::Failed, Self::Crashed].into_iter().find(|state| state.word() == word)
-    }
 }
 
 /// Result of a task, and its line in a result file.
@@ -113,7 +109,8 @@ impl Entry {
             return None;
         }
         let mut words = head.split(' ');
-        let (id, state) = (words.next()?.parse().ok()?, State::from_word(words.next()?)?);
+        let (id, state) = (words.next()?.parse().ok()?, words.next()?);
+        let state = [State::Done, State::Failed, State::Crashed].into_iter().find(|known| known.word() == state)?;
         let (seconds, load) = (words.next()?.parse().ok()?, words.next()?.parse().ok());
         Some((id, Self::new(state, seconds, load, if with_result { json } else { "" })))
     }

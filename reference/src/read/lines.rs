@@ -43,12 +43,7 @@ pub(crate) struct Line<'l> {
     pub(crate) text: &'l str,
 }
 
-impl<'l> Line<'l> {
-    /// Returns the line as bytes.
-    pub(crate) fn raw(self) -> RawLine<'l> {
-        RawLine { file: self.file, number: self.number, bytes: self.text.as_bytes(), ended: true }
-    }
-
+impl Line<'_> {
     /// Returns an error that refers to the whole line.
     pub(crate) fn error(&self, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
         ReadError::at(self.file, self.number, expected, found)

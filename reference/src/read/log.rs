@@ -83,7 +83,8 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut lines = Lines::new(reader, name)?;
     let mut log = Log::default();
     let mut expected = ExpectedLine::Text;
-    while let Some(line) = lines.next_text()? {
+    while let Some(raw_line) = lines.next_line()? {
+        let line = raw_line.text()?;
         let words = || line.text.split_whitespace();
         if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
             log.version = Some(line.text.trim().to_owned());
@@ -98,7 +99,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
                 // Blank lines are skipped in this case, and warnings in the next one.
                 None => {}
                 Some(word) if word.starts_with(char::is_alphabetic) && word.parse::<f64>().is_err() => {}
-                Some(_) => ROW.read(line.raw(), thermo)?,
+                Some(_) => ROW.read(raw_line, thermo)?,
             }
             continue;
         }

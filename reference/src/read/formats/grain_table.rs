@@ -76,7 +76,8 @@ fn read_snapshots(path: &Path) -> Result<(Vec<DumpSnapshot>, bool), ReadError> {
         let rows = (row..table.rows()).take_while(|&other| key_of(other) == key).count();
         let line = row as u64 + 2;
         let before = row.checked_sub(1).map(key_of);
-        if let Some([number, time]) = before.filter(|before| goes_back(*before, key)) {
+        let goes_back = |pair: (Option<f64>, Option<f64>)| matches!(pair, (Some(before), Some(now)) if now < before);
+        if let Some([number, time]) = before.filter(|before| before.iter().copied().zip(key).any(goes_back)) {
             let expected = format!("a time after {:?}", time.or(number).unwrap_or_default());
             return Err(ReadError::at(&name, line, expected, format!("{:?}", key[1].or(key[0]).unwrap_or_default())));
         }
@@ -98,10 +99,6 @@ fn read_snapshots(path: &Path) -> Result<(Vec<DumpSnapshot>, bool), ReadError> {
         row += rows;
     }
     Ok((snapshots, steps.or(frames).or(times).is_some()))
-}
-
-fn goes_back(before: [Option<f64>; 2], key: [Option<f64>; 2]) -> bool {
-    before.into_iter().zip(key).any(|pair| matches!(pair, (Some(before), Some(now)) if now < before))
 }
 
 /// Renames the columns of a table as in dumps.
