@@ -368,9 +368,7 @@ mod tests {
     fn appears_whole_at_commit() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("deep/out");
-        let mut staged = StagedDir::new(&target).unwrap();
-        staged.write("a.txt", "a").unwrap();
-        staged.write("figures/b.svg", "b").unwrap();
+        let staged = staged_files(&target, &["a.txt", "figures/b.svg"], "b");
         assert!(!target.exists());
         staged.commit().unwrap();
         assert_eq!(fs::read_to_string(target.join("figures/b.svg")).unwrap(), "b");
@@ -396,9 +394,7 @@ mod tests {
     #[test]
     fn leaves_nothing_when_dropped() {
         let dir = tempfile::tempdir().unwrap();
-        let mut staged = StagedDir::new(dir.path().join("deep/er/out")).unwrap();
-        staged.write("a.txt", "a").unwrap();
-        drop(staged);
+        drop(staged_files(&dir.path().join("deep/er/out"), &["a.txt"], "a"));
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
     }
 
@@ -407,9 +403,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         fs::write(dir.path().join("a.txt"), "old").unwrap();
         fs::write(dir.path().join("mine.txt"), "mine").unwrap();
-        let mut staged = StagedDir::new(dir.path()).unwrap();
-        staged.write("a.txt", "new").unwrap();
-        staged.commit().unwrap();
+        staged_files(dir.path(), &["a.txt"], "new").commit().unwrap();
         assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "new");
         assert_eq!(fs::read_to_string(dir.path().join("mine.txt")).unwrap(), "mine");
         assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 3);
@@ -419,14 +413,9 @@ mod tests {
     fn what_an_earlier_run_left_goes_and_a_mixed_directory_is_told() {
         let dir = tempfile::tempdir().unwrap();
         let target = dir.path().join("out");
-        let write = |names: &[&str]| {
-            let mut staged = StagedDir::new(&target).unwrap();
-            names.iter().for_each(|name| staged.write(name, "x").unwrap());
-            staged.commit().unwrap();
-        };
-        write(&["a.txt", "frames/1.vtk", "frames/2.vtk"]);
+        staged_files(&target, &["a.txt", "frames/1.vtk", "frames/2.vtk"], "x").commit().unwrap();
         fs::write(target.join("mine.txt"), "mine").unwrap();
-        write(&["a.txt"]);
+        staged_files(&target, &["a.txt"], "x").commit().unwrap();
         let left: std::collections::BTreeSet<_> =
             fs::read_dir(&target).unwrap().map(|entry| entry.unwrap().file_name()).collect();
         assert_eq!(left, ["a.txt", "manifest.json", "mine.txt"].map(Into::into).into());
@@ -440,10 +429,7 @@ mod tests {
         let dir = tempfile::tempdir().unwrap();
         fs::write(dir.path().join("a.txt"), "old").unwrap();
         fs::create_dir_all(dir.path().join("c.txt/full")).unwrap();
-        let mut staged = StagedDir::new(dir.path()).unwrap();
-        for name in ["a.txt", "b.txt", "c.txt"] {
-            staged.write(name, "new").unwrap();
-        }
+        let staged = staged_files(dir.path(), &["a.txt", "b.txt", "c.txt"], "new");
         let message = staged.commit().unwrap_err().to_string();
         assert!(message.contains("c.txt"), "{message}");
         assert_eq!(fs::read_to_string(dir.path().join("a.txt")).unwrap(), "old");
@@ -501,12 +487,9 @@ mod tests {
         fs::write(other.join("sub/precious.txt"), "keep").unwrap();
         std::os::unix::fs::symlink(&other, target.join("link")).unwrap();
         Manifest { whole: true, files: vec!["link/sub/precious.txt".into()] }.write(&target).unwrap();
-        let mut staged = StagedDir::new(&target).unwrap();
-        staged.write("a.txt", "a").unwrap();
-        staged.commit().unwrap();
+        staged_files(&target, &["a.txt"], "a").commit().unwrap();
         assert_eq!(fs::read_to_string(other.join("sub/precious.txt")).unwrap(), "keep");
-        let mut staged = StagedDir::new(&target).unwrap();
-        staged.write("link/sub/precious.txt", "other").unwrap();
+        let staged = staged_files(&target, &["link/sub/precious.txt"], "other");
         let message = staged.commit().unwrap_err().to_string();
         assert!(message.contains("out/link: expected a folder, found a symbolic link"), "{message}");
         assert_eq!(fs::read_to_string(other.join("sub/precious.txt")).unwrap(), "keep");
@@ -520,11 +503,8 @@ mod tests {
         ] {
             let dir = tempfile::tempdir().unwrap();
             let place = dir.path().join(name);
-            let commit = || {
-                let mut staged = StagedDir::new(dir.path()).unwrap();
-                staged.write("index.html", "<title>grainbench · 2 pass</title>").unwrap();
-                staged.commit()
-            };
+            let page = "<title>grainbench · 2 pass</title>";
+            let commit = || staged_files(dir.path(), &["index.html"], page).commit();
             fs::write(&place, foreign).unwrap();
             assert!(refuse_other_programs(dir.path()).is_err());
             let message = commit().unwrap_err().to_string();
@@ -536,19 +516,27 @@ mod tests {
         }
     }
 
-    /// Returns the file names of the run `word` (`old` or another), each with `word` as the content.
-    fn run_of(word: &str) -> Vec<(String, String)> {
-        let names: &[&str] = match word {
+    /// Returns a staged directory with files of these names and one content.
+    fn staged_files(target: &Path, names: &[&str], text: &str) -> StagedDir {
+        let mut staged = StagedDir::new(target).unwrap();
+        names.iter().for_each(|name| staged.write(name, text).unwrap());
+        staged
+    }
+
+    /// Returns the file names of the run `word`, `old` or another. The content of each file is `word`.
+    fn names_of(word: &str) -> &'static [&'static str] {
+        match word {
             "old" => &["a.txt", "figures/1.svg", "figures/2.svg", "frames/1.vtk"],
             _ => &["a.txt", "b.txt", "figures/1.svg"],
-        };
-        names.iter().map(|name| ((*name).to_owned(), word.to_owned())).collect()
+        }
+    }
+
+    fn run_of(word: &str) -> Vec<(String, String)> {
+        names_of(word).iter().map(|name| ((*name).to_owned(), word.to_owned())).collect()
     }
 
     fn staged(target: &Path, word: &str) -> StagedDir {
-        let mut staged = StagedDir::new(target).unwrap();
-        run_of(word).iter().for_each(|(name, text)| staged.write(name, text).unwrap());
-        staged
+        staged_files(target, names_of(word), word)
     }
 
     /// Returns the files of a directory and their contents, without the manifest, `mine.txt` and hidden files.
