@@ -2,7 +2,6 @@
 
 use grainbench_scene::error::SceneError;
 use grainbench_scene::text::tamed;
-use std::fmt;
 use std::io;
 
 /// Maximum length of an excerpt in an error (characters).
@@ -15,7 +14,7 @@ const EXCERPT: usize = 60;
 ///
 /// Lines and columns are counted from 1. In a compressed file they refer to the decompressed text.
 #[derive(Debug, thiserror::Error)]
-#[error("{}: expected {expected}, found {found}", Place(file, *line, *column))]
+#[error("{}: expected {expected}, found {found}", place(file, *line, *column))]
 pub struct ReadError {
     file: Box<str>,
     line: Option<u64>,
@@ -89,7 +88,7 @@ impl ReadError {
 impl From<ReadError> for SceneError {
     fn from(error: ReadError) -> Self {
         Self {
-            place: Place(&error.file, error.line, error.column).to_string(),
+            place: place(&error.file, error.line, error.column),
             key: String::new(),
             expected: error.expected.into_string(),
             found: error.found.into_string(),
@@ -98,20 +97,10 @@ impl From<ReadError> for SceneError {
     }
 }
 
-/// Position of an error, as far as it is known.
-struct Place<'e>(&'e str, Option<u64>, Option<usize>);
-
-impl fmt::Display for Place<'_> {
-    fn fmt(&self, out: &mut fmt::Formatter<'_>) -> fmt::Result {
-        out.write_str(self.0)?;
-        if let Some(line) = self.1 {
-            write!(out, ":{line}")?;
-        }
-        if let Some(column) = self.2 {
-            write!(out, ":{column}")?;
-        }
-        Ok(())
-    }
+/// Returns the position of an error, as far as it is known.
+fn place(file: &str, line: Option<u64>, column: Option<usize>) -> String {
+    let numbers = line.into_iter().chain(column.map(|column| column as u64));
+    numbers.fold(file.to_owned(), |place, number| format!("{place}:{number}"))
 }
 
 /// Returns a quoted excerpt of `text` on one line, for errors.
