@@ -120,7 +120,9 @@ impl Sheet {
             let mut values: Vec<f64> = frames.iter().flatten().copied().filter(|value| value.is_finite()).collect();
             values.sort_by(f64::total_cmp);
             let at = |fiftieths: usize| values.get(values.len().checked_sub(1)? * fiftieths / 50).copied();
-            let range = (lowest(name, at(1)?), two_digits(at(49)?));
+            // Packing fractions vary little, so their scale starts at a multiple of 0.05 below the 2nd percentile.
+            let lowest = ((at(1)? * 20.0).floor() / 20.0).max(0.0);
+            let range = (if *name == "packing_fraction" { lowest } else { 0.0 }, two_digits(at(49)?));
             let raster_of = |frame: &Vec<f64>| {
                 raster(&self.grid, [across, up], pixels, |cell| {
                     level(frame.get(cell).copied().unwrap_or(f64::NAN), range)
@@ -134,12 +136,6 @@ impl Sheet {
         let clock = (self.clock.clone(), self.times.clone());
         (!panels.is_empty()).then(|| field(&COLUMNS[0], self.units, (0.0, 1.0), pixel, panels, clock))
     }
-}
-
-/// Returns the lower end of the scale, given the 2nd percentile of the values. For packing fractions, which vary
-/// little, this percentile is rounded down to a multiple of 0.05. For other quantities, the lower end is zero.
-fn lowest(name: &str, value: f64) -> f64 {
-    if name == "packing_fraction" { ((value * 20.0).floor() / 20.0).max(0.0) } else { 0.0 }
 }
 
 /// Returns the two axes of the plane of a grid that is one cell deep along the third axis; `None` for other grids.
