@@ -128,10 +128,10 @@ pub struct Outputs {
     ends: [u64; 2],
     /// Sample that counts as time 0: the first sample with [`Sources::from_first`], otherwise step 0.
     origin: Origin,
-    /// Errors of truncated files, if [`Sources::partial`] is set.
-    cuts: Vec<String>,
-    /// Largest number of significant digits in all files.
-    significant: u32,
+    /// Errors at the positions where files are truncated, if [`Sources::partial`] is set. Only complete frames were read.
+    pub cuts: Vec<String>,
+    /// Largest number of significant digits of any number, which is the printed precision.
+    pub significant_digits: u32,
     /// Ids of the grains in the first snapshot, sorted.
     ids: Vec<u64>,
 }
@@ -164,7 +164,7 @@ impl Outputs {
             && format_of(file)?.is_none()
         {
             let table = read_table(file)?;
-            outputs.significant = table.digits().significant();
+            outputs.significant_digits = table.digits().significant();
             let names = &outputs.sources.names;
             let times = ends(&table, time_column(&table, names));
             let steps = ends(&table, table.column(names.in_file("step")));
@@ -239,7 +239,7 @@ impl Outputs {
             }
         }
         self.cuts.extend(reader.cut);
-        self.significant = self.significant.max(snapshot.digits().significant());
+        self.significant_digits = self.significant_digits.max(snapshot.digits().significant());
         self.contact_digits.push(of_contacts);
         Ok(digits(&snapshot))
     }
@@ -287,18 +287,6 @@ impl Outputs {
     pub fn origin(&self) -> Option<Origin> {
         let is_late = self.origin.time.map_or(self.origin.step > 0, |time| time.abs() > 0.0);
         is_late.then_some(self.origin)
-    }
-
-    /// Returns the errors at the positions where files are truncated. Only complete frames were read.
-    #[must_use]
-    pub fn cuts(&self) -> &[String] {
-        &self.cuts
-    }
-
-    /// Returns the largest number of significant digits of any number, which is the printed precision.
-    #[must_use]
-    pub fn significant_digits(&self) -> u32 {
-        self.significant
     }
 
     /// Returns the name of the outputs in reports.

@@ -229,7 +229,7 @@ impl Coverage {
         let Some(whole) = self.whole else { return row.left(Outcome::NoReference, self.why_not().unwrap_or_default()) };
         let end = ExpectedValue::Bound(Bound::AtLeast(whole));
         let row = Verdict { allowed: self.slack / whole, ..row }.judged(&Measurement::new(self.reached, end, whole));
-        if let [cut, ..] = outputs.cuts() {
+        if let [cut, ..] = &outputs.cuts[..] {
             return row.left(Outcome::Known, format!("only the complete frames are judged (--partial): {cut}"));
         }
         match (row.outcome, self.partial) {

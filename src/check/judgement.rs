@@ -107,7 +107,7 @@ fn widened(mut row: Verdict, open: f64, outputs: &Outputs) -> Verdict {
     row.allowed += open;
     // An addition below a thousandth of the tolerance is not reported.
     if open > 1e-3 * row.allowed {
-        let digits = outputs.significant_digits();
+        let digits = outputs.significant_digits;
         let words = format!("; plus {} for the printed digits, at most {digits}", number::fraction(open));
         row.because.push_str(&words);
     }

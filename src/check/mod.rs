@@ -194,7 +194,7 @@ fn section(subject: &DeclaredScene<'_>, output: &CheckedOutput<'_>, options: Opt
             "The output of another program, `{file}`, has up to {} significant digits. It is compared with exact \
              solutions if the scene has any, with our solvers on the same scene, and with stored runs if there are \
              any.",
-            outputs.significant_digits()
+            outputs.significant_digits
         ),
         derivation: derivation.to_owned(),
         weak: weak.to_owned(),
