@@ -23,12 +23,10 @@ pub struct Column {
     pub of: fn(&Element, &Grains) -> Option<f64>,
 }
 
-/// Returns a component of the velocity.
 fn velocity<const AXIS: usize>(element: &Element, _: &Grains) -> Option<f64> {
     Some(element.motion.velocity?[AXIS])
 }
 
-/// Returns a component of the velocity gradient.
 fn gradient<const ROW: usize, const COLUMN: usize>(element: &Element, _: &Grains) -> Option<f64> {
     Some(element.motion.gradient?[(ROW, COLUMN)])
 }

@@ -23,7 +23,6 @@ struct NearestPoint {
 /// Material at a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Material {
-    /// Body of the material.
     pub(crate) owner: Owner,
     /// Weighted means of three numbers over the surrounding points of the same body. The nearest point has the largest
     /// weight.

@@ -127,7 +127,6 @@ impl<'s> DumpObserver<'s> {
         Self { names_of_decks: Names(names), ..self }
     }
 
-    /// Adds forces between grains.
     pub(crate) fn with_pairs(mut self, pairs: PairForces) -> Self {
         self.known.pairs = !pairs.is_empty();
         self.pairs = pairs;

@@ -120,9 +120,7 @@ pub struct Outputs {
     /// Digits of the columns of each file, from all of its snapshots of contacts.
     contact_digits: Vec<Vec<Digits>>,
     table: Option<Table>,
-    /// Log of the run, if there is one.
     log: Option<Log>,
-    /// Times of the steps, if they are known.
     clock: Option<Clock>,
     /// First and last step.
     ends: [u64; 2],

@@ -100,7 +100,6 @@ impl PairForces {
         self.by_step.is_empty()
     }
 
-    /// Returns true if any pair is requested.
     pub(crate) fn is_asked(&self) -> bool {
         !self.asked.is_empty()
     }

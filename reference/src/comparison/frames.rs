@@ -37,7 +37,6 @@ pub(super) struct Frame {
     pub(super) values: Vec<Vec<f64>>,
 }
 
-/// Reader of the frames of a file.
 pub(super) struct Frames {
     pub(super) file: String,
     time_step: Option<f64>,
@@ -190,7 +189,6 @@ impl Frames {
         }
     }
 
-    /// Returns the name of the unit system, if the file contains it.
     pub(super) fn units(&self) -> Option<&str> {
         match &self.from {
             FrameSource::Grains { snapshot, .. } => snapshot.units.as_deref(),

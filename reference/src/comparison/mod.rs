@@ -137,9 +137,7 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
     Ok(found)
 }
 
-/// Columns and samples of both files.
 struct Survey {
-    /// Columns that are compared.
     columns: Vec<String>,
     /// Printed digits of these columns in each file.
     printed: Vec<[PrintedDigits; 2]>,

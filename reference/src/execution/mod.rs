@@ -31,10 +31,8 @@ use worker::{Answer, Times};
 /// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
 
-/// Input files, command, limits and protocol of a run that is to be started.
 pub(crate) struct Launch<'p> {
     pub(crate) solver: String,
-    /// Time steps and samples.
     pub(crate) stepping: Stepping,
     /// Name and text of each input file.
     pub(crate) files: Vec<(String, String)>,

@@ -309,7 +309,6 @@ impl ExternalProgram {
         })
     }
 
-    /// Reads the output of a run.
     fn observe(&self, scene: &Scene, stepping: &Stepping, folder: &Path) -> Result<DumpRecord, Failure> {
         let Output { grains, contacts, series, .. } = &self.manifest.output;
         let mut observed = match grains.as_ref().filter(|_| !scene.grains.is_empty()) {

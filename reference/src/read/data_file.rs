@@ -100,7 +100,6 @@ pub fn parse_data(reader: impl BufRead, name: &str) -> Result<DataFile, ReadErro
 /// Expected and actual content, for an error.
 type Mismatch = (String, String);
 
-/// Keywords of the three bounds.
 const BOUNDS: [[&str; 2]; 3] = [["xlo", "xhi"], ["ylo", "yhi"], ["zlo", "zhi"]];
 
 /// Values of the header that have been read so far: numbers of atoms and atom types, and the box.
