@@ -11,7 +11,9 @@ use crate::motion::{motion, movers, movers_between};
 use crate::trails::Trails;
 use grainbench_scene::dimension::Dimension;
 use grainbench_solver::record::Snapshot;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Vector3;
+use std::iter::Sum;
+use std::ops::Div;
 
 /// A series of snapshots as granular elements.
 #[derive(Clone, Debug)]
@@ -130,23 +132,21 @@ impl Course {
     #[must_use]
     pub fn element_of_means(&self, cell: usize) -> Option<Element> {
         let all = || self.frames.iter().map(|frame| frame.elements[cell]);
-        let first = all().next()?;
-        let matrices = |matrix: fn(&Element) -> Option<Matrix3<f64>>| {
-            let found: Vec<Matrix3<f64>> = all().filter_map(|element| matrix(&element)).collect();
-            (!found.is_empty()).then(|| found.iter().sum::<Matrix3<f64>>() / found.len() as f64)
-        };
-        let velocities: Vec<Vector3<f64>> = all().filter_map(|element| element.motion.velocity).collect();
-        let mut element = first;
-        element.packing_fraction =
-            all().map(|element| element.packing_fraction).sum::<f64>() / self.frames.len() as f64;
-        element.stress = matrices(|element| element.stress);
-        element.motion.gradient = matrices(|element| element.motion.gradient);
-        element.motion.velocity =
-            (!velocities.is_empty()).then(|| velocities.iter().sum::<Vector3<f64>>() / velocities.len() as f64);
+        let mut element = all().next()?;
+        element.packing_fraction = mean_of(all().map(|element| element.packing_fraction))?;
+        element.stress = mean_of(all().filter_map(|element| element.stress));
+        element.motion.gradient = mean_of(all().filter_map(|element| element.motion.gradient));
+        element.motion.velocity = mean_of(all().filter_map(|element| element.motion.velocity));
         element.motion.residual = None;
         element.motion.members = all().map(|element| element.motion.members).sum();
         (element.motion.members > 0).then_some(element)
     }
+}
+
+fn mean_of<T: Sum + Div<f64, Output = T>>(values: impl Iterator<Item = T>) -> Option<T> {
+    let values: Vec<T> = values.collect();
+    let count = values.len();
+    (count > 0).then(|| values.into_iter().sum::<T>() / count as f64)
 }
 
 /// Returns the quantities that are nonlinear functions of stress and velocity gradient. Reports also give the values of
