@@ -22,7 +22,7 @@ const SYNC: Duration = Duration::from_secs(5);
 const DIGITS: usize = 16;
 
 /// Process that runs tasks of a plan, with its machine and job.
-#[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 pub struct Worker {
     /// Unique name.
     pub name: String,

@@ -126,16 +126,7 @@ mod tests {
             ("2", [(a, State::Done, "3"), (b, State::Done, "4")]),
             ("3", [(a, State::Crashed, "\"5\""), (b, State::Failed, "6")]),
         ] {
-            let worker = Worker {
-                name: name.to_owned(),
-                host: String::new(),
-                process: 0,
-                machine: String::new(),
-                cores: 1,
-                job: None,
-                granted: None,
-                began: String::new(),
-            };
+            let worker = Worker { name: name.to_owned(), ..Worker::default() };
             let mut log = Log::new(&directory.path().join(RESULTS), &worker).unwrap();
             for (id, state, json) in results {
                 log.add(id, &Entry::new(state, 1.0, None, json)).unwrap();
