@@ -187,7 +187,7 @@ impl Outputs {
             let digits = outputs.look(&file, &mut survey)?;
             outputs.digits.push(digits);
         }
-        share(&mut outputs.digits, outputs.files.iter().all(|file| file.moment.is_some()));
+        share(&mut outputs.digits, outputs.files.iter().all(|file| file.is_moment));
         if let (Some(of_dump), Some(log), Some(path)) = (&survey.units, &outputs.log, &outputs.sources.log)
             && let Some(of_log) = log.units.as_ref().filter(|of_log| *of_log != of_dump)
         {

@@ -70,21 +70,16 @@ pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
     Ok(())
 }
 
-/// Output file of a run. `moment` is `None` if the file contains several snapshots.
+/// Output file of a run.
 #[derive(Clone, Debug)]
 pub(crate) struct RunFile {
     pub(crate) path: PathBuf,
     format: &'static Format,
-    pub(crate) moment: Option<Moment>,
-    /// First step of a file with several snapshots, if it is known.
-    begins: Option<u64>,
-}
-
-/// Step and time of a file with one snapshot.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(crate) struct Moment {
-    step: u64,
-    /// Time (s), if a collection of files contains it.
+    /// True if the file contains one snapshot, whose step is `first_step`.
+    pub(crate) is_moment: bool,
+    /// First step, if it is known.
+    first_step: Option<u64>,
+    /// Time of a file with one snapshot (s), if a collection of files contains it.
     time: Option<f64>,
 }
 
@@ -96,7 +91,9 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
         // A table is opened as a dump, so that the reader of dumps reports the error.
         let format = format_of(path)?.unwrap_or(&dump::FORMAT);
         match (format.holds)(path)? {
-            FileContent::Course(begins) => files.push(RunFile { path: path.clone(), format, moment: None, begins }),
+            FileContent::Course(first_step) => {
+                files.push(RunFile { path: path.clone(), format, is_moment: false, first_step, time: None });
+            }
             FileContent::Moment => files.push(of_moment(path, None)?),
             FileContent::List(listed) => {
                 for (time, path) in listed {
@@ -105,7 +102,7 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
             }
         }
     }
-    files.sort_by_key(|file| file.moment.map(|moment| moment.step).or(file.begins));
+    files.sort_by_key(|file| file.first_step);
     Ok(files)
 }
 
@@ -120,19 +117,19 @@ fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
     let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
     let last = stem.trim_end_matches(|letter: char| !letter.is_ascii_digit());
     let digits = last.len() - last.bytes().rev().take_while(u8::is_ascii_digit).count();
-    let step = last[digits..].parse();
-    let step = step.map_err(|_| {
+    let step = last[digits..].parse().map_err(|_| {
         ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
     })?;
     let format = format_of(path)?.unwrap_or(&dump::FORMAT);
-    Ok(RunFile { path: path.to_owned(), format, moment: Some(Moment { step, time }), begins: None })
+    Ok(RunFile { path: path.to_owned(), format, is_moment: true, first_step: Some(step), time })
 }
 
 /// Reader of the snapshots of a file.
 pub(crate) struct Snapshots {
     file: RunFile,
     reader: SnapshotReader,
-    read: usize,
+    /// True after the snapshot of a file with one snapshot has been read.
+    is_read: bool,
     /// True if the complete frames of a truncated file are read.
     partial: bool,
     /// Error at the position where the file is truncated, if this is allowed.
@@ -144,7 +141,7 @@ impl Snapshots {
     /// its last complete frame.
     pub(crate) fn open(file: &RunFile, most_rows: u64, partial: bool) -> Result<Self, ReadError> {
         let reader = (file.format.open)(&file.path, most_rows)?;
-        Ok(Self { file: file.clone(), reader, read: 0, partial, cut: None })
+        Ok(Self { file: file.clone(), reader, is_read: false, partial, cut: None })
     }
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
@@ -160,23 +157,25 @@ impl Snapshots {
 
     fn next(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
         let numbering = self.file.format.numbering;
-        let Some(moment) = self.file.moment else {
+        if !self.file.is_moment {
             let is_there = (self.reader)(snapshot)?;
             if is_there && numbering == Numbering::Files {
                 snapshot.numbering = numbering;
             }
             return Ok(is_there);
-        };
+        }
         let mut next = DumpSnapshot::default();
         let is_there = (self.reader)(&mut next)?;
-        if is_there != (self.read == 0) {
+        if is_there == self.is_read {
             let found = if is_there { "several" } else { "none" };
             let expected = "one time per file, from a list or the file name";
             return Err(ReadError::at(&shown(&self.file.path), 1, expected, found));
         }
-        self.read += 1;
+        self.is_read = true;
         if is_there {
-            *snapshot = DumpSnapshot { step: moment.step, numbering, time: next.time.or(moment.time), ..next };
+            let RunFile { first_step, time, .. } = self.file;
+            *snapshot =
+                DumpSnapshot { step: first_step.unwrap_or_default(), numbering, time: next.time.or(time), ..next };
         }
         Ok(is_there)
     }
