@@ -109,20 +109,17 @@ fn cached(
     if members < LARGE {
         return write().into();
     }
-    let lines = lines(cache, blake3::hash(&bits()));
-    Arc::clone(lines.get_or_init(|| write().into()))
-}
-
-/// Returns the cache entry of a list, whose text may not have been written yet.
-fn lines(cache: &ListCache, key: blake3::Hash) -> Lines {
+    let key = blake3::hash(&bits());
     let mut known = cache.lock().unwrap_or_else(PoisonError::into_inner);
-    if let Some((_, lines)) = known.iter().find(|(other, _)| *other == key) {
-        return Arc::clone(lines);
-    }
-    let lines = Lines::default();
-    known.truncate(FEW - 1);
-    known.insert(0, (key, Arc::clone(&lines)));
-    lines
+    let place = known.iter().position(|(other, _)| *other == key).unwrap_or_else(|| {
+        known.truncate(FEW - 1);
+        known.insert(0, (key, Lines::default()));
+        0
+    });
+    let lines = Arc::clone(&known[place].1);
+    // Other lists can be written meanwhile.
+    drop(known);
+    Arc::clone(lines.get_or_init(|| write().into()))
 }
 
 /// Estimated maximum length of the line of a grain (B).
