@@ -1,6 +1,5 @@
 //! Manifest `SOLVER.toml`, which describes the commands, the features and the output of a program.
 
-use crate::names::Names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::effect::Effect;
@@ -149,14 +148,6 @@ pub struct Grains {
     /// Names of columns that differ from those of LAMMPS, for example `x = "position_x"`.
     #[serde(default)]
     pub map: BTreeMap<String, String>,
-}
-
-impl Grains {
-    /// Returns the names of columns in the file that differ from those of LAMMPS.
-    #[must_use]
-    pub fn names(&self) -> Names {
-        Names(self.map.iter().map(|(ours, theirs)| (ours.clone(), theirs.clone())).collect())
-    }
 }
 
 /// Format of a file with grains.

@@ -23,7 +23,7 @@ pub use crate::execution::CANNOT;
 use crate::deck::Stepping;
 use crate::execution::process::{self, Deadline, ERRORS, ProcessStart, SCREEN, on_path};
 use crate::execution::{self, Launch, Protocol, Worker, most_bytes, output, plain_file};
-use crate::observer::DumpRecord;
+use crate::observer::{DumpRecord, Names};
 use crate::outputs::{Outputs, Sources};
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::table::read_table;
@@ -352,7 +352,7 @@ fn observe_grains(
     folder: &Path,
     (grains, contacts): (&Grains, Option<&str>),
 ) -> Result<DumpRecord, Failure> {
-    let names = grains.names();
+    let names = Names(grains.map.clone().into_iter().collect());
     let observed = match grains.format {
         GrainFormat::Csv => {
             let path = plain_file(folder, &grains.path)?;
