@@ -90,9 +90,8 @@ mod tests {
 
     #[test]
     fn rows_are_read_from_a_row_on() {
-        let columns =
-            ["a", "b"].map(|name| NumberColumn { name: name.to_owned(), digits: Digits::default(), is_text: false });
-        let table = Table { columns: columns.into(), values: vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0] };
+        let columns = ["a", "b"].map(NumberColumn::new);
+        let table = Table::new(columns.into(), vec![0.0, 1.0, 2.0, 3.0, 4.0, 5.0]);
         assert_eq!(table.rows_from(1, 2), [2.0, 3.0, 4.0, 5.0]);
         assert_eq!(table.rows_from(2, 2), [0.0; 0]);
     }
