@@ -4,6 +4,7 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use grainbench_scene::dimension::GrainShape;
+use grainbench_scene::scene::Grain;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Vector3;
 
@@ -175,22 +176,17 @@ impl GrainDump {
             [Some(_), Some(_), _] => Vector3::from(velocity.map(|at| at.map_or(0.0, |at| numbers[at]))),
             _ => Vector3::repeat(f64::NAN),
         };
-        Ok(GrainState {
-            id: id as u32,
+        let grain = Grain {
             material: kind.map_or(0, |at| numbers[at].clamp(1.0, 65_535.0) as u16 - 1),
             radius,
             // Values that the file does not contain are NaN.
             mass: mass.unwrap_or(f64::NAN),
+            inertia: f64::NAN,
             position,
             velocity,
             spin: Vector3::repeat(f64::NAN),
-            angle: None,
-            force: None,
-            torque: None,
-            plastic_strain: 0.0,
-            virial: None,
-            mean_virial: None,
-        })
+        };
+        Ok(GrainState::start(id as u32, &grain))
     }
 }
 
