@@ -58,11 +58,9 @@ impl FromStr for Id {
     type Err = String;
 
     fn from_str(text: &str) -> Result<Self, String> {
-        let wrong = || format!("{DIGITS} hexadecimal digits");
-        if text.len() != DIGITS || !text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f')) {
-            return Err(wrong());
-        }
-        u128::from_str_radix(text, 16).map(Self).map_err(|_| wrong())
+        let is_id = text.len() == DIGITS && text.bytes().all(|digit| matches!(digit, b'0'..=b'9' | b'a'..=b'f'));
+        let number = if is_id { u128::from_str_radix(text, 16).ok() } else { None };
+        number.map(Self).ok_or_else(|| format!("{DIGITS} hexadecimal digits"))
     }
 }
 

@@ -164,16 +164,12 @@ impl Log {
     }
 
     fn append(&mut self, text: &str) -> Result<(), WriteError> {
-        match self.file.write_all(text.as_bytes()) {
-            Ok(()) => {
-                self.whole += text.len() as u64;
-                Ok(())
-            }
-            Err(source) => {
-                let _ = self.file.set_len(self.whole);
-                Err(WriteError::new(&self.path, source))
-            }
-        }
+        self.file.write_all(text.as_bytes()).map_err(|source| {
+            let _ = self.file.set_len(self.whole);
+            WriteError::new(&self.path, source)
+        })?;
+        self.whole += text.len() as u64;
+        Ok(())
     }
 
     /// Syncs all added lines to the disk.
