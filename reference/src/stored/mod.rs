@@ -134,15 +134,14 @@ impl StoredRun {
     /// [`RunError::Stale`] if the run was made from another scene or time step.
     pub fn record(&self, scene: &Scene, resolution: &Resolution, program: Program) -> Result<Record, RunError> {
         let solver = program.name().to_owned();
-        if !self.is_of(scene, resolution) {
+        let is_same = |stepping: &Stepping| scene_hash(scene, stepping) == self.provenance.scene;
+        let Some(stepping) = Stepping::new(scene, resolution).ok().filter(is_same) else {
             let reason = format!(
                 "`{}` belongs to another scene or time step; `grainbench reference build` computes it again",
                 self.directory.file_name().unwrap_or_default().to_string_lossy()
             );
             return Err(RunError::Stale { solver, reason });
-        }
-        let stepping = Stepping::new(scene, resolution)
-            .map_err(|reason| RunError::Resolution { solver: solver.clone(), reason })?;
+        };
         let options = vec![self.provenance.version.clone(), format!("stored run of {}", self.provenance.date)];
         Ok(Record {
             provenance: record::Provenance::new(scene, solver, resolution, stepping.time_step, options),
