@@ -134,13 +134,10 @@ fn a_lattice_under_strain_has_its_stress() {
     assert!((stress - exact).norm() < 1e-10 * exact.norm(), "{stress} {exact}");
     // A missing contact changes the result.
     let mut less = shot.clone();
-    let place = less
-        .contacts
-        .as_ref()
-        .unwrap()
-        .iter()
-        .position(|contact| first[contact.grain as usize - 1].iter().all(|along| (2.9..4.2).contains(along)));
-    less.contacts.as_mut().unwrap().remove(place.unwrap());
+    let contacts = less.contacts.as_mut().unwrap();
+    let is_inside = |contact: &ContactState| first[contact.grain as usize - 1].iter().all(|x| (2.9..4.2).contains(x));
+    let place = contacts.iter().position(is_inside);
+    contacts.remove(place.unwrap());
     assert!((middle_cell(&less, &first, &strained) - exact).norm() > 1e-2 * exact.norm());
 }
 
@@ -284,7 +281,8 @@ fn tracers_move_and_deform_with_the_flow() {
     };
     let first = shot(0);
     let grid = Grid::filling(first.bounds, Vector3::new(2.5, 8.0, 2.5));
-    let mut all = tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0)));
+    let at_start = tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0)));
+    let mut all = at_start.clone();
     assert_eq!(all.len(), 4);
     // The mean velocity of a cell belongs to the mean position of its grains, which is only close to the cell centre.
     let before = elements(&first, Dimension::Three, &grid);
@@ -297,9 +295,7 @@ fn tracers_move_and_deform_with_the_flow() {
         assert!(all.iter().all(|tracer| !tracer.lost));
     }
     let last = shot(40);
-    for (tracer, start) in
-        all.iter().zip(tracers(&first, &Grid::filling((Vector3::zeros(), high), Vector3::new(5.0, 8.0, 5.0))))
-    {
+    for (tracer, start) in all.iter().zip(&at_start) {
         let exact = at(&start.position, 2.0);
         assert!((tracer.position - exact).norm() < 0.05, "{} for {exact}", tracer.position);
         let strain = hencky(&tracer.deformation(&last, 3).unwrap()).unwrap();
