@@ -107,7 +107,8 @@ fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
 
 fn elastic() -> Vec<Claim> {
     type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
-    const QUANTITIES: [(&str, &str, fn(&Scene) -> f64, RunReader); 3] = [
+    type Formula = fn(&Scene) -> f64;
+    const QUANTITIES: [(&str, &str, Formula, RunReader); 3] = [
         ("deepest overlap", "m", |scene| hertz(scene).0, |done| Ok(peak(done.column("contact.overlap")?))),
         ("largest force", "N", |scene| hertz(scene).1, |done| Ok(peak(done.column("contact.normal_force")?))),
         ("duration of contact", "s", |scene| hertz(scene).2, duration),

@@ -80,13 +80,16 @@ pub(crate) fn nearly_rigid(variant: &'static str, tangential_dashpot: bool) -> R
 /// Result of the comparison of a run with a rigid solution.
 type Comparison = Result<Measurement, MissingData>;
 
+/// Function that compares a quantity of the last state of a run with its solution.
+pub(crate) type EndReader = fn(&FinishedRun, fn(State) -> f64) -> Comparison;
+
 /// Returns solver-independent claims on a grain that slides and then rolls, for a contact so stiff that all conventions
 /// nearly agree: displacement, velocity halfway through the slide, final velocity and final spin.
 pub(crate) fn near_rigid(
     variant: &'static str,
     source: Source,
     halfway: fn(&FinishedRun) -> Comparison,
-    end: fn(&FinishedRun, fn(State) -> f64) -> Comparison,
+    end: EndReader,
     [x, half, v, omega]: [Tolerance; 4],
 ) -> [Claim; 4] {
     let near_rigid_claim = |quantity: &str, unit, rolls, tolerance, pick: Option<fn(State) -> f64>| {

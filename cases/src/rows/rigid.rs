@@ -16,7 +16,7 @@
 //! within a time of about 2ζ/ω + 1/(hω²), which increases as the step decreases.
 
 use crate::exact::one_grain::{OneGrain, State, last};
-use crate::rows::on_plane::{Plane, end, stronger_friction, touching};
+use crate::rows::on_plane::{EndReader, Plane, end, stronger_friction, touching};
 use grainbench_harness::prelude::*;
 use grainbench_rigid::settings::Settings;
 use std::f64::consts::TAU;
@@ -51,7 +51,7 @@ fn rest_overlap(grain: &OneGrain) -> f64 {
 pub(crate) fn against(
     variant: &'static str,
     source: Source,
-    end: fn(&FinishedRun, fn(State) -> f64) -> Result<Measurement, MissingData>,
+    end: EndReader,
     [x_control, control]: [Control; 2],
     [x, v, omega]: [Tolerance; 3],
 ) -> Vec<Claim> {

@@ -53,7 +53,7 @@ pub(super) struct Frames {
 }
 
 enum FrameSource {
-    Grains { files: vec::IntoIter<RunFile>, reader: Option<Snapshots>, snapshot: DumpSnapshot },
+    Grains { files: vec::IntoIter<RunFile>, reader: Option<Snapshots>, snapshot: Box<DumpSnapshot> },
     Table { table: Table, step: Option<usize>, time: Option<usize>, rows: Range<usize> },
 }
 
@@ -63,7 +63,7 @@ impl Frames {
         let names = if which == 1 { options.names.clone() } else { Names::default() };
         let from = if is_grains {
             let files = in_order(&[path.to_owned()])?.into_iter();
-            FrameSource::Grains { files, reader: None, snapshot: DumpSnapshot::default() }
+            FrameSource::Grains { files, reader: None, snapshot: Box::default() }
         } else {
             let table = read_table(path)?;
             let time = ["time", "t"].into_iter().find_map(|name| table.column(names.in_file(name)));
@@ -181,8 +181,10 @@ impl Frames {
                 *reader = None;
                 continue;
             }
-            let is_same_step = |before: &DumpSnapshot| !before.columns.is_empty() && before.step == snapshot.step;
-            if let Some(before) = before.filter(is_same_step) {
+            if let Some(before) = before
+                && !before.columns.is_empty()
+                && before.step == snapshot.step
+            {
                 snapshot.check_repeated(&self.file, &before)?;
             }
             return Ok(true);

@@ -184,7 +184,7 @@ pub struct Coordinate {
 }
 
 impl Coordinate {
-    /// Returns the coordinate from a row of numbers ([`DumpSnapshot::row`]).
+    /// Returns the coordinate from a row of numbers of the snapshot.
     #[must_use]
     pub fn value(&self, row: &[f64]) -> f64 {
         let value = |column: usize| row.get(column).copied().unwrap_or(f64::NAN);

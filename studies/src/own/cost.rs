@@ -556,9 +556,9 @@ impl<'a> Measurement<'a> {
             // Scales are those of the finest run of the first solver.
             let is_level = |run: &&Run| run.purpose == Purpose::Level && !self.ladders[run.solver].lacks(&column.name);
             let levels = self.runs.iter().filter(is_level);
-            let named = levels.filter_map(|run| Some((run.solver, run.stored.column(&column.name)?)));
+            let mut named = levels.filter_map(|run| Some((run.solver, run.stored.column(&column.name)?)));
             let Some((first, _)) = named.clone().next() else { continue };
-            let Some((_, finest)) = named.filter(|(solver, _)| *solver == first).next_back() else { continue };
+            let Some((_, finest)) = named.rfind(|(solver, _)| *solver == first) else { continue };
             let all = self.runs.iter().filter_map(|run| run.stored.column(&column.name));
             let largest = all.fold(0.0, |most: f64, other| most.max(other.largest));
             if finest.scale <= ZERO * natural(&self.scene, &column.unit) || largest <= ZERO * finest.scale {

@@ -188,12 +188,12 @@ impl Course {
     }
 }
 
-/// Returns the contacts in the arrays with first row and number of rows of each moment, if there are any. `steps` are the
+/// Contacts of all moments, and first row and number of rows of each moment.
+type Contacts = (Table, Vec<[usize; 2]>);
+
+/// Returns the contacts in the arrays, if there are any. `steps` are the
 /// steps of the moments. An error consists of the expected and the actual content.
-fn contacts(
-    arrays: &BTreeMap<String, Array>,
-    steps: &[u64],
-) -> Result<Option<(Table, Vec<[usize; 2]>)>, (String, String)> {
+fn contacts(arrays: &BTreeMap<String, Array>, steps: &[u64]) -> Result<Option<Contacts>, (String, String)> {
     let Some(step) = arrays.get(CONTACT_STEP) else { return Ok(None) };
     let rows = step.numbers.len();
     let (mut names, mut parts) = (Vec::new(), Vec::new());

@@ -213,7 +213,7 @@ impl File {
         };
         let width = width.filter(|width| *width > 0 && components.is_none_or(|wanted| wanted == *width));
         let width =
-            width.ok_or_else(|| self.fault(&expected, &format!("an array of the shape {:?}", dataset.shape())))?;
+            width.ok_or_else(|| self.fault(&expected, format!("an array of the shape {:?}", dataset.shape())))?;
         let numbers = kind.decode(&bytes, cfg!(target_endian = "big"));
         Ok(Array { name: name.to_owned(), components: width, numbers, digits: kind.digits(Digits::exact()) })
     }

@@ -54,7 +54,7 @@ impl Resolver<'_> {
         let Some(stop) = spec.stop else { return Ok([start, f64::INFINITY]) };
         let key = format!("{key}.stop");
         let stop = self.check.positive(&key, stop, "time (s)")?;
-        self.check.require(stop > start, &key, &format!("a time after the start at {start} s"), stop)?;
+        self.check.require(stop > start, &key, format!("a time after the start at {start} s"), stop)?;
         Ok([start, stop])
     }
 

@@ -247,7 +247,7 @@ impl Resolver<'_> {
                 }
                 None => "grains that fill at most half of the domain, because no denser packing was found".to_owned(),
             };
-            check.error(&key, &expected, &format!("{total} grains that would fill {asked:.2} of it"))
+            check.error(&key, &expected, format!("{total} grains that would fill {asked:.2} of it"))
         })?;
         Ok(centres.into_iter().zip(radii).collect())
     }

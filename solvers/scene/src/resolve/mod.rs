@@ -238,7 +238,7 @@ impl Resolver<'_> {
         match spec {
             PeriodicSpec::Each(each) => {
                 let is_whole = each.is_empty() || each.len() == dimensions;
-                check.require(is_whole, key, &format!("{dimensions} values"), format_args!("{each:?}"))?;
+                check.require(is_whole, key, format!("{dimensions} values"), format_args!("{each:?}"))?;
                 periodic[..each.len()].copy_from_slice(each);
             }
             PeriodicSpec::Named(names) => {

@@ -124,7 +124,7 @@ impl Resolver<'_> {
             places.push((row[0], check.vector(key, &row[1..])?));
         }
         let Some(first) = places.first().filter(|_| places.len() > 1) else {
-            return Err(check.error(key, &format!("at least two rows {shape}"), places.len()));
+            return Err(check.error(key, format!("at least two rows {shape}"), places.len()));
         };
         let expected = "a first row with zeros after its time, because displacements are relative to the start";
         check.require(first.1 == Vector3::zeros(), key, expected, format_args!("{:?}", rows[0]))?;
