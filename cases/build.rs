@@ -70,8 +70,8 @@ fn fingerprint(root: &Path, folders: &[&str]) -> String {
     hasher.finalize().to_hex()[..16].to_owned()
 }
 
-/// Returns the text of a file. A Rust source is reduced to its lines of code without indentation and without the module
-/// of its tests, which ends with a brace at the start of a line.
+/// Returns the text of a file. A Rust source is reduced to its lines of code, without indentation and without its test
+/// module. A line that begins with a brace ends the module.
 fn code(file: &Path) -> Vec<u8> {
     let bytes = fs::read(file).unwrap_or_default();
     match (file.extension(), str::from_utf8(&bytes)) {

@@ -61,8 +61,8 @@ impl ComparedFlow {
     }
 }
 
-/// Returns the claim that two silos have the same curve of packing fraction φ against inertial number |I₀|, up to the end
-/// of the run of the other silo, `which`. `size` is a suffix of the quantity.
+/// Returns the claim that two silos have the same curve of packing fraction φ against inertial number |I₀|. The curve ends
+/// with the run of the other silo. `which` names this silo, and `size` is a suffix of the quantity.
 pub(crate) fn of_drains(run: Run, other: &'static ComparedFlow, [which, size]: [&str; 2]) -> Claim {
     claim(format!("packing fraction over |I₀| beside that of {which}, worst bin{size}"), "1")
         .run(run)

@@ -70,8 +70,8 @@ pub(crate) fn reason(scene: &Scene) -> Option<String> {
 }
 
 impl Accounts {
-    /// Adds the work and the impulse in a step Δt = `time_step` (s). `forces` (N) and `velocities` (m/s) belong to the groups
-    /// of grains with prescribed motion, then to the walls.
+    /// Adds the work and the impulse in a step Δt = `time_step` (s). `forces` (N) and `velocities` (m/s) list the groups of
+    /// driven grains first and the walls last.
     pub(crate) fn add_work(
         &mut self,
         forces: Vec<Vector3<f64>>,
