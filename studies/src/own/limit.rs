@@ -5,7 +5,7 @@ use super::ladder::Ladder;
 use super::network::largest_stable_step;
 use super::within::Within;
 use crate::run_cache::key_of_run;
-use crate::stability::failure::{Failure, of_error};
+use crate::stability::failure::{Failure, confirmed, of_error};
 use crate::stability::limit::{Stop, fill};
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
@@ -120,7 +120,7 @@ fn bisect(
     let within = Within::new(solver, deadline, stop);
     let (mut energies, mut exact, mut unstable) = (None, None, None);
     let is_concluded = fill(limit, parameter.range, (PRECISION, 0), |value| {
-        let record = within.run(&scene, &(parameter.resolution)(value), &mut RunOptions::unstable());
+        let record = confirmed(|| within.run(&scene, &(parameter.resolution)(value), &mut RunOptions::unstable()));
         let record = record.map_err(|error| match of_error(&error) {
             Some(failure) => Stop::Unstable(shortened(failure, &error)),
             // The solver knows that a dashpot is unstable at this step.

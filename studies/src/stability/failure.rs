@@ -1,6 +1,6 @@
 //! Kinds of failure of a run.
 
-use grainbench_solver::failure::{Cause, RunError};
+use grainbench_solver::failure::{Cause, Failure as ProgramFailure, RunError};
 use grainbench_solver::record::Snapshot;
 
 /// Failure because of which a time step counts as unstable.
@@ -40,6 +40,20 @@ impl Failure {
     }
 }
 
+/// Runs a simulation, and repeats it once if an external program fails.
+///
+/// An unstable run fails each time. A crash that does not repeat, such as one of MPI before the first step, has another reason
+/// and is no evidence of instability.
+///
+/// # Errors
+/// The error of the last run.
+pub fn confirmed<T>(mut run: impl FnMut() -> Result<T, RunError>) -> Result<T, RunError> {
+    match run() {
+        Err(RunError::Program { .. }) => run(),
+        result => result,
+    }
+}
+
 /// Returns the failure of a run that ended in an error, or `None` for errors that prevent the run.
 #[must_use]
 pub fn of_error(error: &RunError) -> Option<Failure> {
@@ -48,6 +62,7 @@ pub fn of_error(error: &RunError) -> Option<Failure> {
             Cause::CollapsedCell { .. } => Failure::CellCollapsed,
             _ => Failure::Broken(broken.to_string()),
         }),
+        RunError::Program { failure: ProgramFailure::NotRun(_) | ProgramFailure::Interrupted, .. } => None,
         RunError::Program { .. } => Some(Failure::Broken(error.to_string())),
         _ => None,
     }
@@ -63,4 +78,39 @@ pub fn finite(snapshot: &Snapshot) -> Result<(), Failure> {
         vectors.iter().all(|vector| vector.iter().all(|value| value.is_finite()))
     });
     if sound { Ok(()) } else { Err(Failure::NotFinite) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn program(failure: ProgramFailure) -> RunError {
+        RunError::Program { solver: "liggghts".to_owned(), failure, last_lines: Vec::new() }
+    }
+
+    #[test]
+    fn only_a_crash_that_repeats_is_a_failure() {
+        let crash = || program(ProgramFailure::Crash("exit status: 1".to_owned()));
+        let outcome = |errors: &[RunError]| {
+            let mut runs = 0;
+            let result = confirmed(|| {
+                runs += 1;
+                errors.get(runs - 1).cloned().map_or_else(|| Ok(()), Err)
+            });
+            (runs, result.err())
+        };
+        assert_eq!(outcome(&[]), (1, None));
+        assert_eq!(outcome(&[crash()]), (2, None));
+        assert_eq!(outcome(&[crash(), crash()]), (2, Some(crash())));
+        let other = RunError::NotAvailable { solver: "liggghts".to_owned(), reason: "not found".to_owned() };
+        assert_eq!(outcome(std::slice::from_ref(&other)), (1, Some(other)));
+    }
+
+    #[test]
+    fn a_program_that_did_not_run_is_not_unstable() {
+        assert_eq!(of_error(&program(ProgramFailure::NotRun("no such file".to_owned()))), None);
+        assert_eq!(of_error(&program(ProgramFailure::Interrupted)), None);
+        let lost = program(ProgramFailure::Crash("lost atoms".to_owned()));
+        assert_eq!(of_error(&lost), Some(Failure::Broken(lost.to_string())));
+    }
 }

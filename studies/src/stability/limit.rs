@@ -2,7 +2,7 @@
 
 use super::PATIENCE;
 use super::assembly::Assembly;
-use super::failure::{Failure, of_error};
+use super::failure::{Failure, confirmed, of_error};
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::scene::{Duration, Scene};
@@ -43,9 +43,8 @@ pub fn of_assembly(assembly: &Assembly, (solvers, solver): (&dyn Solvers, &str))
         None => "there is no such solver".clone_into(&mut limit.detail),
         Some(solver) => {
             fill(&mut limit, RANGE, (PRECISION, 1), |step| {
-                let record = solver
-                    .run(&assembly.scene, &Resolution::TimeStep(step), &mut RunOptions::unstable())
-                    .map_err(stop)?;
+                let run = || solver.run(&assembly.scene, &Resolution::TimeStep(step), &mut RunOptions::unstable());
+                let record = confirmed(run).map_err(stop)?;
                 assembly.judge(&record).map_err(Stop::Unstable)
             });
         }
@@ -179,6 +178,51 @@ fn largest<F>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::stability::assembly;
+    use grainbench_dem::{convention::Convention, solver::Dem};
+    use grainbench_solver::failure::Failure as ProgramFailure;
+    use grainbench_solver::observer::Observer;
+    use grainbench_solver::record::Record;
+    use std::sync::Arc;
+    use std::sync::atomic::{AtomicU64, Ordering};
+
+    /// The DEM as a program that crashes in one of its runs.
+    #[derive(Clone)]
+    struct CrashingOnce {
+        runs: Arc<AtomicU64>,
+        crash: u64,
+    }
+
+    impl Solver for CrashingOnce {
+        fn name(&self) -> String {
+            "dem".to_owned()
+        }
+
+        fn run(&self, scene: &Scene, step: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
+            if self.runs.fetch_add(1, Ordering::Relaxed) == self.crash {
+                let failure = ProgramFailure::Crash("exit status: 1".to_owned());
+                return Err(RunError::Program { solver: self.name(), failure, last_lines: Vec::new() });
+            }
+            Dem::new(Convention::DEFAULT).run(scene, step, observer)
+        }
+    }
+
+    impl Solvers for CrashingOnce {
+        fn find(&self, _: &str) -> Option<Arc<dyn Solver>> {
+            Some(Arc::new(self.clone()))
+        }
+    }
+
+    #[test]
+    fn a_crash_that_does_not_repeat_is_no_instability() {
+        let pair = assembly::all().unwrap().into_iter().find(|assembly| assembly.name == "free pair").unwrap();
+        let limits = [0, 1, 4, u64::MAX].map(|crash| {
+            let solver = CrashingOnce { runs: Arc::default(), crash };
+            of_assembly(&pair, (&solver, "dem"))
+        });
+        assert!(limits.iter().all(|limit| limit.found.is_some() && *limit == limits[3]), "{limits:?}");
+        assert!(limits[3].error.unwrap().abs() < 0.01, "{:?}", limits[3]);
+    }
 
     #[test]
     fn finds_a_threshold_and_says_how_it_fails() {

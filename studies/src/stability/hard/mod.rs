@@ -5,7 +5,7 @@ mod extremes;
 mod many;
 
 use super::PATIENCE as LIMIT;
-use super::failure::{Failure, finite, of_error};
+use super::failure::{Failure, confirmed, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
 use crate::scene_from_text;
 use grainbench_harness::conformance::HalfwayCheckpoint;
@@ -136,11 +136,13 @@ fn attempt(case: &HardCase, solver: &dyn Solver, part: f64) -> Result<(), Stop> 
     let scene = &case.scene;
     let resolution = resolution(&solver.name(), part);
     let mut halfway = HalfwayCheckpoint::new(RunOptions::unstable());
-    let run = if case.goes_on {
-        solver.run(scene, &resolution, &mut halfway)
-    } else {
-        solver.run(scene, &resolution, &mut RunOptions::unstable())
-    };
+    let run = confirmed(|| {
+        if case.goes_on {
+            solver.run(scene, &resolution, &mut halfway)
+        } else {
+            solver.run(scene, &resolution, &mut RunOptions::unstable())
+        }
+    });
     let record = run.map_err(|error| match (of_error(&error), error) {
         (Some(failure), _) => Stop::Failed(failure),
         // A solver that rejects the time step and names a stable one has failed with a typed error.
