@@ -15,7 +15,9 @@ fn scene(text: &str) -> Scene {
         "title = 'forces'\nduration = 1.0\nmaterials.m.density = 1.0\n\
          contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e3, tangential_stiffness = 1.0e3, friction = 0.5 }}\n{text}"
     );
-    SceneSource::from_text("test", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    SceneSource::from_text("test", Path::new("../cases/mesh-seam"), &text)
+        .scene(&grainbench_scene::resolve::no_data_file)
+        .unwrap()
 }
 
 /// Returns the quantities of a scene from files with the given texts. `names` are pairs of our column names and the
@@ -84,6 +86,17 @@ fn pair_forces_act_on_the_first_along_the_nearest_image() {
         }
         assert!(observed.snapshots[0].contacts.is_none(), "what a probe asks for is not all that there is");
     }
+    // Each force component has an uncertainty of 0.05 N, half a unit of its last digit. Positions are exact.
+    let exact = dump(
+        "ATOMS",
+        "id x y",
+        &["1 1.0000000000000000e-01 2.0000000000000000e-01", "2 9.5000000000000000e+00 9.4000000000000000e+00"],
+    );
+    let printed = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 54.4 84.2"]), exact], &names);
+    for name in ["ab.normal_force", "ab.shear_force"] {
+        let at = printed.series.columns.iter().position(|column| column.name == name).unwrap();
+        close(printed.uncertainty[at][0], 0.1);
+    }
     // An attractive normal force is negative.
     let pulled = observed(&scene, &[dump("ENTRIES", "i j fx fy", &["1 2 -6 -8"]), grains], &names);
     close(value(&pulled, "ab.normal_force"), -10.0);
@@ -126,6 +139,23 @@ fn the_end_of_a_segment_is_the_nearest_point() {
     close(value(&observed, "c.overlap"), 0.01);
     close(value(&observed, "c.normal_force"), 50.0);
     close(value(&observed, "c.shear_force"), 0.0);
+}
+
+/// A sphere of radius 0.51 m overlaps by 0.01 m with the upper face of the cube [0, 1]³ m. The force on it is 50 N along
+/// the normal and 5 N along (3, 4, 0)/5.
+#[test]
+fn a_contact_with_a_mesh_is_at_its_nearest_point() {
+    let scene = scene(
+        "dimension = 3\n[grains.a]\nmaterial = 'm'\nradius = 0.51\nposition = [0.4, 0.7, 1.5]\n\
+         [walls.w]\nmaterial = 'm'\nmesh = { file = 'cube.stl', unit = 'm' }\n[probes]\nc.contact = ['a', 'w']\n",
+    );
+    let columns = ["x", "y", "z"].map(|axis| (format!("w.force_{axis}"), format!("f_w[{axis}]")));
+    let columns: Vec<(&str, &str)> = columns.iter().map(|(ours, theirs)| (ours.as_str(), theirs.as_str())).collect();
+    let grains = dump("ATOMS", "id x y z f_w[x] f_w[y] f_w[z]", &["1 0.4 0.7 1.5 3 4 50"]);
+    let observed = observed(&scene, &[grains], &columns);
+    close(value(&observed, "c.overlap"), 0.01);
+    close(value(&observed, "c.normal_force"), 50.0);
+    close(value(&observed, "c.shear_force"), 5.0);
 }
 
 /// Two spheres of radius 0.51 m in three dimensions are 1 m apart along (2, 3, 6)/7. A normal force of 70 N on the
