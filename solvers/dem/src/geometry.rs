@@ -149,13 +149,13 @@ pub(crate) trait Geometry: Space {
     /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the middle of
     /// the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In two
     /// dimensions, the scalar does not change.
-    fn turned<X: Number>(
+    fn turned_tangent<X: Number>(
         tangent: Self::Tangents<X>,
         middle: Self::Vectors<X>,
         normal: Self::Vectors<X>,
         half_twist: X,
     ) -> Self::Tangents<X>;
-    /// Returns a stored rolling angle after the rotation of its contact. The arguments are those of `turned`.
+    /// Returns a stored rolling angle after the rotation of its contact. The arguments are those of `turned_tangent`.
     fn turned_spin<X: Number>(
         spin: Self::Spins<X>,
         middle: Self::Vectors<X>,
@@ -249,7 +249,7 @@ impl Geometry for Plane {
         spin.like(0.0)
     }
     #[inline(always)]
-    fn turned<X: Number>(
+    fn turned_tangent<X: Number>(
         tangent: Components<X, 1>,
         _middle: Components<X, 2>,
         _normal: Components<X, 2>,
@@ -350,7 +350,7 @@ impl Geometry for Solid {
         spin.dot(normal)
     }
     #[inline(always)]
-    fn turned<X: Number>(
+    fn turned_tangent<X: Number>(
         tangent: Components<X, 3>,
         middle: Components<X, 3>,
         normal: Components<X, 3>,

@@ -2,7 +2,6 @@
 //! variants must give the same results.
 
 use crate::contact::options::Options;
-use crate::contact::tangential::{SpringTransport, Turned};
 use crate::convention::Convention;
 use crate::geometry::Geometry;
 use crate::simulation::DemSimulation;
@@ -125,10 +124,7 @@ fn same_on_all<S: Geometry>(simulated: fn(&Scene, &Convention, Team) -> DemSimul
     }
 }
 
-fn simulated<S: Geometry>(scene: &Scene, convention: &Convention, team: Team) -> DemSimulation<S>
-where
-    Turned: SpringTransport<S>,
-{
+fn simulated<S: Geometry>(scene: &Scene, convention: &Convention, team: Team) -> DemSimulation<S> {
     let (forces, options) = (loops(scene, convention), Options::from_convention(convention));
     DemSimulation::new(scene, forces, options, 2e-4, (team, u64::MAX)).unwrap_or_else(|error| panic!("{error:?}"))
 }

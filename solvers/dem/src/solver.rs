@@ -4,7 +4,7 @@
 use crate::contact::normal::{Hertz, HertzDashpot, Normal, Spring, SpringDashpot};
 use crate::contact::options::Options;
 use crate::contact::rolling::{ElasticPlastic, FreeRolling};
-use crate::contact::tangential::{Coulomb, Frictionless, Projected, SpringTransport, Tangential, Turned};
+use crate::contact::tangential::{Coulomb, Frictionless, Projected, Tangential, Turned};
 use crate::convention::{Convention, History, VelocityNormal};
 use crate::end_state::words;
 use crate::forces::{Chain, Forces};
@@ -120,10 +120,7 @@ impl Dem {
         scene: &Scene,
         time_step: f64,
         RunOptions { threads, most_rows, allow_unstable, .. }: RunOptions,
-    ) -> Result<Box<dyn Stepper>, RunError>
-    where
-        Turned: SpringTransport<S>,
-    {
+    ) -> Result<Box<dyn Stepper>, RunError> {
         let forces = loops::<S>(scene, &self.convention);
         let own = words(forces.springs());
         if let Some(springs) = scene.springs.as_ref().filter(|springs| springs.layout != own) {
@@ -212,10 +209,7 @@ impl Dem {
 }
 
 /// Returns the loops over contacts for the effects of a scene and a convention.
-pub(crate) fn loops<S: Geometry>(scene: &Scene, convention: &Convention) -> Box<dyn Forces<S>>
-where
-    Turned: SpringTransport<S>,
-{
+pub(crate) fn loops<S: Geometry>(scene: &Scene, convention: &Convention) -> Box<dyn Forces<S>> {
     match convention.history {
         History::Turned => chain::<S, Coulomb<Turned>>(scene),
         History::Projected => chain::<S, Coulomb<Projected>>(scene),

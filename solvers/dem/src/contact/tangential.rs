@@ -6,9 +6,8 @@
 use super::normal::{Normal, NormalForce};
 use super::options::Cap;
 use super::{ContactInput, Evaluation, Memory};
-use crate::geometry::{Components, Geometry, Linear};
+use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
-use grainbench_solver::space::{Plane, Solid};
 use std::fmt::Debug;
 use std::marker::PhantomData;
 
@@ -194,18 +193,14 @@ impl<X: Number> Bound<X> {
 pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'static {
     /// True if the displacement rotates with the contact.
     const TURNED: bool;
-    /// Number of history values of the displacement.
-    const NUMBERS: usize;
     /// Factor by which the history values are multiplied when the first and the second grain are exchanged.
     const EXCHANGED: f64;
-    /// Returns the stored displacement (m) after the rotation of the contact.
-    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, S, X>) -> S::Tangents<X>;
-    /// Returns the stored displacement (m) as a tangential vector of a contact with `normal`.
-    fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
-    /// Stores the displacement (m) of a contact with `normal`.
-    fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>);
-    /// Returns the squared displacement (m²).
-    fn squared<X: Number>(memory: &Memory<X>) -> X;
+    /// Displacement as the history stores it.
+    type Stored<X: Number>: Linear<X>;
+    /// Returns a stored displacement (m) as a tangential vector of a contact with `normal`.
+    fn tangent<X: Number>(stored: Self::Stored<X>, normal: S::Vectors<X>) -> S::Tangents<X>;
+    /// Returns the displacement (m) of a contact with `normal` as the history stores it.
+    fn stored<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>) -> Self::Stored<X>;
 }
 
 /// Transport that rotates the displacement with the contact. In two dimensions, the displacement is a scalar along the
@@ -213,50 +208,18 @@ pub(crate) trait SpringTransport<S: Geometry>: Copy + Debug + Send + Sync + 'sta
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Turned;
 
-impl SpringTransport<Plane> for Turned {
+impl<S: Geometry> SpringTransport<S> for Turned {
     const TURNED: bool = true;
-    const NUMBERS: usize = 1;
-    const EXCHANGED: f64 = 1.0;
+    const EXCHANGED: f64 = if S::DIMENSION == 2 { 1.0 } else { -1.0 };
+    type Stored<X: Number> = S::Tangents<X>;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, Plane, X>) -> Components<X, 1> {
-        <Self as SpringTransport<Plane>>::held(memory, touch.normal)
+    fn tangent<X: Number>(stored: S::Tangents<X>, _normal: S::Vectors<X>) -> S::Tangents<X> {
+        stored
     }
     #[inline(always)]
-    fn held<X: Number>(memory: &Memory<X>, _normal: Components<X, 2>) -> Components<X, 1> {
-        Linear::read(memory)
-    }
-    #[inline(always)]
-    fn keep<X: Number>(stretch: Components<X, 1>, _normal: Components<X, 2>, memory: &mut Memory<X>) {
-        stretch.write(memory);
-    }
-    fn squared<X: Number>(memory: &Memory<X>) -> X {
-        memory[0] * memory[0]
-    }
-}
-
-impl SpringTransport<Solid> for Turned {
-    const TURNED: bool = true;
-    const NUMBERS: usize = 3;
-    const EXCHANGED: f64 = -1.0;
-
-    #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, Solid, X>) -> Components<X, 3> {
-        let stretch = <Self as SpringTransport<Solid>>::held(memory, touch.normal);
-        let Some(turn) = touch.turn else { return stretch };
-        Solid::turned(stretch, turn.middle, touch.normal, turn.half_twist)
-    }
-    #[inline(always)]
-    fn held<X: Number>(memory: &Memory<X>, _normal: Components<X, 3>) -> Components<X, 3> {
-        Linear::read(memory)
-    }
-    #[inline(always)]
-    fn keep<X: Number>(stretch: Components<X, 3>, _normal: Components<X, 3>, memory: &mut Memory<X>) {
-        stretch.write(memory);
-    }
-    fn squared<X: Number>(memory: &Memory<X>) -> X {
-        let stretch = Components::<X, 3>::read(memory);
-        stretch.dot(stretch)
+    fn stored<X: Number>(stretch: S::Tangents<X>, _normal: S::Vectors<X>) -> S::Tangents<X> {
+        stretch
     }
 }
 
@@ -267,24 +230,16 @@ pub(crate) struct Projected;
 
 impl<S: Geometry> SpringTransport<S> for Projected {
     const TURNED: bool = false;
-    const NUMBERS: usize = <S::Vectors<f64> as Linear<f64>>::COUNT;
     const EXCHANGED: f64 = -1.0;
+    type Stored<X: Number> = S::Vectors<X>;
 
     #[inline(always)]
-    fn carried<X: Number>(memory: &Memory<X>, touch: &ContactInput<'_, S, X>) -> S::Tangents<X> {
-        <Self as SpringTransport<S>>::held(memory, touch.normal)
+    fn tangent<X: Number>(stored: S::Vectors<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
+        S::tangential(stored, normal)
     }
     #[inline(always)]
-    fn held<X: Number>(memory: &Memory<X>, normal: S::Vectors<X>) -> S::Tangents<X> {
-        S::tangential(S::Vectors::<X>::read(memory), normal)
-    }
-    #[inline(always)]
-    fn keep<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>, memory: &mut Memory<X>) {
-        S::along(stretch, normal).write(memory);
-    }
-    fn squared<X: Number>(memory: &Memory<X>) -> X {
-        let stretch = S::Vectors::<X>::read(memory);
-        stretch.dot(stretch)
+    fn stored<X: Number>(stretch: S::Tangents<X>, normal: S::Vectors<X>) -> S::Vectors<X> {
+        S::along(stretch, normal)
     }
 }
 
@@ -298,7 +253,7 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
     const ACTIVE: bool = true;
     const TURNED: bool = H::TURNED;
     const MAY_BE_MID_STEP: bool = H::TURNED;
-    const NUMBERS: usize = H::NUMBERS;
+    const NUMBERS: usize = <H::Stored<f64> as Linear<f64>>::COUNT;
     const EXCHANGED: f64 = H::EXCHANGED;
 
     #[inline(always)]
@@ -320,7 +275,7 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
             limit: law.friction * normal.for_cap + law.cohesion,
         };
         let shear = bound.limit::<S>(evaluation.options.cap, &mut stretch, slip);
-        H::keep(stretch, touch.normal, memory);
+        H::stored(stretch, touch.normal).write(memory);
         shear
     }
     fn lost<N: Normal, X: Number>(
@@ -331,7 +286,8 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
         after: &Memory<X>,
     ) -> [X; 2] {
         let half = N::tangential_stiffness(touch) * 0.5;
-        let (turned, after) = (H::carried(before, touch), H::held(after, touch.normal));
+        let turned = turned::<S, H, X>(before, touch);
+        let after = H::tangent(Linear::read(after), touch.normal);
         let (before, slipped) = (carried::<S, H, N, X>(before, touch), slip * touch.overlap.like(elapsed));
         let slid = before + slipped - after;
         let [sum, slid] = [before + after, slid].map(|tangent| S::along(tangent, touch.normal));
@@ -344,7 +300,21 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
         [rubbed, half * lost - rubbed]
     }
     fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X {
-        stiffness * 0.5 * H::squared(memory)
+        let stored = H::Stored::<X>::read(memory);
+        stiffness * 0.5 * stored.dot(stored)
+    }
+}
+
+/// Returns the stored displacement (m) after the rotation of the contact.
+#[inline(always)]
+fn turned<S: Geometry, H: SpringTransport<S>, X: Number>(
+    memory: &Memory<X>,
+    touch: &ContactInput<'_, S, X>,
+) -> S::Tangents<X> {
+    let stretch = H::tangent(Linear::read(memory), touch.normal);
+    match touch.turn {
+        Some(turn) if H::TURNED => S::turned_tangent(stretch, turn.middle, touch.normal, turn.half_twist),
+        _ => stretch,
     }
 }
 
@@ -355,7 +325,7 @@ fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
     memory: &Memory<X>,
     touch: &ContactInput<'_, S, X>,
 ) -> S::Tangents<X> {
-    let stretch = H::carried(memory, touch);
+    let stretch = turned::<S, H, X>(memory, touch);
     if !(H::TURNED && N::CURVED) {
         return stretch;
     }
@@ -366,6 +336,8 @@ fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::geometry::Components;
+    use grainbench_solver::space::Plane;
 
     /// Above the limit, the remaining displacement gives a force equal to the limit. This force is that of the spring
     /// alone, or of spring and dashpot together.
