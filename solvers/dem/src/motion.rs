@@ -16,43 +16,6 @@ use nalgebra::Vector3;
 use std::marker::PhantomData;
 use std::ops::Range;
 
-/// Global damping of the equation of motion, or no damping.
-trait Drag {
-    /// Returns `keep`, the fraction of a velocity that remains after a step, and `gain` (s), the factor by which the
-    /// acceleration is multiplied. The arguments are the damping rate α (1/s) and the time step Δt (s).
-    fn factors(rate: f64, time_step: f64) -> (f64, f64);
-    /// Returns `keep · velocity`, without arithmetic if there is no damping.
-    fn keep(velocity: f64, keep: f64) -> f64;
-}
-
-/// No global damping: `keep` is 1 and `gain` is Δt.
-struct NoDrag;
-
-impl Drag for NoDrag {
-    fn factors(_rate: f64, time_step: f64) -> (f64, f64) {
-        (1.0, time_step)
-    }
-    #[inline(always)]
-    fn keep(velocity: f64, _keep: f64) -> f64 {
-        velocity
-    }
-}
-
-/// Damping force −α m v (α: damping rate, m: mass), evaluated at mid-step: v ← [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) with
-/// the acceleration a (Cundall & Strack 1979, eq. 35).
-struct MassProportional;
-
-impl Drag for MassProportional {
-    fn factors(rate: f64, time_step: f64) -> (f64, f64) {
-        let half = 0.5 * rate * time_step;
-        ((1.0 - half) / (1.0 + half), time_step / (1.0 + half))
-    }
-    #[inline(always)]
-    fn keep(velocity: f64, keep: f64) -> f64 {
-        velocity * keep
-    }
-}
-
 /// Gravity, global damping and time step, common to all grains.
 #[derive(Clone, Copy)]
 pub(crate) struct Motion {
@@ -108,10 +71,10 @@ impl Motion {
     /// square of the largest speed (m²/s²); infinite if any speed is NaN.
     pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: MotionData<'_>) -> f64 {
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
-            (true, true) => processor.run(Drift::<S, NoDrag, false>::new(self, grains)),
-            (true, false) => processor.run(Drift::<S, NoDrag, true>::new(self, grains)),
-            (false, true) => processor.run(Drift::<S, MassProportional, false>::new(self, grains)),
-            (false, false) => processor.run(Drift::<S, MassProportional, true>::new(self, grains)),
+            (true, true) => processor.run(Drift::<S, false, false>::new(self, grains)),
+            (true, false) => processor.run(Drift::<S, false, true>::new(self, grains)),
+            (false, true) => processor.run(Drift::<S, true, false>::new(self, grains)),
+            (false, false) => processor.run(Drift::<S, true, true>::new(self, grains)),
         }
     }
 
@@ -140,36 +103,40 @@ impl Motion {
     }
 }
 
-/// Loop over grains, compiled for each kind of damping, with and without gravity, and for each instruction set.
-struct Drift<'a, S, D, const GRAVITY: bool> {
+/// Loop over grains, compiled with and without global damping, with and without gravity, and for each instruction set.
+struct Drift<'a, S, const DAMPED: bool, const GRAVITY: bool> {
     motion: &'a Motion,
     grains: MotionData<'a>,
-    kind: PhantomData<(S, D)>,
+    space: PhantomData<S>,
 }
 
-impl<'a, S: Geometry, D: Drag, const GRAVITY: bool> Drift<'a, S, D, GRAVITY> {
+impl<'a, S: Geometry, const DAMPED: bool, const GRAVITY: bool> Drift<'a, S, DAMPED, GRAVITY> {
     fn new(motion: &'a Motion, grains: MotionData<'a>) -> Self {
-        Self { motion, grains, kind: PhantomData }
+        Self { motion, grains, space: PhantomData }
     }
 }
 
 /// Factors of a step. Each has one value for each number of a quad, so that a quad is updated as one register. The
 /// fourth number of a quad is an inverse mass or a radius; its factors leave it unchanged.
 struct Step {
+    /// Fraction of a velocity that remains after the step.
     keep: [f64; 4],
+    /// Factor by which the acceleration is multiplied (s).
     gain: [f64; 4],
     time_step: [f64; 4],
     gravity: [f64; 4],
 }
 
 impl Step {
-    fn new<D: Drag>(Motion { gravity, global_damping, time_step }: &Motion) -> Self {
-        let (keep, gain) = D::factors(*global_damping, *time_step);
+    /// Returns the factors of a step Δt. The damping force −α m v (α: damping rate, m: mass) is evaluated at mid-step: v ←
+    /// [v(1 − αΔt/2) + aΔt]/(1 + αΔt/2) with the acceleration a (Cundall & Strack 1979, eq. 35).
+    fn new(&Motion { gravity, global_damping, time_step }: &Motion) -> Self {
+        let half = 0.5 * global_damping * time_step;
         let three = |value: f64, last: f64| [value, value, value, last];
         Self {
-            keep: three(keep, 1.0),
-            gain: three(gain, 0.0),
-            time_step: three(*time_step, 0.0),
+            keep: three((1.0 - half) / (1.0 + half), 1.0),
+            gain: three(time_step / (1.0 + half), 0.0),
+            time_step: three(time_step, 0.0),
             gravity: [gravity.x, gravity.y, gravity.z, 0.0],
         }
     }
@@ -177,7 +144,12 @@ impl Step {
     /// Updates a velocity or spin by the force or torque, sets the force or torque to zero, and returns the new velocity
     /// or spin. `inverse` holds the inverse mass or inverse moment of inertia for each number of the quad.
     #[inline(always)]
-    fn push<D: Drag, const GRAVITY: bool>(&self, velocity: &mut Quad, load: &mut Quad, inverse: [f64; 4]) -> Quad {
+    fn push<const DAMPED: bool, const GRAVITY: bool>(
+        &self,
+        velocity: &mut Quad,
+        load: &mut Quad,
+        inverse: [f64; 4],
+    ) -> Quad {
         let (before, forces) = (velocity.0, load.0);
         let mut after = before;
         for axis in 0..4 {
@@ -185,7 +157,8 @@ impl Step {
             if GRAVITY {
                 acceleration += self.gravity[axis];
             }
-            after[axis] = D::keep(before[axis], self.keep[axis]) + acceleration * self.gain[axis];
+            let kept = if DAMPED { before[axis] * self.keep[axis] } else { before[axis] };
+            after[axis] = kept + acceleration * self.gain[axis];
         }
         *velocity = Quad(after);
         *load = Quad::default();
@@ -205,12 +178,12 @@ impl Step {
     }
 }
 
-impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVITY> {
+impl<S: Geometry, const DAMPED: bool, const GRAVITY: bool> Kernel for Drift<'_, S, DAMPED, GRAVITY> {
     type Output = f64;
 
     #[inline(always)]
     fn run<L: Lanes>(self, _: L) -> f64 {
-        let step = Step::new::<D>(self.motion);
+        let step = Step::new(self.motion);
         let MotionData { place, movement, load, quads, inverse_inertia } = self.grains;
         // Read as integers, the bits of non-negative numbers have the same order as the numbers, with NaN last.
         let mut fastest = 0;
@@ -221,21 +194,21 @@ impl<S: Geometry, D: Drag, const GRAVITY: bool> Kernel for Drift<'_, S, D, GRAVI
                 place.iter_mut().zip(movement).zip(load).zip(inverse_inertia)
             {
                 let inverse = velocity.0[3];
-                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse; 4]);
-                step.push::<D, false>(spin, torque, [*inertia; 4]);
+                let velocity = step.push::<DAMPED, GRAVITY>(velocity, load, [inverse; 4]);
+                step.push::<DAMPED, false>(spin, torque, [*inertia; 4]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
         } else if S::DIMENSION == 2 && !inverse_inertia.is_empty() {
             for (((place, velocity), load), inertia) in place.iter_mut().zip(movement).zip(load).zip(inverse_inertia) {
                 let inverse = velocity.0[3];
-                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse, inverse, *inertia, inverse]);
+                let velocity = step.push::<DAMPED, GRAVITY>(velocity, load, [inverse, inverse, *inertia, inverse]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
         } else {
             for ((place, velocity), load) in place.iter_mut().zip(movement).zip(load) {
                 let inverse = velocity.0[3];
                 let about_z = if S::DIMENSION == 2 { 0.0 } else { inverse };
-                let velocity = step.push::<D, GRAVITY>(velocity, load, [inverse, inverse, about_z, inverse]);
+                let velocity = step.push::<DAMPED, GRAVITY>(velocity, load, [inverse, inverse, about_z, inverse]);
                 fastest = fastest.max(step.carry::<S>(place, velocity).to_bits());
             }
         }
