@@ -119,7 +119,7 @@ fn nothing_unsafe_unfinished_or_left_from_debugging() {
 /// Loops over particles and contacts use no hash map, string or trait object. The test `allocations` counts their allocations.
 #[test]
 fn no_hash_map_string_or_trait_object_in_hot_loops() {
-    let of_dem = "neighbours cells walls grains geometry motion forces laws pairs terms touching";
+    let of_dem = "neighbours cells walls grains geometry motion forces laws pairs touching";
     let of_mpm = "points/runs points/share";
     let of_lanes = "number plain avx2 avx512 logarithm";
     let mut files: Vec<PathBuf> = Vec::new();

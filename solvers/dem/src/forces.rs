@@ -10,13 +10,12 @@ use crate::contact::chain::Layout;
 use crate::contact::normal::Normal;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
-use crate::contact::{MEMORY, Memory};
+use crate::contact::{MEMORY, Memory, Terms};
 use crate::geometry::Geometry;
 use crate::grains::{GrainTables, Grains, Sums};
 use crate::listed::Pairs;
 use crate::pairs::PairLoop;
 use crate::seen::RecordedContacts;
-use crate::terms::Terms;
 use crate::touching::ContactList;
 use crate::walls::{MovingWall, WallView};
 use grainbench_lanes::{Processor, Quad};
@@ -81,7 +80,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
         wall_spin: S::as_spin(wall.spin.into()),
         inertia: if R::ACTIVE { 1.0 / grains.inverse_inertia[slot] } else { 0.0 },
     };
-    let answer = at_wall.respond::<N, T, R>(terms.evaluation(seen.is_some()), memory);
+    let answer = at_wall.respond::<N, T, R>(terms, memory);
     let [load, torque] = S::load(answer.force, answer.torques[0], 0.0);
     let at = grains.first_quad(slot);
     grains.load[at].add(&Quad(load));
@@ -97,13 +96,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
 }
 
 /// Chain of a normal stage `N`, a tangential stage `T` and a rolling stage `R`, in two or three dimensions (`S`).
-pub(crate) struct Chain<S, N, T, R>(PhantomData<(S, N, T, R)>);
-
-impl<S, N, T, R> Chain<S, N, T, R> {
-    pub(crate) const fn new() -> Self {
-        Self(PhantomData)
-    }
-}
+pub(crate) struct Chain<S, N, T, R>(pub(crate) PhantomData<(S, N, T, R)>);
 
 impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>> Chain<S, N, T, R> {
     /// True if the spin of a grain has a quad of its own. As a constant without an operation, it keeps the compiler from

@@ -58,6 +58,7 @@ pub(crate) fn damping_ratio(law: &ContactLaw, options: &Options) -> f64 {
 }
 
 /// Laws between all pairs of materials.
+#[derive(Default)]
 pub(crate) struct Laws {
     /// Law of each pair of materials. Each row holds the laws of one material with all materials.
     laws: Vec<Constants<f64>>,

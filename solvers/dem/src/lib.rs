@@ -35,6 +35,5 @@ mod skin;
 pub mod solver;
 pub mod stability;
 mod stepper;
-mod terms;
 mod touching;
 mod walls;

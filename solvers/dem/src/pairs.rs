@@ -5,13 +5,12 @@ use crate::contact::normal::Normal;
 use crate::contact::pair::Pair;
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
-use crate::contact::{MEMORY, Memory};
+use crate::contact::{MEMORY, Memory, Terms};
 use crate::geometry::{Geometry, Linear};
 use crate::grains::{GrainTables, Loads, Sums};
 use crate::laws::{self, Constants, gathered, gathered_of, places};
 use crate::listed::Pairs;
 use crate::seen::RecordedContacts;
-use crate::terms::Terms;
 use crate::touching::ContactList;
 use grainbench_lanes::{Kernel, Lanes, Number, Processor, Quad, ScalarBackend, SimdPack, WIDEST};
 use grainbench_solver::record::Partner;
@@ -304,7 +303,7 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
         self.grains.movement = &self.grains.movement[..grains * Q];
         self.grains.material = &self.grains.material[..grains];
         let (laws, touching) = (self.terms.laws, self.touching);
-        let evaluation = self.terms.evaluation(L::WIDTH == 1 && self.seen.is_some());
+        let terms = Terms { record: L::WIDTH == 1 && self.seen.is_some(), ..self.terms };
         let mut law = laws.gather(lanes, &[0; WIDEST]);
         let mut aparts = [PairDistances::none(lanes); ROUND];
         for round in (0..touching.count).step_by(ROUND * L::WIDTH) {
@@ -325,11 +324,11 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
                 }
                 let mut memory = self.remembered(lanes, from);
                 let apart = if L::WIDTH < WIDEST { *apart } else { self.apart(lanes, &slots, from) };
-                let answer = self.pair(lanes, &slots, apart, &law).respond::<N, T, R>(evaluation, &mut memory);
+                let answer = self.pair(lanes, &slots, apart, &law).respond::<N, T, R>(terms, &mut memory);
                 let count = (touching.count - from).min(L::WIDTH);
                 self.add(lanes, &answer, &slots, count);
                 self.remember(&memory, from);
-                if evaluation.record
+                if terms.record
                     && let Some(seen) = &mut self.seen
                     && self.sums.holds(slots.first[0])
                 {

@@ -5,6 +5,7 @@
 //! grain, from the same numbers. The forces on a grain are summed in the order of the whole list, so the result does not
 //! depend on the number of partitions.
 
+use crate::contact::Terms;
 use crate::contact::chain::Layout;
 use crate::contact::options::Options;
 use crate::forces::Forces;
@@ -13,7 +14,6 @@ use crate::grains::{GrainTables, Sums};
 use crate::laws::Laws;
 use crate::listed::{BLOCK, Pairs};
 use crate::seen::RecordedContacts;
-use crate::terms::Terms;
 use crate::touching::{ContactList, blocks};
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::scene::Scene;
@@ -78,9 +78,10 @@ impl<S: Geometry> ContactModel<S> {
         Self { laws: Laws::new(scene, &options), options, loops, processor: Processor::new() }
     }
 
-    /// Returns the parameters of an evaluation at a time `elapsed` (s) after the last one.
-    pub(crate) fn terms(&self, elapsed: f64) -> Terms<'_> {
-        Terms { laws: &self.laws, options: &self.options, elapsed }
+    /// Returns the parameters of an evaluation at a time `elapsed` (s) after the last one. With `record`, contacts are
+    /// recorded.
+    pub(crate) fn terms(&self, elapsed: f64, record: bool) -> Terms<'_> {
+        Terms { laws: &self.laws, options: &self.options, elapsed, record }
     }
 }
 
@@ -92,8 +93,6 @@ pub(crate) struct Evaluation<'a, S: Geometry> {
     pub(crate) processor: Processor,
     /// Parameters common to all contacts.
     pub(crate) terms: Terms<'a>,
-    /// True if contacts are recorded.
-    pub(crate) record: bool,
     /// True if contacts are recorded individually, not only their energies.
     pub(crate) one_by_one: bool,
 }
@@ -239,10 +238,10 @@ impl List<'_> {
         } else {
             touching.first[..touching.count].iter().filter(|&&first| rows.contains(&(first as usize))).count() as u64
         };
-        if evaluation.record {
+        if evaluation.terms.record {
             seen.make_room(touching.count);
         }
-        let seen = evaluation.record.then_some(&mut **seen);
+        let seen = evaluation.terms.record.then_some(&mut **seen);
         evaluation.forces.of_pairs(
             evaluation.processor,
             evaluation.terms,

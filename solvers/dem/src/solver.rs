@@ -26,6 +26,7 @@ use grainbench_solver::resolution::Resolution;
 use grainbench_solver::space::{Plane, Solid};
 use grainbench_solver::terms::{Limitation, Terms};
 use grainbench_solver::{Defect, Solver};
+use std::marker::PhantomData;
 
 /// Discrete element method with one contact convention.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -233,9 +234,9 @@ fn chain<S: Geometry, T: Tangential<S>>(scene: &Scene) -> Box<dyn Forces<S>> {
 /// Returns the loops over contacts with normal stage `N` and the tangential and rolling stages that the effects need.
 fn after<S: Geometry, N: Normal, T: Tangential<S>>(effects: Effects) -> Box<dyn Forces<S>> {
     match (effects.friction, effects.rolling_resistance) {
-        (false, _) => Box::new(Chain::<S, N, Frictionless, FreeRolling>::new()),
-        (true, false) => Box::new(Chain::<S, N, T, FreeRolling>::new()),
-        (true, true) => Box::new(Chain::<S, N, T, ElasticPlastic>::new()),
+        (false, _) => Box::new(Chain::<S, N, Frictionless, FreeRolling>(PhantomData)),
+        (true, false) => Box::new(Chain::<S, N, T, FreeRolling>(PhantomData)),
+        (true, true) => Box::new(Chain::<S, N, T, ElasticPlastic>(PhantomData)),
     }
 }
 

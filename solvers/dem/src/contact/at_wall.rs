@@ -5,7 +5,7 @@ use super::normal::Normal;
 use super::pair::harmonic;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, ContactRotation, Evaluation, MEMORY, Memory, MidStepNormal, stiffness_ratio};
+use super::{ContactInput, ContactRotation, MEMORY, Memory, MidStepNormal, Terms, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 
@@ -36,10 +36,10 @@ impl<S: Geometry> WallContact<'_, S> {
     #[inline(always)]
     pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
         &self,
-        evaluation: Evaluation<'_>,
+        terms: Terms<'_>,
         memory: &mut Memory<f64>,
     ) -> Answer<S, f64> {
-        let (options, elapsed, overlap) = (evaluation.options, evaluation.elapsed, self.radius - self.distance);
+        let (options, elapsed, overlap) = (terms.options, terms.elapsed, self.radius - self.distance);
         let middle = self.middle(memory);
         let is_mid_step = options.mid_step && T::MAY_BE_MID_STEP;
         let velocity_normal = if is_mid_step { middle.normal } else { self.normal };
@@ -72,7 +72,7 @@ impl<S: Geometry> WallContact<'_, S> {
             relative: spin * rolling - self.wall_spin * options.wall_spin,
             inertia: self.inertia + touch.effective_mass * self.radius * self.radius,
         });
-        stages::<S, N, T, R, f64>(&touch, arms, turning, evaluation, memory)
+        stages::<S, N, T, R, f64>(&touch, arms, turning, terms, memory)
     }
 
     /// Returns the normal in the middle between the previous and the present force evaluation, and stores the present

@@ -3,7 +3,7 @@
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, Evaluation, MEMORY, Memory};
+use super::{ContactInput, MEMORY, Memory, Terms};
 use crate::geometry::Geometry;
 use grainbench_lanes::Number;
 
@@ -69,10 +69,10 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
     touch: &ContactInput<'_, S, X>,
     arms: [X; 2],
     turning: Option<BodyRotations<S, X>>,
-    evaluation: Evaluation<'_>,
+    terms: Terms<'_>,
     memory: &mut Memory<X>,
 ) -> Answer<S, X> {
-    let Evaluation { options, elapsed, record } = evaluation;
+    let Terms { options, elapsed, record, .. } = terms;
     let normal = N::force(touch, options);
     let zero = touch.overlap.like(0.0);
     let none = S::as_spin([zero; 3]);
@@ -91,7 +91,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
     if let (true, Some(turning)) = (T::ACTIVE, turning) {
         let slip = S::slip(touch.velocity, turning.surface, touch.velocity_normal);
         let before = *memory;
-        let shear = T::respond::<N, X>(touch, normal, slip, evaluation, memory);
+        let shear = T::respond::<N, X>(touch, normal, slip, terms, memory);
         let force = S::along(shear.force, touch.normal);
         answer.force = answer.force + force;
         let twist = S::torque_of(touch.normal, force);

@@ -13,7 +13,7 @@ pub(crate) mod rolling;
 pub(crate) mod tangential;
 
 use crate::geometry::{Geometry, Linear};
-use crate::laws::Constants;
+use crate::laws::{Constants, Laws};
 use grainbench_lanes::Number;
 use options::Options;
 
@@ -136,13 +136,15 @@ pub(crate) fn stiffness_ratio<X: Number>(inverse_overlap: X, approach: X, elapse
     ratio.at_least(approach.like(0.0)).sqrt()
 }
 
-/// Parameters of an evaluation.
+/// Parameters common to all contacts of an evaluation.
 #[derive(Clone, Copy)]
-pub(crate) struct Evaluation<'a> {
+pub(crate) struct Terms<'a> {
+    /// Contact laws of the scene.
+    pub(crate) laws: &'a Laws,
     /// Options of the convention.
     pub(crate) options: &'a Options,
     /// Time since the last evaluation (s).
     pub(crate) elapsed: f64,
-    /// True if energies are computed.
+    /// True if contacts are recorded. Energies are then computed.
     pub(crate) record: bool,
 }

@@ -4,7 +4,7 @@ use super::chain::{Answer, BodyRotations, stages};
 use super::normal::Normal;
 use super::rolling::Rolling;
 use super::tangential::Tangential;
-use super::{ContactInput, ContactRotation, Evaluation, Memory, MidStepNormal, stiffness_ratio};
+use super::{ContactInput, ContactRotation, Memory, MidStepNormal, Terms, stiffness_ratio};
 use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
@@ -40,17 +40,17 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
     #[inline(always)]
     pub(crate) fn respond<N: Normal, T: Tangential<S>, R: Rolling<S>>(
         &self,
-        evaluation: Evaluation<'_>,
+        terms: Terms<'_>,
         memory: &mut Memory<X>,
     ) -> Answer<S, X> {
         let Self { between, distance, inverse_distance, velocity, .. } = *self;
-        let (zero, elapsed) = (distance.like(0.0), evaluation.elapsed);
+        let (zero, elapsed) = (distance.like(0.0), terms.elapsed);
         let [first, second] = self.radii;
         let overlap = self.reach - distance;
         let normal = between * inverse_distance;
-        let is_mid_step = evaluation.options.mid_step && T::MAY_BE_MID_STEP && (N::DAMPED || T::ACTIVE);
+        let is_mid_step = terms.options.mid_step && T::MAY_BE_MID_STEP && (N::DAMPED || T::ACTIVE);
         let turns = T::TURNED && S::DIMENSION == 3;
-        let changes = N::CURVED && T::ACTIVE && (T::TURNED || evaluation.record);
+        let changes = N::CURVED && T::ACTIVE && (T::TURNED || terms.record);
         let middle = if is_mid_step || turns || changes {
             MidStepNormal::<S, X>::of_centres(normal, inverse_distance, velocity, elapsed)
         } else {
@@ -80,7 +80,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
                 (false, false) => zero,
             },
         };
-        let off = overlap * evaluation.options.arm_reduction;
+        let off = overlap * terms.options.arm_reduction;
         let arms = [first - off, second - off];
         let turning = match self.spins {
             Some([a, b]) => {
@@ -91,7 +91,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             }
             None => None,
         };
-        stages::<S, N, T, R, X>(&touch, arms, turning, evaluation, memory)
+        stages::<S, N, T, R, X>(&touch, arms, turning, terms, memory)
     }
 
     /// Returns the inverse moment of inertia of a grain about the contact, 1/(I + m R²) (1/(kg m²)).
@@ -121,6 +121,7 @@ mod tests {
     use crate::contact::tangential::{Coulomb, Projected};
     use crate::convention::Convention;
     use crate::geometry::Components;
+    use crate::laws::Laws;
     use grainbench_solver::space::Solid;
     use nalgebra::Vector3;
     use std::f64::consts::{FRAC_PI_2, PI};
@@ -135,7 +136,7 @@ mod tests {
     fn stuck_spheres_carry_their_spring_when_they_swing() {
         type Stretched = Coulomb<Projected>;
         let law = Constants { springs: [1e6, 5e5], friction: 1e3, ..Constants::default() };
-        let options = Options::from_convention(&Convention::LIGGGHTS);
+        let (laws, options) = (Laws::default(), Options::from_convention(&Convention::LIGGGHTS));
         let (steps, overlap, slip) = (1000, 0.01, 1e-4);
         let spin = Vector3::z() * FRAC_PI_2;
         let mut memory = [0.0; MEMORY];
@@ -155,8 +156,8 @@ mod tests {
                 spins: Some([Components(spin.into()); 2]),
                 inverse_inertia: [0.0; 2],
             };
-            let evaluation = Evaluation { options: &options, elapsed, record: false };
-            let answer = pair.respond::<Spring, Stretched, FreeRolling>(evaluation, &mut memory);
+            let terms = Terms { laws: &laws, options: &options, elapsed, record: false };
+            let answer = pair.respond::<Spring, Stretched, FreeRolling>(terms, &mut memory);
             (Vector3::from(answer.shear.0), Vector3::from(answer.normal.0))
         };
         // The first step displaces the spring along +y; the spring pulls the first sphere back.

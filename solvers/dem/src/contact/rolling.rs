@@ -5,36 +5,16 @@ use super::normal::{Normal, NormalForce};
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 
-/// Rolling resistance of a contact, as a stage of the chain.
+/// Rolling resistance of a contact, as a stage of the chain. The provided functions are those of a stage without moment.
 pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
-    /// True if the stage exerts a moment.
-    const ACTIVE: bool;
     /// Number of history values. They change sign when the first and the second grain are exchanged.
     const NUMBERS: usize;
+    /// True if the stage exerts a moment.
+    const ACTIVE: bool = Self::NUMBERS > 0;
 
     /// Returns the moment on the first body (N m), and updates the contact history. `rate` is the angular velocity
     /// relative to the second body (rad/s), `elapsed` the time since the last evaluation (s), and `inertia` the moment of
     /// inertia of the pair about the contact (kg m²).
-    fn moment<N: Normal, X: Number>(
-        touch: &ContactInput<'_, S, X>,
-        normal: NormalForce<X>,
-        rate: S::Spins<X>,
-        elapsed: f64,
-        inertia: X,
-        memory: &mut [X],
-    ) -> S::Spins<X>;
-    /// Returns the energy in the rolling spring (J).
-    fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, memory: &[X]) -> X;
-}
-
-/// Stage without rolling resistance. It has no history and no moment.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct FreeRolling;
-
-impl<S: Geometry> Rolling<S> for FreeRolling {
-    const ACTIVE: bool = false;
-    const NUMBERS: usize = 0;
-
     #[inline(always)]
     fn moment<N: Normal, X: Number>(
         touch: &ContactInput<'_, S, X>,
@@ -46,9 +26,18 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
     ) -> S::Spins<X> {
         S::as_spin([touch.overlap.like(0.0); 3])
     }
+    /// Returns the energy in the rolling spring (J).
     fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, _memory: &[X]) -> X {
         touch.overlap.like(0.0)
     }
+}
+
+/// Stage without rolling resistance. It has no history and no moment.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct FreeRolling;
+
+impl<S: Geometry> Rolling<S> for FreeRolling {
+    const NUMBERS: usize = 0;
 }
 
 /// Elastic-plastic spring and dashpot against rolling (Ai, Chen, Rotter & Ooi 2011, model C; LIGGGHTS `epsd`):
@@ -67,7 +56,6 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
 pub(crate) struct ElasticPlastic;
 
 impl<S: Geometry> Rolling<S> for ElasticPlastic {
-    const ACTIVE: bool = true;
     const NUMBERS: usize = <S::Spins<f64> as Linear<f64>>::COUNT;
 
     #[inline(always)]

@@ -5,7 +5,7 @@
 
 use super::normal::{Normal, NormalForce};
 use super::options::Cap;
-use super::{ContactInput, Evaluation, Memory};
+use super::{ContactInput, Memory, Terms};
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 use std::fmt::Debug;
@@ -20,27 +20,32 @@ pub(crate) struct Shear<S: Geometry, X: Number> {
     pub(crate) slipping: X::Mask,
 }
 
-/// Tangential force law of a contact, as a stage of the chain.
+/// Tangential force law of a contact, as a stage of the chain. The provided functions are those of a stage without
+/// friction.
 pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
+    /// Number of history values: the components of the tangential spring displacement (m). They come first in the history.
+    const NUMBERS: usize;
     /// True if the stage exerts a tangential force.
-    const ACTIVE: bool;
+    const ACTIVE: bool = Self::NUMBERS > 0;
     /// True if springs rotate with the contact ([`crate::convention::History::Turned`]).
     const TURNED: bool;
     /// True if a convention with this stage may decompose velocities along the mid-step normal.
-    const MAY_BE_MID_STEP: bool;
-    /// Number of history values: the components of the tangential spring displacement (m). They come first in the history.
-    const NUMBERS: usize;
+    const MAY_BE_MID_STEP: bool = Self::TURNED || !Self::ACTIVE;
     /// Factor by which the history values are multiplied when the first and the second grain are exchanged.
     const EXCHANGED: f64;
 
     /// Returns the tangential force for a slip velocity (m/s), and updates the contact history.
+    #[inline(always)]
     fn respond<N: Normal, X: Number>(
-        touch: &ContactInput<'_, S, X>,
-        normal: NormalForce<X>,
+        _touch: &ContactInput<'_, S, X>,
+        _normal: NormalForce<X>,
         slip: S::Tangents<X>,
-        evaluation: Evaluation<'_>,
-        memory: &mut Memory<X>,
-    ) -> Shear<S, X>;
+        _terms: Terms<'_>,
+        _memory: &mut Memory<X>,
+    ) -> Shear<S, X> {
+        let squared = slip.dot(slip);
+        Shear { force: slip * squared.like(0.0), slipping: squared.below(squared) }
+    }
 
     /// Returns two energies lost in a step (J): the frictional work, and the energy released by a change of stiffness.
     ///
@@ -51,40 +56,6 @@ pub(crate) trait Tangential<S: Geometry>: Copy + Send + Sync + 'static {
     /// minus the energy after the step. The released energy is the total loss minus the frictional work.
     fn lost<N: Normal, X: Number>(
         touch: &ContactInput<'_, S, X>,
-        slip: S::Tangents<X>,
-        elapsed: f64,
-        before: &Memory<X>,
-        after: &Memory<X>,
-    ) -> [X; 2];
-
-    /// Returns the energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
-    fn energy<X: Number>(memory: &Memory<X>, stiffness: X) -> X;
-}
-
-/// Stage without friction. It has no tangential force and no history, and grains do not rotate.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Frictionless;
-
-impl<S: Geometry> Tangential<S> for Frictionless {
-    const ACTIVE: bool = false;
-    const TURNED: bool = false;
-    const MAY_BE_MID_STEP: bool = true;
-    const NUMBERS: usize = 0;
-    const EXCHANGED: f64 = 1.0;
-
-    #[inline(always)]
-    fn respond<N: Normal, X: Number>(
-        _touch: &ContactInput<'_, S, X>,
-        _normal: NormalForce<X>,
-        slip: S::Tangents<X>,
-        _evaluation: Evaluation<'_>,
-        _memory: &mut Memory<X>,
-    ) -> Shear<S, X> {
-        let squared = slip.dot(slip);
-        Shear { force: slip * squared.like(0.0), slipping: squared.below(squared) }
-    }
-    fn lost<N: Normal, X: Number>(
-        touch: &ContactInput<'_, S, X>,
         _slip: S::Tangents<X>,
         _elapsed: f64,
         _before: &Memory<X>,
@@ -92,9 +63,21 @@ impl<S: Geometry> Tangential<S> for Frictionless {
     ) -> [X; 2] {
         [touch.overlap.like(0.0); 2]
     }
+
+    /// Returns the energy ½ k_s s² in the tangential spring (J), from the stiffness k_s (N/m).
     fn energy<X: Number>(_memory: &Memory<X>, stiffness: X) -> X {
         stiffness.like(0.0)
     }
+}
+
+/// Stage without friction. It has no tangential force and no history, and grains do not rotate.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Frictionless;
+
+impl<S: Geometry> Tangential<S> for Frictionless {
+    const NUMBERS: usize = 0;
+    const TURNED: bool = false;
+    const EXCHANGED: f64 = 1.0;
 }
 
 /// Tangential spring and dashpot of a contact, with the Coulomb limit.
@@ -250,10 +233,8 @@ impl<S: Geometry> SpringTransport<S> for Projected {
 pub(crate) struct Coulomb<H>(PhantomData<H>);
 
 impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
-    const ACTIVE: bool = true;
-    const TURNED: bool = H::TURNED;
-    const MAY_BE_MID_STEP: bool = H::TURNED;
     const NUMBERS: usize = <H::Stored<f64> as Linear<f64>>::COUNT;
+    const TURNED: bool = H::TURNED;
     const EXCHANGED: f64 = H::EXCHANGED;
 
     #[inline(always)]
@@ -261,11 +242,11 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
         touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         slip: S::Tangents<X>,
-        evaluation: Evaluation<'_>,
+        terms: Terms<'_>,
         memory: &mut Memory<X>,
     ) -> Shear<S, X> {
         let law = touch.law;
-        let elapsed = touch.overlap.like(evaluation.elapsed);
+        let elapsed = touch.overlap.like(terms.elapsed);
         let mut stretch = carried::<S, H, N, X>(memory, touch) + slip * elapsed;
         let stiffness = N::tangential_stiffness(touch);
         let viscosity = law.stiffness_damping * stiffness + law.tangential_damping * touch.effective_mass;
@@ -274,7 +255,7 @@ impl<S: Geometry, H: SpringTransport<S>> Tangential<S> for Coulomb<H> {
             viscosity: if N::DAMPED { Some(viscosity) } else { None },
             limit: law.friction * normal.for_cap + law.cohesion,
         };
-        let shear = bound.limit::<S>(evaluation.options.cap, &mut stretch, slip);
+        let shear = bound.limit::<S>(terms.options.cap, &mut stretch, slip);
         H::stored(stretch, touch.normal).write(memory);
         shear
     }
