@@ -94,9 +94,15 @@ impl Processor {
         match self {
             Self::Portable => portable(kernel),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledLoop { lanes: features, kernel }),
+            Self::Avx2(features) => features.vectorize(
+                #[inline(always)]
+                move || kernel.run(features),
+            ),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledLoop { lanes: features, kernel }),
+            Self::Avx512(features) => features.vectorize(
+                #[inline(always)]
+                move || kernel.run(features),
+            ),
         }
     }
 
@@ -106,10 +112,16 @@ impl Processor {
         match self {
             Self::Portable => portable_by_four(kernel),
             #[cfg(target_arch = "x86_64")]
-            Self::Avx2(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: features, kernel }),
+            Self::Avx2(features) => features.vectorize(
+                #[inline(always)]
+                move || kernel.run(features),
+            ),
             // Four lanes are used here too, but the loop has the larger number of registers of AVX-512.
             #[cfg(target_arch = "x86_64")]
-            Self::Avx512(features) => pulp::Simd::vectorize(features, CompiledFourLoop { lanes: *features, kernel }),
+            Self::Avx512(features) => features.vectorize(
+                #[inline(always)]
+                move || kernel.run(*features),
+            ),
         }
     }
 }
@@ -125,38 +137,4 @@ fn portable<K: Kernel>(kernel: K) -> K::Output {
 #[inline(never)]
 fn portable_by_four<K: FourKernel>(kernel: K) {
     kernel.run(ScalarBackend::<LANES>);
-}
-
-/// Kernel with the instruction set that it is compiled for.
-#[cfg(target_arch = "x86_64")]
-struct CompiledLoop<L, K> {
-    lanes: L,
-    kernel: K,
-}
-
-#[cfg(target_arch = "x86_64")]
-impl<L: Lanes, K: Kernel> pulp::WithSimd for CompiledLoop<L, K> {
-    type Output = K::Output;
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) -> K::Output {
-        self.kernel.run(self.lanes)
-    }
-}
-
-/// Loop over four items at a time, compiled for a processor.
-#[cfg(target_arch = "x86_64")]
-struct CompiledFourLoop<L, K> {
-    lanes: L,
-    kernel: K,
-}
-
-#[cfg(target_arch = "x86_64")]
-impl<L: FourLanes, K: FourKernel> pulp::WithSimd for CompiledFourLoop<L, K> {
-    type Output = ();
-
-    #[inline(always)]
-    fn with_simd<S: pulp::Simd>(self, _: S) {
-        self.kernel.run(self.lanes);
-    }
 }
