@@ -7,7 +7,6 @@ use std::arch::x86_64::{__m256d, _CMP_LT_OQ};
 impl Lanes for V3 {
     type Register = __m256d;
     type Mask = __m256d;
-    type Pair = [Quad; 2];
     const WIDTH: usize = LANES;
 
     #[inline(always)]
@@ -90,18 +89,7 @@ impl Lanes for V3 {
         let quad = |row| Quad(pulp::cast(row));
         [quad(a), quad(b), quad(c), quad(d), none, none, none, none]
     }
-    #[inline(always)]
-    fn pairs(self, registers: [[__m256d; 4]; 2]) -> [[Quad; 2]; WIDEST] {
-        crate::paired(self.quads(registers[0]), self.quads(registers[1]))
-    }
-    #[inline(always)]
-    fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
-        crate::add_both(quads, pair);
-    }
-    #[inline(always)]
-    fn oppose(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
-        crate::oppose_both(quads, pair);
-    }
+    crate::pairs_of_quads!();
 }
 
 /// Returns the difference `to` − `from` of two quads. The fourth number is the sum instead.

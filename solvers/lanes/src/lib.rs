@@ -113,25 +113,30 @@ pub trait Lanes: Copy + 'static {
     fn oppose(self, quads: &mut [Quad; 2], pair: Self::Pair);
 }
 
-/// Combines two arrays of quads to one array of pairs.
-#[inline(always)]
-fn paired([a, b, c, d, e, f, g, h]: [Quad; WIDEST], [i, j, k, l, m, n, o, p]: [Quad; WIDEST]) -> [[Quad; 2]; WIDEST] {
-    [[a, i], [b, j], [c, k], [d, l], [e, m], [f, n], [g, o], [h, p]]
-}
+/// Implements the pairs of [`Lanes`] for backends that add a pair of quads one by one.
+macro_rules! pairs_of_quads {
+    () => {
+        type Pair = [Quad; 2];
 
-/// Adds a pair of quads to two quads.
-#[inline(always)]
-fn add_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
-    one.add(&pair[0]);
-    other.add(&pair[1]);
+        #[inline(always)]
+        fn pairs(self, [one, other]: [[Self::Register; 4]; 2]) -> [[Quad; 2]; WIDEST] {
+            let [a, b, c, d, e, f, g, h] = self.quads(one);
+            let [i, j, k, l, m, n, o, p] = self.quads(other);
+            [[a, i], [b, j], [c, k], [d, l], [e, m], [f, n], [g, o], [h, p]]
+        }
+        #[inline(always)]
+        fn add_to(self, [one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
+            one.add(&pair[0]);
+            other.add(&pair[1]);
+        }
+        #[inline(always)]
+        fn oppose(self, [one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
+            one.subtract(&pair[0]);
+            other.add(&pair[1]);
+        }
+    };
 }
-
-/// Subtracts the first quad of a pair from the first of two quads, and adds the second quad to the second.
-#[inline(always)]
-fn oppose_both([one, other]: &mut [Quad; 2], pair: [Quad; 2]) {
-    one.subtract(&pair[0]);
-    other.add(&pair[1]);
-}
+use pairs_of_quads;
 
 /// Operations with exactly four lanes.
 pub trait FourLanes: Lanes {

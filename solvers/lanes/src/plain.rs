@@ -51,7 +51,6 @@ const fn chosen(mask: u64, yes: f64, no: f64) -> f64 {
 impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
     type Register = [f64; WIDTH];
     type Mask = [u64; WIDTH];
-    type Pair = [Quad; 2];
     const WIDTH: usize = WIDTH;
 
     #[inline(always)]
@@ -123,18 +122,7 @@ impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
         each!(lane of WIDTH => quads[lane] = Quad([rows[0][lane], rows[1][lane], rows[2][lane], rows[3][lane]]));
         quads
     }
-    #[inline(always)]
-    fn pairs(self, rows: [[[f64; WIDTH]; 4]; 2]) -> [[Quad; 2]; WIDEST] {
-        crate::paired(self.quads(rows[0]), self.quads(rows[1]))
-    }
-    #[inline(always)]
-    fn add_to(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
-        crate::add_both(quads, pair);
-    }
-    #[inline(always)]
-    fn oppose(self, quads: &mut [Quad; 2], pair: [Quad; 2]) {
-        crate::oppose_both(quads, pair);
-    }
+    crate::pairs_of_quads!();
 }
 
 /// Transposes one quad per lane to four registers.
