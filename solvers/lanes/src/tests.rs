@@ -61,23 +61,35 @@ impl Kernel for AllPairBits<'_> {
     }
 }
 
-/// Kernel that loads quads into registers and stores them again.
-struct QuadCopies<'a>(&'a [Quad], &'a [usize]);
+/// Two quads, to which others are added.
+const SUMS: [Quad; 2] = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
 
-impl Kernel for QuadCopies<'_> {
-    type Output = Vec<(Quad, Quad)>;
+/// Kernel that combines the quads of a table at some indices with the quads at the same indices from the end. Each row
+/// holds a quad that was loaded into registers, the same quad after its return from them, and the difference. Then follow
+/// the two quads of `SUMS` with the pair added, and after `oppose`.
+struct QuadOperations<'a>(&'a [Quad], &'a [usize]);
+
+impl Kernel for QuadOperations<'_> {
+    type Output = Vec<[Quad; 7]>;
 
     fn run<L: Lanes>(self, lanes: L) -> Self::Output {
-        let mut all = Vec::new();
+        let (table, mut rows) = (self.0.as_chunks::<1>().0, Vec::new());
         for at in self.1.chunks(L::WIDTH) {
-            let mut places = [0; WIDEST];
-            places[..at.len()].copy_from_slice(at);
-            let registers = lanes.gather(self.0.as_chunks::<1>().0, 0, &places);
-            let columns = registers.map(|register| lanes.store(register));
-            let back = lanes.quads(registers);
-            all.extend((0..L::WIDTH).map(|lane| (Quad(columns.map(|column| column[lane])), back[lane])));
+            let [mut from, mut to] = [[0; WIDEST]; 2];
+            at.iter().enumerate().for_each(|(lane, &place)| (from[lane], to[lane]) = (place, table.len() - 1 - place));
+            let registers = lanes.gather(table, 0, &from);
+            let columns = [registers, lanes.between(table, 0, &from, &to)].map(|all| all.map(|one| lanes.store(one)));
+            let (back, pairs) = (lanes.quads(registers), lanes.pairs([registers, lanes.gather(table, 0, &to)]));
+            for lane in 0..at.len() {
+                let [gathered, difference] = columns.map(|columns| Quad(columns.map(|column| column[lane])));
+                let mut sums = SUMS;
+                lanes.add_to(&mut sums, pairs[lane]);
+                let added = sums;
+                lanes.oppose(&mut sums, pairs[lane]);
+                rows.push([gathered, back[lane], difference, added[0], added[1], sums[0], sums[1]]);
+            }
         }
-        all
+        rows
     }
 }
 
@@ -96,45 +108,24 @@ fn every_operation_leaves_the_same_bits_on_all_paths() {
 }
 
 #[test]
-fn quads_are_turned_and_turned_back() {
+fn quads_are_loaded_subtracted_and_added_on_all_paths() {
     let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
     let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
-    let expected: Vec<_> = at.iter().map(|&at| (table[at], table[at])).collect();
-    for path in Processor::all() {
-        assert_eq!(path.run(QuadCopies(&table, &at)), expected, "{}", path.name());
-    }
-}
-
-/// Kernel that computes differences of quads.
-struct QuadDifferences<'a>(&'a [Quad], &'a [usize]);
-
-impl Kernel for QuadDifferences<'_> {
-    type Output = Vec<[f64; 4]>;
-
-    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
-        let mut all = Vec::new();
-        for at in self.1.chunks(L::WIDTH) {
-            let (mut from, mut to) = ([0; WIDEST], [0; WIDEST]);
-            from[..at.len()].copy_from_slice(at);
-            to[..at.len()].copy_from_slice(&at.iter().map(|place| 19 - place).collect::<Vec<_>>());
-            let columns = lanes.between(self.0.as_chunks::<1>().0, 0, &from, &to).map(|register| lanes.store(register));
-            all.extend((0..L::WIDTH).map(|lane| columns.map(|column| column[lane])));
-        }
-        all
-    }
-}
-
-#[test]
-fn quads_are_taken_from_others_and_their_fourth_numbers_are_added() {
-    let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
-    let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
-    let expected_quad = |&at: &usize| {
-        let (from, to) = (table[at].0, table[19 - at].0);
-        [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
+    let expected_row = |&at: &usize| {
+        let [one, other] = [table[at], table[19 - at]];
+        let [from, to] = [one.0, other.0];
+        let difference = Quad([to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]);
+        let mut sums = SUMS;
+        sums[0].add(&one);
+        sums[1].add(&other);
+        let added = sums;
+        sums[0].subtract(&one);
+        sums[1].add(&other);
+        [one, one, difference, added[0], added[1], sums[0], sums[1]]
     };
-    let expected: Vec<_> = at.iter().map(expected_quad).collect();
+    let expected: Vec<_> = at.iter().map(expected_row).collect();
     for path in Processor::all() {
-        assert_eq!(path.run(QuadDifferences(&table, &at)), expected, "{}", path.name());
+        assert_eq!(path.run(QuadOperations(&table, &at)), expected, "{}", path.name());
     }
 }
 
@@ -169,50 +160,6 @@ fn four_portable_lanes_are_four_numbers() {
     assert!(one == four);
     let table = [1.0, 5.0, 9.0, 13.0].map(|from| Quad([from, from + 1.0, from + 2.0, from + 3.0]));
     let at = [2, 0, 3, 1];
-    assert_eq!(QuadCopies(&table, &at).run(ScalarBackend::<4>), QuadCopies(&table, &at).run(ScalarBackend::<1>));
-}
-
-/// Kernel that adds two quads per lane to given quads, and then applies `oppose`.
-struct Pairs<'a>(&'a [Quad], &'a [usize]);
-
-impl Kernel for Pairs<'_> {
-    type Output = Vec<[Quad; 2]>;
-
-    fn run<L: Lanes>(self, lanes: L) -> Self::Output {
-        let mut all = Vec::new();
-        for at in self.1.chunks(L::WIDTH) {
-            let (mut one, mut other) = ([0; WIDEST], [0; WIDEST]);
-            one[..at.len()].copy_from_slice(at);
-            other[..at.len()].copy_from_slice(&at.iter().map(|place| 19 - place).collect::<Vec<_>>());
-            let table = self.0.as_chunks::<1>().0;
-            let pairs = lanes.pairs([lanes.gather(table, 0, &one), lanes.gather(table, 0, &other)]);
-            for &pair in &pairs[..at.len()] {
-                let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
-                lanes.add_to(&mut sums, pair);
-                all.push(sums);
-                lanes.oppose(&mut sums, pair);
-                all.push(sums);
-            }
-        }
-        all
-    }
-}
-
-#[test]
-fn two_quads_of_each_lane_are_added_together() {
-    let table: Vec<Quad> = (0..20).map(|row| Quad([0.0, 0.1, 0.2, 0.3].map(|at| f64::from(row) + at))).collect();
-    let at = [3, 19, 0, 7, 7, 11, 2, 5, 18, 1, 4, 9, 9, 9, 16, 0];
-    let expected_pair = |&at: &usize| {
-        let mut sums = [Quad([1.0, 2.0, 3.0, 4.0]), Quad([5.0, 6.0, 7.0, 8.0])];
-        sums[0].add(&table[at]);
-        sums[1].add(&table[19 - at]);
-        let added = sums;
-        sums[0].subtract(&table[at]);
-        sums[1].add(&table[19 - at]);
-        [added, sums]
-    };
-    let expected: Vec<_> = at.iter().flat_map(expected_pair).collect();
-    for path in Processor::all() {
-        assert_eq!(path.run(Pairs(&table, &at)), expected, "{}", path.name());
-    }
+    let operations = || QuadOperations(&table, &at);
+    assert_eq!(operations().run(ScalarBackend::<4>), operations().run(ScalarBackend::<1>));
 }
