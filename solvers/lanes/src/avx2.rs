@@ -22,22 +22,7 @@ impl Lanes for V3 {
         let [a, b, c, d] = pulp::cast(register);
         [a, b, c, d, 0.0, 0.0, 0.0, 0.0]
     }
-    #[inline(always)]
-    fn add(self, a: __m256d, b: __m256d) -> __m256d {
-        self.avx._mm256_add_pd(a, b)
-    }
-    #[inline(always)]
-    fn sub(self, a: __m256d, b: __m256d) -> __m256d {
-        self.avx._mm256_sub_pd(a, b)
-    }
-    #[inline(always)]
-    fn mul(self, a: __m256d, b: __m256d) -> __m256d {
-        self.avx._mm256_mul_pd(a, b)
-    }
-    #[inline(always)]
-    fn div(self, a: __m256d, b: __m256d) -> __m256d {
-        self.avx._mm256_div_pd(a, b)
-    }
+    crate::arithmetic!(avx: add _mm256_add_pd, sub _mm256_sub_pd, mul _mm256_mul_pd, div _mm256_div_pd);
     #[inline(always)]
     fn sqrt(self, a: __m256d) -> __m256d {
         self.avx._mm256_sqrt_pd(a)
@@ -56,12 +41,13 @@ impl Lanes for V3 {
     }
     #[inline(always)]
     fn gather<const N: usize>(self, table: &[[Quad; N]], number: usize, at: &[usize; WIDEST]) -> [__m256d; 4] {
-        self.turned([
+        let rows = [
             pulp::cast(table[at[0]][number].0),
             pulp::cast(table[at[1]][number].0),
             pulp::cast(table[at[2]][number].0),
             pulp::cast(table[at[3]][number].0),
-        ])
+        ];
+        turned(self, rows)
     }
     #[inline(always)]
     fn between<const N: usize>(
@@ -71,12 +57,13 @@ impl Lanes for V3 {
         from: &[usize; WIDEST],
         to: &[usize; WIDEST],
     ) -> [__m256d; 4] {
-        self.turned([
+        let rows = [
             less(self, table[from[0]][number], table[to[0]][number]),
             less(self, table[from[1]][number], table[to[1]][number]),
             less(self, table[from[2]][number], table[to[2]][number]),
             less(self, table[from[3]][number], table[to[3]][number]),
-        ])
+        ];
+        turned(self, rows)
     }
     #[inline(always)]
     fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
@@ -85,7 +72,7 @@ impl Lanes for V3 {
     }
     #[inline(always)]
     fn quads(self, registers: [__m256d; 4]) -> [Quad; WIDEST] {
-        let ([a, b, c, d], none) = (self.turned(registers), Quad::default());
+        let ([a, b, c, d], none) = (turned(self, registers), Quad::default());
         let quad = |row| Quad(pulp::cast(row));
         [quad(a), quad(b), quad(c), quad(d), none, none, none, none]
     }
@@ -99,24 +86,18 @@ fn less(lanes: V3, from: Quad, to: Quad) -> __m256d {
     lanes.avx._mm256_blend_pd::<0b1000>(lanes.avx._mm256_sub_pd(to, from), lanes.avx._mm256_add_pd(to, from))
 }
 
-/// Transposition of four registers.
-trait RegisterTranspose {
-    fn turned(self, rows: [__m256d; 4]) -> [__m256d; 4];
-}
-
-impl RegisterTranspose for V3 {
-    #[inline(always)]
-    fn turned(self, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
-        let avx = self.avx;
-        let [even_ab, odd_ab] = [avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b)];
-        let [even_cd, odd_cd] = [avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d)];
-        [
-            avx._mm256_permute2f128_pd::<0x20>(even_ab, even_cd),
-            avx._mm256_permute2f128_pd::<0x20>(odd_ab, odd_cd),
-            avx._mm256_permute2f128_pd::<0x31>(even_ab, even_cd),
-            avx._mm256_permute2f128_pd::<0x31>(odd_ab, odd_cd),
-        ]
-    }
+/// Transposes four registers.
+#[inline(always)]
+fn turned(lanes: V3, [a, b, c, d]: [__m256d; 4]) -> [__m256d; 4] {
+    let avx = lanes.avx;
+    let [even_ab, odd_ab] = [avx._mm256_unpacklo_pd(a, b), avx._mm256_unpackhi_pd(a, b)];
+    let [even_cd, odd_cd] = [avx._mm256_unpacklo_pd(c, d), avx._mm256_unpackhi_pd(c, d)];
+    [
+        avx._mm256_permute2f128_pd::<0x20>(even_ab, even_cd),
+        avx._mm256_permute2f128_pd::<0x20>(odd_ab, odd_cd),
+        avx._mm256_permute2f128_pd::<0x31>(even_ab, even_cd),
+        avx._mm256_permute2f128_pd::<0x31>(odd_ab, odd_cd),
+    ]
 }
 
 impl FourLanes for V3 {

@@ -94,22 +94,7 @@ impl Lanes for V4 {
     fn store(self, register: __m512d) -> [f64; WIDEST] {
         pulp::cast(register)
     }
-    #[inline(always)]
-    fn add(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_add_pd(a, b)
-    }
-    #[inline(always)]
-    fn sub(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_sub_pd(a, b)
-    }
-    #[inline(always)]
-    fn mul(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_mul_pd(a, b)
-    }
-    #[inline(always)]
-    fn div(self, a: __m512d, b: __m512d) -> __m512d {
-        self.avx512f._mm512_div_pd(a, b)
-    }
+    crate::arithmetic!(avx512f: add _mm512_add_pd, sub _mm512_sub_pd, mul _mm512_mul_pd, div _mm512_div_pd);
     #[inline(always)]
     fn sqrt(self, a: __m512d) -> __m512d {
         self.avx512f._mm512_sqrt_pd(a)

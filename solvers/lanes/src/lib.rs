@@ -113,6 +113,19 @@ pub trait Lanes: Copy + 'static {
     fn oppose(self, quads: &mut [Quad; 2], pair: Self::Pair);
 }
 
+/// Implements the arithmetic of [`Lanes`] by instructions of the processor.
+#[cfg(target_arch = "x86_64")]
+macro_rules! arithmetic {
+    ($features:ident: $($name:ident $instruction:ident),*) => {
+        $(#[inline(always)]
+        fn $name(self, a: Self::Register, b: Self::Register) -> Self::Register {
+            self.$features.$instruction(a, b)
+        })*
+    };
+}
+#[cfg(target_arch = "x86_64")]
+use arithmetic;
+
 /// Implements the pairs of [`Lanes`] for backends that add a pair of quads one by one.
 macro_rules! pairs_of_quads {
     () => {
