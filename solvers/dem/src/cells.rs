@@ -9,7 +9,8 @@ use nalgebra::Vector3;
 /// cells. The grid has at most 4 N + 64 cells for N grains.
 #[derive(Clone, Debug)]
 pub(crate) struct Cells {
-    low: Vector3<f64>,
+    /// Lowest and highest coordinates of the centres of the grains that have a cell (m).
+    pub(crate) bounds: [Vector3<f64>; 2],
     width: Vector3<f64>,
     reach: f64,
     pub(crate) count: [usize; 3],
@@ -44,7 +45,7 @@ impl Cells {
             cell *= 1.3;
         }
         let width = Vector3::from_fn(|axis, _| (extent[axis] / count[axis] as f64).max(reach));
-        let mut cells = Self { low, width, reach, count, start: Vec::new() };
+        let mut cells = Self { bounds: [low, high], width, reach, count, start: Vec::new() };
         // Grains without a cell are sorted as if they had one additional cell before all other cells.
         let last = count.iter().product::<usize>();
         let cell = |grain: &Quad| if has_cell(&grain) { 1 + cells.index(S::vector_in_space(grain)) } else { 0 };
@@ -67,10 +68,10 @@ impl Cells {
 
     /// Returns the cell coordinates of a point (m). A point outside the grid has the coordinates of the nearest cell.
     pub(crate) fn coordinates(&self, position: Vector3<f64>) -> [usize; 3] {
-        let mut coordinates = [0; 3];
+        let (mut coordinates, low) = ([0; 3], self.bounds[0]);
         for (axis, coordinate) in coordinates.iter_mut().enumerate() {
             // The conversion to an integer truncates, and gives zero for negative values.
-            let along = (position[axis] - self.low[axis]) / self.width[axis];
+            let along = (position[axis] - low[axis]) / self.width[axis];
             *coordinate = (along as usize).min(self.count[axis] - 1);
         }
         coordinates

@@ -319,7 +319,8 @@ fn pairs_across<S: Geometry>(
     if shifts.is_empty() {
         return Pairs::empty();
     }
-    let (low, high) = bounds::<S>(place);
+    // With a periodic axis, all grains have cells.
+    let [low, high] = cells.bounds;
     Pairs::list(rows, layout, |slot, partners, shift_of| {
         for shift in shifts {
             let image = S::vector_in_space(&place[slot]) + shift;
@@ -344,12 +345,6 @@ fn pairs_across<S: Geometry>(
     })
 }
 
-/// Returns the lowest and highest coordinates of the grains' centres (m).
-fn bounds<S: Geometry>(place: &[Quad]) -> (Vector3<f64>, Vector3<f64>) {
-    let start = (Vector3::repeat(f64::INFINITY), Vector3::repeat(f64::NEG_INFINITY));
-    place.iter().map(S::vector_in_space).fold(start, |(low, high), at| (low.inf(&at), high.sup(&at)))
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -370,6 +365,23 @@ mod tests {
         (0..count).map(|_| Vector3::new(next(), next(), if dimension == 3 { next() } else { 0.0 })).collect()
     }
 
+    /// Tests that each pair of grains that is near is listed once. In the list of pairs inside the domain, the row is that
+    /// of the grain that moves first.
+    fn assert_lists<S: Geometry>(neighbours: &Neighbours, grains: &Grains<S>, is_near: impl Fn(usize, usize) -> bool) {
+        let mut listed = BTreeSet::new();
+        for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
+            for at in pairs.own() {
+                let [row, partner] = [pairs.row[at], pairs.partner[at]];
+                assert!(row < partner || !pairs.shift.is_empty(), "a grain moves before its row is reached");
+                let (a, b) = (grains.id[row as usize], grains.id[partner as usize]);
+                assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
+            }
+        }
+        let all = (0..grains.len()).flat_map(|a| (a + 1..grains.len()).map(move |b| (a, b)));
+        let expected: BTreeSet<_> = all.filter(|&(a, b)| is_near(a, b)).map(|(a, b)| (a as u32, b as u32)).collect();
+        assert_eq!(listed, expected);
+    }
+
     fn agrees_with_all_pairs<S: Geometry>(periodic: [bool; 3], shares: usize) {
         let (size, radius, skin) = (10.0, 0.5, 0.3);
         let points = scatter(300, S::DIMENSION, size);
@@ -377,28 +389,13 @@ mod tests {
         let mut grains = Grains::<S>::at(&points, radius);
         let mut neighbours = Neighbours::new(skin);
         neighbours.rebuild(&Team::new(1), shares, (&mut grains, None), Some(&domain), [radius, f64::MAX], NOTHING);
-        let mut listed = BTreeSet::new();
-        for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
-            for at in pairs.own() {
-                let (a, b) = (grains.id[pairs.row[at] as usize], grains.id[pairs.partner[at] as usize]);
-                assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
+        assert_lists(&neighbours, &grains, |a, b| {
+            let mut between = points[b] - points[a];
+            for axis in (0..3).filter(|&axis| periodic[axis]) {
+                between[axis] -= size * (between[axis] / size).round();
             }
-        }
-        let mut expected = BTreeSet::new();
-        for a in 0..points.len() {
-            for b in a + 1..points.len() {
-                let mut between = points[b] - points[a];
-                for axis in 0..3 {
-                    if periodic[axis] {
-                        between[axis] -= size * (between[axis] / size).round();
-                    }
-                }
-                if between.norm() < 2.0 * radius + skin {
-                    expected.insert((a as u32, b as u32));
-                }
-            }
-        }
-        assert_eq!(listed, expected);
+            between.norm() < 2.0 * radius + skin
+        });
     }
 
     /// The domain from 1 to 4 m has the length 3 m.
@@ -438,18 +435,9 @@ mod tests {
                 let grains = (&mut grains, Some(&slots[..]));
                 neighbours.rebuild(&Team::new(1), shares, grains, None, [radius, 0.4], NOTHING);
             }
-            let mut listed = BTreeSet::new();
-            for share in &neighbours.shares {
-                for at in share.near.own() {
-                    assert!(share.near.row[at] < share.near.partner[at], "a grain moves before its row is reached");
-                    let (a, b) = (grains.id[share.near.row[at] as usize], grains.id[share.near.partner[at] as usize]);
-                    assert!(listed.insert((a.min(b), a.max(b))), "pair {a} {b} listed twice");
-                }
-            }
-            let near = |a: usize, b: usize| (points[b] - points[a]).norm() < radius_of(a) + radius_of(b) + skin;
-            let all = (0..points.len()).flat_map(|a| (a + 1..points.len()).map(move |b| (a, b)));
-            let expected: BTreeSet<_> = all.filter(|&(a, b)| near(a, b)).map(|(a, b)| (a as u32, b as u32)).collect();
-            assert_eq!(listed, expected);
+            assert_lists(&neighbours, &grains, |a, b| {
+                (points[b] - points[a]).norm() < radius_of(a) + radius_of(b) + skin
+            });
         }
     }
 }
