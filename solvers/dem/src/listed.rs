@@ -120,9 +120,8 @@ impl Pairs {
     }
 
     /// Selects pairs from the lists of consecutive partitions: all pairs of `rows`, and pairs of other rows whose partner
-    /// `keep` accepts. The order and the contact history of the pairs do not change. The own rows of the result are
-    /// `rows`.
-    pub(crate) fn chosen(lists: &[&Self], rows: Range<usize>, keep: impl Fn(usize) -> bool) -> Self {
+    /// is in `rows`. The order and the contact history of the pairs do not change. The own rows of the result are `rows`.
+    pub(crate) fn chosen(lists: &[&Self], rows: Range<usize>) -> Self {
         if lists.iter().all(|list| list.start == [0]) {
             return Self::empty();
         }
@@ -136,7 +135,7 @@ impl Pairs {
             let own = list.own();
             for (at, place) in list.places().into_iter().enumerate().take(own.end) {
                 let (row, partner) = (list.row[at] as usize, list.partner[at] as usize);
-                if at < own.start || !(rows.contains(&row) || keep(partner)) {
+                if at < own.start || !(rows.contains(&row) || rows.contains(&partner)) {
                     continue;
                 }
                 let number = chosen.row.len();

@@ -112,13 +112,11 @@ impl ThreadPartition {
     /// Creates the partition with these rows from the partitions of the whole list. It contains the pairs in `rows`,
     /// and pairs in other rows whose partner is in `rows`.
     pub(crate) fn reaching(shares: &[Self], rows: Range<usize>) -> Self {
-        let lists = |pairs_of: fn(&Self) -> &Pairs| shares.iter().map(pairs_of).collect::<Vec<_>>();
-        let chosen = |lists: &[&Pairs]| Pairs::chosen(lists, rows.clone(), |partner| rows.contains(&partner));
-        Self {
-            near: chosen(&lists(|share| &share.near)),
-            across: chosen(&lists(|share| &share.across)),
-            ..Self::new(rows.clone())
-        }
+        let chosen = |pairs_of: fn(&Self) -> &Pairs| {
+            let lists: Vec<&Pairs> = shares.iter().map(pairs_of).collect();
+            Pairs::chosen(&lists, rows.clone())
+        };
+        Self { near: chosen(|share| &share.near), across: chosen(|share| &share.across), ..Self::new(rows.clone()) }
     }
 
     /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout of the contact

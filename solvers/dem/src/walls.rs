@@ -37,7 +37,7 @@ pub(crate) struct MovingWall {
 }
 
 /// State of a wall between two steps. All other data of the wall follow from its prescribed motion.
-#[derive(Clone, Debug, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, Serialize, Deserialize)]
 pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
@@ -78,7 +78,6 @@ impl MovingWall {
     /// Creates the wall at its initial position. With `mid_step`, velocities of wall points are means over a step,
     /// otherwise velocities at the end of the step.
     pub(crate) fn new(wall: &Wall, mid_step: bool) -> Self {
-        let rest = Displacement { translation: Vector3::zeros(), rotation: Vector3::zeros() };
         Self {
             shape: wall.shape.clone(),
             centre: wall.motion.centre,
@@ -87,15 +86,7 @@ impl MovingWall {
             mid_step,
             swing: [1.0, 0.0],
             covered: Vec::new(),
-            kept: WallMemory {
-                displacement: rest,
-                at_list: rest,
-                near: Vec::new(),
-                at_mesh: MeshContacts::default(),
-                force: Vector3::zeros(),
-                pressed: [0.0; 2],
-                gone: false,
-            },
+            kept: WallMemory::default(),
             wall: wall.clone(),
         }
     }

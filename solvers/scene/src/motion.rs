@@ -66,7 +66,7 @@ impl std::fmt::Debug for Motion {
 }
 
 /// Displacement of a wall from its initial position.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Displacement {
     /// Translation (m).
     pub translation: Vector3<f64>,
