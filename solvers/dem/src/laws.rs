@@ -98,7 +98,7 @@ impl Laws {
 
     /// Returns the law indices of up to `WIDEST` pairs, whose grains have the slots `first` and `second`.
     #[inline(always)]
-    pub(crate) fn numbers(&self, material: &[u16], [first, second]: [&[usize; WIDEST]; 2]) -> [usize; WIDEST] {
+    pub(crate) fn numbers(&self, material: &[u16], [first, second]: &[[usize; WIDEST]; 2]) -> [usize; WIDEST] {
         let mut numbers = [0; WIDEST];
         for (number, (&one, &other)) in numbers.iter_mut().zip(first.iter().zip(second)) {
             *number = self.number(material[one], material[other]);

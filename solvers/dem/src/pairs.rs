@@ -2,7 +2,7 @@
 
 use crate::contact::chain::Answer;
 use crate::contact::normal::Normal;
-use crate::contact::pair::Pair;
+use crate::contact::pair::{Pair, PairDistances};
 use crate::contact::rolling::Rolling;
 use crate::contact::tangential::Tangential;
 use crate::contact::{MEMORY, Memory, Terms};
@@ -37,21 +37,6 @@ pub(crate) struct PairLoop<'a, S: Geometry, N, T, R, const Q: usize> {
 /// saves.
 const ROUND: usize = 8;
 
-/// Distances between the grains of one pair, or of several pairs at a time.
-#[derive(Clone, Copy)]
-struct PairDistances<S: Geometry, X: Number> {
-    /// Vector from the first centre to the second (m).
-    between: S::Vectors<X>,
-    /// Distance d between the centres (m).
-    distance: X,
-    /// Inverse distance 1/d (1/m).
-    inverse_distance: X,
-    /// Sum of the radii (m).
-    reach: X,
-    /// Radii R (m); zero if no law needs them or if they are read together with the spins.
-    radii: [X; 2],
-}
-
 impl<S: Geometry, L: Lanes> PairDistances<S, SimdPack<L>> {
     /// Returns zeros, as initial values of a buffer.
     #[inline(always)]
@@ -62,22 +47,8 @@ impl<S: Geometry, L: Lanes> PairDistances<S, SimdPack<L>> {
     }
 }
 
-/// Slots of the grains of as many pairs as a register holds.
-struct Slots {
-    first: [usize; WIDEST],
-    second: [usize; WIDEST],
-}
-
-impl Slots {
-    /// Reads the slots of pairs and checks that they are below the number of grains.
-    ///
-    /// # Panics
-    /// When a slot is out of range.
-    #[inline(always)]
-    fn new<L: Lanes>(lanes: L, (first, second): (&[u32], &[u32]), grains: usize) -> Self {
-        Self { first: places(lanes, first, grains), second: places(lanes, second, grains) }
-    }
-}
+/// Slots of the first grains and of the second grains of as many pairs as a register holds.
+type Slots = [[usize; WIDEST]; 2];
 
 impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> PairLoop<'a, S, N, T, R, Q> {
     /// Number of history values of a contact.
@@ -112,7 +83,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
     /// these contacts in the contact list.
     #[inline(always)]
     fn apart<L: Lanes>(&self, lanes: L, slots: &Slots, from: usize) -> PairDistances<S, SimdPack<L>> {
-        let (Slots { first, second }, zero) = (slots, SimdPack::splat(lanes, 0.0));
+        let ([first, second], zero) = (slots, SimdPack::splat(lanes, 0.0));
         let (place, shift) = (self.grains.place, self.shift);
         let (mut between, reach, radii);
         if T::ACTIVE && Q == 1 {
@@ -144,13 +115,12 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         &self,
         lanes: L,
         slots: &Slots,
-        apart: PairDistances<S, SimdPack<L>>,
+        mut apart: PairDistances<S, SimdPack<L>>,
         law: &'l Constants<SimdPack<L>>,
     ) -> Pair<'l, S, SimdPack<L>> {
-        let (Slots { first, second }, zero) = (slots, SimdPack::splat(lanes, 0.0));
+        let ([first, second], zero) = (slots, SimdPack::splat(lanes, 0.0));
         let GrainTables { place, movement, inverse_inertia: inertia, .. } = self.grains;
         let movement = &movement.as_chunks::<Q>().0[..place.len()];
-        let PairDistances { between, distance, inverse_distance, reach, mut radii } = apart;
         let (velocity, inverse_mass, mut inverse_masses, mut spins);
         if T::ACTIVE && Q == 1 {
             let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
@@ -163,7 +133,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             (inverse_masses, spins) = ([zero; 2], None);
             if T::ACTIVE {
                 let turns = [gathered_of(lanes, movement, Q - 1, first), gathered_of(lanes, movement, Q - 1, second)];
-                radii = [turns[0][3], turns[1][3]];
+                apart.radii = [turns[0][3], turns[1][3]];
                 spins = Some([S::spin([zero; 4], turns[0]), S::spin([zero; 4], turns[1])]);
             }
             if R::ACTIVE {
@@ -181,19 +151,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
                 *inverse = SimdPack::load(lanes, &each);
             }
         }
-        Pair {
-            law,
-            between,
-            distance,
-            inverse_distance,
-            radii,
-            reach,
-            velocity,
-            inverse_mass,
-            inverse_masses,
-            spins,
-            inverse_inertia,
-        }
+        Pair { law, apart, velocity, inverse_mass, inverse_masses, spins, inverse_inertia }
     }
 
     /// Reads the previous history of the contacts in one register, which start at index `from` of the contact list.
@@ -255,7 +213,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
         lanes: L,
         loads: &mut impl Loads,
         [one, other]: [[[SimdPack<L>; 4]; 2]; 2],
-        Slots { first, second }: &Slots,
+        [first, second]: &Slots,
         count: usize,
     ) {
         if Q == 2 {
@@ -312,15 +270,16 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
             let mut from = round;
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&mut aparts) {
                 if L::WIDTH < WIDEST {
-                    *apart = self.apart(lanes, &Slots::new(lanes, slots, grains), from);
+                    let slots = [places(lanes, slots.0, grains), places(lanes, slots.1, grains)];
+                    *apart = self.apart(lanes, &slots, from);
                 }
                 from += L::WIDTH;
             }
             let mut from = round;
             for (slots, apart) in first.chunks_exact(L::WIDTH).zip(second.chunks_exact(L::WIDTH)).zip(&aparts) {
-                let slots = Slots::new(lanes, slots, grains);
+                let slots = [places(lanes, slots.0, grains), places(lanes, slots.1, grains)];
                 if !laws.is_one() {
-                    law = laws.gather(lanes, &laws.numbers(self.grains.material, [&slots.first, &slots.second]));
+                    law = laws.gather(lanes, &laws.numbers(self.grains.material, &slots));
                 }
                 let mut memory = self.remembered(lanes, from);
                 let apart = if L::WIDTH < WIDEST { *apart } else { self.apart(lanes, &slots, from) };
@@ -330,9 +289,9 @@ impl<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> Ke
                 self.remember(&memory, from);
                 if terms.record
                     && let Some(seen) = &mut self.seen
-                    && self.sums.holds(slots.first[0])
+                    && self.sums.holds(slots[0][0])
                 {
-                    let (one, other, GrainTables { place, id, .. }) = (slots.first[0], slots.second[0], self.grains);
+                    let ([[one, ..], [other, ..]], GrainTables { place, id, .. }) = (slots, self.grains);
                     let partner = Partner::Grain(id[other] + 1);
                     seen.add(&answer, id[one] + 1, partner, S::vector_in_space(&place[one]), place[one].0[3]);
                 }

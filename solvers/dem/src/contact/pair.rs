@@ -9,20 +9,27 @@ use crate::geometry::{Geometry, Linear};
 use crate::laws::Constants;
 use grainbench_lanes::Number;
 
-/// Two grains in contact, or several such pairs at a time.
-pub(crate) struct Pair<'a, S: Geometry, X: Number> {
-    /// Law between the two materials.
-    pub(crate) law: &'a Constants<X>,
+/// Distances between the grains of one pair, or of several pairs at a time.
+#[derive(Clone, Copy)]
+pub(crate) struct PairDistances<S: Geometry, X: Number> {
     /// Vector from the first centre to the second (m).
     pub(crate) between: S::Vectors<X>,
     /// Distance d between the centres (m).
     pub(crate) distance: X,
     /// Inverse distance 1/d (1/m).
     pub(crate) inverse_distance: X,
-    /// Radii R of both grains (m).
-    pub(crate) radii: [X; 2],
     /// Sum of the radii (m).
     pub(crate) reach: X,
+    /// Radii R of both grains (m); zero if no law needs them or if they are read together with the spins.
+    pub(crate) radii: [X; 2],
+}
+
+/// Two grains in contact, or several such pairs at a time.
+pub(crate) struct Pair<'a, S: Geometry, X: Number> {
+    /// Law between the two materials.
+    pub(crate) law: &'a Constants<X>,
+    /// Distances between the grains, with radii for all laws that need them.
+    pub(crate) apart: PairDistances<S, X>,
     /// Velocity of the first centre relative to the second (m/s).
     pub(crate) velocity: S::Vectors<X>,
     /// Sum of the inverse masses, 1/m₁ + 1/m₂ (1/kg).
@@ -43,10 +50,9 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         terms: Terms<'_>,
         memory: &mut Memory<X>,
     ) -> Answer<S, X> {
-        let Self { between, distance, inverse_distance, velocity, .. } = *self;
-        let (zero, elapsed) = (distance.like(0.0), terms.elapsed);
-        let [first, second] = self.radii;
-        let overlap = self.reach - distance;
+        let PairDistances { between, distance, inverse_distance, reach, radii: [first, second] } = self.apart;
+        let (velocity, zero, elapsed) = (self.velocity, distance.like(0.0), terms.elapsed);
+        let overlap = reach - distance;
         let normal = between * inverse_distance;
         let is_mid_step = terms.options.mid_step && T::MAY_BE_MID_STEP && (N::DAMPED || T::ACTIVE);
         let turns = T::TURNED && S::DIMENSION == 3;
@@ -58,7 +64,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         };
         // One division serves both the effective radius and the ratio of stiffnesses. Contacts without friction use the
         // same operations, so that friction in another contact changes no bit of them.
-        let inverse = if N::CURVED { distance.like(1.0) / (self.reach * overlap) } else { zero };
+        let inverse = if N::CURVED { distance.like(1.0) / (reach * overlap) } else { zero };
         let touch = ContactInput {
             law: self.law,
             between,
@@ -68,7 +74,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             velocity_normal: if is_mid_step { middle.normal } else { normal },
             turn: self.spins.filter(|_| turns).map(|[a, b]| ContactRotation::new(middle.normal, a + b, elapsed)),
             stiffness_ratio: if changes {
-                stiffness_ratio(inverse * self.reach, velocity.dot(middle.normal), elapsed)
+                stiffness_ratio(inverse * reach, velocity.dot(middle.normal), elapsed)
             } else {
                 distance.like(1.0)
             },
@@ -76,7 +82,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
             effective_mass: if N::DAMPED { harmonic(self.inverse_mass) } else { zero },
             effective_radius: match (N::CURVED, R::ACTIVE) {
                 (true, _) => first * second * (inverse * overlap),
-                (false, true) => first * second / self.reach,
+                (false, true) => first * second / reach,
                 (false, false) => zero,
             },
         };
@@ -97,7 +103,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
     /// Returns the inverse moment of inertia of a grain about the contact, 1/(I + m R²) (1/(kg m²)).
     #[inline(always)]
     fn about_contact(&self, grain: usize) -> X {
-        let radius = self.radii[grain];
+        let radius = self.apart.radii[grain];
         let one = radius.like(1.0);
         one / (one / self.inverse_inertia[grain] + radius * radius / self.inverse_masses[grain])
     }
@@ -143,13 +149,16 @@ mod tests {
         let mut swung = |turned: f64, extra: Vector3<f64>, elapsed: f64| {
             let (sine, cosine) = (FRAC_PI_2 * turned).sin_cos();
             let between = Vector3::new(cosine, sine, 0.0) * (1.0 - overlap);
-            let pair = Pair::<Solid, f64> {
-                law: &law,
+            let apart = PairDistances {
                 between: Components(between.into()),
                 distance: between.norm(),
                 inverse_distance: 1.0 / between.norm(),
-                radii: [0.4, 0.6],
                 reach: 1.0,
+                radii: [0.4, 0.6],
+            };
+            let pair = Pair::<Solid, f64> {
+                law: &law,
+                apart,
                 velocity: Components((extra - spin.cross(&between)).into()),
                 inverse_mass: 2.0,
                 inverse_masses: [1.0; 2],
