@@ -87,10 +87,8 @@ impl<S: Geometry> ContactModel<S> {
 
 /// Parameters of a force evaluation.
 pub(crate) struct Evaluation<'a, S: Geometry> {
-    /// Loops over contacts.
-    pub(crate) forces: &'a dyn Forces<S>,
-    /// Instruction set of the loops over contacts.
-    pub(crate) processor: Processor,
+    /// Contact laws and the loops over contacts.
+    pub(crate) model: &'a ContactModel<S>,
     /// Parameters common to all contacts.
     pub(crate) terms: Terms<'a>,
     /// True if contacts are recorded individually, not only their energies.
@@ -227,10 +225,10 @@ impl List<'_> {
         sums: Sums<'_>,
         block: Range<usize>,
     ) {
-        let Self { rows, pairs, touching, seen, own } = self;
+        let (Self { rows, pairs, touching, seen, own }, model) = (self, evaluation.model);
         let number = block.start / BLOCK;
         let (whole, own_pairs) = (0..pairs.len(), pairs.own());
-        touching.find::<S>(evaluation.processor, grains.place, pairs, block);
+        touching.find::<S>(model.processor, grains.place, pairs, block);
         *own += if own_pairs == whole {
             touching.count as u64
         } else {
@@ -240,14 +238,8 @@ impl List<'_> {
             seen.make_room(touching.count);
         }
         let seen = evaluation.terms.record.then_some(&mut **seen);
-        evaluation.forces.of_pairs(
-            evaluation.processor,
-            evaluation.terms,
-            (grains, sums),
-            (pairs, number),
-            touching,
-            seen,
-        );
+        let (terms, grains) = (evaluation.terms, (grains, sums));
+        model.loops.of_pairs(model.processor, terms, grains, (pairs, number), touching, seen);
         pairs.remember(number, touching.count);
     }
 

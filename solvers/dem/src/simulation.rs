@@ -184,7 +184,7 @@ impl<S: Geometry> DemSimulation<S> {
     /// are displaced by the slip and the rolling during this time. `record` and `move_on` are as in `cycle`.
     fn evaluate_forces(&mut self, record: bool, elapsed: f64, move_on: bool) {
         let Self { model, motion, grains, neighbours, walls, joints, threads, recording, step, cost, .. } = self;
-        let terms = model.terms(elapsed, record);
+        let (model, terms) = (&*model, model.terms(elapsed, record));
         if record {
             recording.begin(*step, grains.len());
         }
@@ -196,7 +196,7 @@ impl<S: Geometry> DemSimulation<S> {
             cost.contact_evaluations += model.loops.at_wall(terms, grains, wall, number as u16, seen);
         }
         cost.pair_tests += neighbours.list.pairs() as u64;
-        let evaluation = Evaluation { forces: &*model.loops, processor: model.processor, terms, one_by_one };
+        let evaluation = Evaluation { model, terms, one_by_one };
         if let [whole] = &mut neighbours.list.shares[..] {
             let (found, fastest) = evaluate_and_move(whole, &evaluation, grains, move_on.then_some(&*motion));
             cost.contact_evaluations += found;
@@ -408,13 +408,13 @@ fn evaluate_and_move<S: Geometry>(
         let (read, sums) = grains.parts();
         near.evaluate(evaluation, read, sums, block.clone());
         if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {
-            fastest = fastest.max(motion.advance::<S>(evaluation.processor, MotionData::new(grains, moved..row)));
+            fastest = fastest.max(motion.advance::<S>(evaluation.model.processor, MotionData::new(grains, moved..row)));
             moved = row;
         }
     }
     if let Some(motion) = motion {
         let left = moved..grains.len();
-        fastest = fastest.max(motion.advance::<S>(evaluation.processor, MotionData::new(grains, left)));
+        fastest = fastest.max(motion.advance::<S>(evaluation.model.processor, MotionData::new(grains, left)));
     }
     (across.own() + near.own(), fastest)
 }
