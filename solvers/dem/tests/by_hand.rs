@@ -271,10 +271,11 @@ fn spins_are_damped_as_velocities_are() {
     }
 }
 
-/// At the ends of a segment and at the edges and corners of a rectangle, the force acts along the line from the nearest
-/// point to the centre of the grain. With δ = .01 m, it is k δ (3, 4)/5 or k δ (2, 3, 6)/7.
+/// On the faces of a segment and of a rectangle, the force acts along the normal. At the ends of a segment and at the edges
+/// and corners of a rectangle, it acts along the line from the nearest point to the centre of the grain. With δ = .01 m, it
+/// is k δ, k δ (3, 4)/5 or k δ (2, 3, 6)/7. A grain beside a wall feels no force.
 #[test]
-fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
+fn faces_ends_edges_and_corners_push_along_the_line_to_the_centre() {
     let force = |dimension: u8, wall: &str, position: &str, radius: f64| {
         let record = run(&format!(
             "dimension = {dimension}\nduration_cycles = 1\n\
@@ -285,11 +286,17 @@ fn ends_edges_and_corners_push_along_the_line_to_the_centre() {
     let segment = "segment = [[0.0, 0.0], [1.0, 0.0]]";
     closely(force(2, segment, "[-0.3, 0.4]", 0.51), Vector3::new(-6e3, 8e3, 0.0));
     closely(force(2, segment, "[1.3, -0.4]", 0.51), Vector3::new(6e3, -8e3, 0.0));
+    closely(force(2, segment, "[0.7, 0.5]", 0.51), Vector3::y() * 1e4);
+    closely(force(2, segment, "[0.3, -0.5]", 0.51), Vector3::y() * -1e4);
+    closely(force(2, segment, "[1.6, 0.0]", 0.51), Vector3::zeros());
     let rectangle = "rectangle = { corner = [0.0, 0.0, 0.0], edges = [[1.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }";
     closely(force(3, rectangle, "[-0.2, -0.3, 0.6]", 0.71), Vector3::new(-2.0, -3.0, 6.0) * (1e4 / 7.0));
     closely(force(3, rectangle, "[1.2, 2.3, -0.6]", 0.71), Vector3::new(2.0, 3.0, -6.0) * (1e4 / 7.0));
     closely(force(3, rectangle, "[1.3, 0.7, 0.4]", 0.51), Vector3::new(6e3, 0.0, 8e3));
     closely(force(3, rectangle, "[0.4, 2.3, -0.4]", 0.51), Vector3::new(0.0, 6e3, -8e3));
+    closely(force(3, rectangle, "[0.4, 1.2, 0.5]", 0.51), Vector3::z() * 1e4);
+    closely(force(3, rectangle, "[0.9, 0.7, -0.5]", 0.51), Vector3::z() * -1e4);
+    closely(force(3, rectangle, "[1.6, 0.7, 0.3]", 0.51), Vector3::zeros());
 }
 
 /// The three dashpots of a linear contact add up, between grains and at a wall: F_n = k δ + (β k + γ m* + 2ζ √(k m*))

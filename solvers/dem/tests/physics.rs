@@ -1,5 +1,5 @@
-//! Tests of parts of the method that no case of the registry isolates: walls of different shapes and motions, periodic
-//! faces, cohesion, prescribed motion of grains, and the shape of a grain in two dimensions.
+//! Tests of parts of the method that no case of the registry isolates: moving walls, periodic faces, cohesion, and
+//! prescribed motion of grains.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
@@ -10,56 +10,6 @@ use grainbench_dem::solver::Dem;
 use grainbench_solver::Solver;
 use grainbench_solver::resolution::Resolution;
 use support::{MATERIAL, last, run, run_as, scene};
-
-/// A disc dropped on the face of a segment moves as on a plane.
-#[test]
-fn the_face_of_a_segment_is_a_plane() {
-    let scene = |wall: &str| {
-        run(&format!(
-            "dimension = 2\nduration = 0.5\ngravity = [0.0, -9.8]\n\
-             [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.3]\nvelocity = [0.2, 0.0]\n\
-             [walls.w]\nmaterial = 'm'\n{wall}\n[probes]\ng.grain = 'g'\n"
-        ))
-    };
-    let plane = scene("plane = { point = [0.0, 0.0], normal = [0.0, 1.0] }");
-    let segment = scene("segment = [[-2.0, 0.0], [2.0, 0.0]]");
-    assert!(last(&plane, "g.y") > 0.1, "it bounces");
-    assert!((last(&plane, "g.y") - last(&segment, "g.y")).abs() < 1e-12);
-    assert!((last(&plane, "g.vx") - 0.2).abs() < 1e-15);
-}
-
-/// A ball dropped on a rectangle moves as on a plane. A ball dropped beside the rectangle falls past it.
-#[test]
-fn the_face_of_a_rectangle_is_a_plane() {
-    let scene = |wall: &str, x: f64| {
-        run(&format!(
-            "dimension = 3\nduration = 0.5\ngravity = [0.0, 0.0, -9.8]\n\
-             [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [{x}, 0.0, 0.3]\n\
-             [walls.w]\nmaterial = 'm'\n{wall}\n[probes]\ng.grain = 'g'\n"
-        ))
-    };
-    let rectangle = "rectangle = { corner = [-1.0, -1.0, 0.0], edges = [[2.0, 0.0, 0.0], [0.0, 2.0, 0.0]] }";
-    let plane = scene("plane = { point = [0.0, 0.0, 0.0], normal = [0.0, 0.0, 1.0] }", 0.0);
-    assert!((last(&plane, "g.z") - last(&scene(rectangle, 0.0), "g.z")).abs() < 1e-12);
-    let fallen = 0.3 - 0.5 * 9.8 * 0.25;
-    assert!((last(&scene(rectangle, 1.2), "g.z") - fallen).abs() < 1e-9);
-}
-
-/// When a disc hits the end of a segment, its velocity along the line from that end to its centre is reversed, and its
-/// speed is unchanged.
-#[test]
-fn the_end_of_a_segment_is_a_point() {
-    let record = run("dimension = 2\nduration = 0.2\nmaterials.n.density = 1000.0\n\
-         contacts.n = { between = ['n', 'n'], normal_stiffness = 1.0e9 }\n\
-         [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.2, 0.05]\nvelocity = [-1.0, 0.0]\n\
-         [walls.w]\nmaterial = 'n'\nsegment = [[-1.0, 0.0], [0.0, 0.0]]\n[probes]\ng.grain = 'g'\n");
-    // The normal at first contact is (√(R² − .05²), .05)/R. The impact reverses the normal velocity and does not change
-    // the tangential velocity.
-    let (nx, ny) = ((0.01_f64 - 0.0025).sqrt() / 0.1, 0.5);
-    let (vx, vy) = (-1.0 + 2.0 * nx * nx, 2.0 * nx * ny);
-    assert!((last(&record, "g.vx") - vx).abs() < 0.02 && (last(&record, "g.vy") - vy).abs() < 0.02);
-    assert!((last(&record, "g.vx").hypot(last(&record, "g.vy")) - 1.0).abs() < 1e-3);
-}
 
 /// A belt with velocity V drags a disc until the surface of the disc moves with the belt. The disc then has the
 /// velocity v = V i/(1+i) = V/3 with i = I/(m R²).
@@ -73,17 +23,6 @@ fn a_belt_drags_a_disc_to_a_third_of_its_speed() {
          motion = [{ velocity = [0.9, 0.0] }]\n[probes]\ng.grain = 'g'\n");
     assert!((last(&record, "g.vx") - 0.3).abs() < 1e-6, "{}", last(&record, "g.vx"));
     assert!((last(&record, "g.omega") - 6.0).abs() < 1e-5, "the top lags, so it turns counter-clockwise");
-}
-
-/// A paddle that rotates about its end hits a disc with the velocity of the contact point.
-#[test]
-fn a_turning_wall_hits_with_its_local_velocity() {
-    let record = run("dimension = 2\nduration = 0.08\n\
-         [grains.g]\nmaterial = 'm'\nradius = 0.1\nposition = [1.0, 0.102]\n\
-         [walls.w]\nmaterial = 'm'\nsegment = [[0.0, 0.0], [2.0, 0.0]]\nmotion = [{ spin = 0.5, centre = [0.0, 0.0] }]\n\
-         [probes]\ng.grain = 'g'\n");
-    // After the elastic impact of a heavy wall, the disc has twice the velocity Ω r = .5 · 1 m/s of the contact point.
-    assert!((last(&record, "g.vy") - 1.0).abs() < 0.01, "{}", last(&record, "g.vy"));
 }
 
 /// A collision across a periodic face gives the same result as a collision in the middle of the domain.
@@ -137,23 +76,6 @@ fn cohesion_carries_shear_without_load() {
     assert!((run(1.01 * threshold) / rolling - 1.0).abs() < 1e-3);
     let slipping = |cohesion: f64| 10.0 * (sine - 0.2 * cosine) - cohesion / mass;
     assert!((run(0.5 * threshold) / slipping(0.5 * threshold) - 1.0).abs() < 5e-3);
-}
-
-/// A sphere in two dimensions has the mass and inertia of a sphere. On a slope θ, it rolls with the acceleration (5/7)
-/// g sin θ, and a disc with (2/3) g sin θ.
-#[test]
-fn a_grain_in_the_plane_is_what_the_scene_says() {
-    for (shape, factor, share) in [("disc", 0.5, 2.0 / 3.0), ("sphere", 0.4, 5.0 / 7.0)] {
-        let record = run(&format!(
-            "dimension = 2\ngrain_shape = '{shape}'\nduration = 0.5\ngravity = {{ magnitude = 10.0, slope_deg = 30.0 }}\n\
-             materials.n.density = 1000.0\n\
-             contacts.n = {{ between = ['n', 'n'], normal_stiffness = 1.0e7, tangential_stiffness = 1.0e7, friction = 0.9, \
-             normal_damping = 500.0, tangential_damping = 500.0 }}\n\
-             [grains.g]\nmaterial = 'n'\nradius = 0.1\nposition = [0.0, 0.1]\n\
-             [walls.w]\nmaterial = 'n'\nplane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }}\n[probes]\ng.grain = 'g'\n"
-        ));
-        assert!((last(&record, "g.vx") / (2.5 * share) - 1.0).abs() < 1e-3, "{shape}: I/(mR²) = {factor}");
-    }
 }
 
 /// Two discs with prescribed motion shear a third disc between them, with friction. The prescribed motions are exact, and
