@@ -66,13 +66,8 @@ mod tests {
     }
 
     #[test]
-    fn a_list_that_lasts_keeps_the_thinnest_skin() {
-        assert_eq!(settled(1e6), RANGE[0]);
-    }
-
-    #[test]
-    fn a_list_that_does_not_last_gets_the_widest_skin() {
-        assert_eq!(settled(1.0), RANGE[1]);
+    fn a_list_that_lasts_keeps_the_thinnest_skin_and_another_gets_the_widest() {
+        assert_eq!([1e6, 1.0].map(settled), RANGE);
     }
 
     #[test]
