@@ -92,7 +92,7 @@ impl Processor {
     #[inline(always)]
     pub fn run<K: Kernel>(self, kernel: K) -> K::Output {
         match self {
-            Self::Portable => portable(kernel),
+            Self::Portable => portable(|lanes| kernel.run(lanes)),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => features.vectorize(
                 #[inline(always)]
@@ -110,7 +110,7 @@ impl Processor {
     #[inline(always)]
     pub fn run_by_four<K: FourKernel>(self, kernel: K) {
         match self {
-            Self::Portable => portable_by_four(kernel),
+            Self::Portable => portable(|lanes| kernel.run(lanes)),
             #[cfg(target_arch = "x86_64")]
             Self::Avx2(features) => features.vectorize(
                 #[inline(always)]
@@ -129,12 +129,6 @@ impl Processor {
 /// Runs a loop in portable code. It is a separate function, like the functions for other instruction sets. With many
 /// such loops in one function, compilation takes minutes.
 #[inline(never)]
-fn portable<K: Kernel>(kernel: K) -> K::Output {
-    kernel.run(ScalarBackend::<LANES>)
-}
-
-/// Runs a loop over four items at a time in portable code.
-#[inline(never)]
-fn portable_by_four<K: FourKernel>(kernel: K) {
-    kernel.run(ScalarBackend::<LANES>);
+fn portable<R>(run: impl FnOnce(ScalarBackend<LANES>) -> R) -> R {
+    run(ScalarBackend)
 }
