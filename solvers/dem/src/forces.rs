@@ -76,8 +76,8 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
         radius,
         velocity: S::vector_of(grains.velocity(slot) - facing.velocity),
         inverse_mass: grains.inverse_mass(slot),
-        spin: grains.spin(slot).filter(|_| T::ACTIVE).map(|spin| S::as_spin(spin.into())),
-        wall_spin: S::as_spin(wall.spin.into()),
+        spin: grains.spin(slot).filter(|_| T::ACTIVE).map(S::spin_of),
+        wall_spin: S::spin_of(wall.spin),
         inertia: if R::ACTIVE { 1.0 / grains.inverse_inertia[slot] } else { 0.0 },
     };
     let answer = at_wall.respond::<N, T, R>(terms, memory);

@@ -119,12 +119,10 @@ pub(crate) trait Geometry: Space {
 
     /// Returns the vector in a quad.
     fn vector<X: Number>(quad: [X; 4]) -> Self::Vectors<X>;
-    /// Returns the spin of a grain, from the quads of its velocity (`movement`) and of its spin (`turning`).
-    fn spin<X: Number>(movement: [X; 4], turning: [X; 4]) -> Self::Spins<X>;
+    /// Returns the spin in a quad: the third number in two dimensions, and the first three numbers in three dimensions.
+    fn spin<X: Number>(quad: [X; 4]) -> Self::Spins<X>;
     /// Returns the quads of a force and a torque, with `zero` in unused components.
     fn load<X: Number>(force: Self::Vectors<X>, torque: Self::Spins<X>, zero: X) -> [[X; 4]; 2];
-    /// Converts a three-dimensional spin or torque to this space. In two dimensions, only the z component is kept.
-    fn as_spin<X: Number>(vector: [X; 3]) -> Self::Spins<X>;
     /// Returns a vector with three components; in two dimensions, the third component is `zero`.
     fn whole<X: Number>(vector: Self::Vectors<X>, zero: X) -> [X; 3];
     /// Returns the torque of a force at a lever arm.
@@ -179,6 +177,11 @@ pub(crate) trait Geometry: Space {
     fn vector_of(vector: Vector3<f64>) -> Self::Vectors<f64> {
         Self::vector([vector.x, vector.y, vector.z, 0.0])
     }
+    /// Converts a spin with three components to this space. In two dimensions, only the z component is kept.
+    #[inline(always)]
+    fn spin_of(spin: Vector3<f64>) -> Self::Spins<f64> {
+        Self::spin([spin.x, spin.y, spin.z, 0.0])
+    }
 }
 
 impl Geometry for Plane {
@@ -191,8 +194,8 @@ impl Geometry for Plane {
         Components([x, y])
     }
     #[inline(always)]
-    fn spin<X: Number>(movement: [X; 4], _turning: [X; 4]) -> Components<X, 1> {
-        Components([movement[2]])
+    fn spin<X: Number>([_, _, z, _]: [X; 4]) -> Components<X, 1> {
+        Components([z])
     }
     #[inline(always)]
     fn load<X: Number>(
@@ -201,10 +204,6 @@ impl Geometry for Plane {
         zero: X,
     ) -> [[X; 4]; 2] {
         [[x, y, torque, zero], [zero; 4]]
-    }
-    #[inline(always)]
-    fn as_spin<X: Number>([_, _, z]: [X; 3]) -> Components<X, 1> {
-        Components([z])
     }
     #[inline(always)]
     fn whole<X: Number>(Components([x, y]): Components<X, 2>, zero: X) -> [X; 3] {
@@ -302,7 +301,7 @@ impl Geometry for Solid {
         Components([x, y, z])
     }
     #[inline(always)]
-    fn spin<X: Number>(_movement: [X; 4], [x, y, z, _]: [X; 4]) -> Components<X, 3> {
+    fn spin<X: Number>([x, y, z, _]: [X; 4]) -> Components<X, 3> {
         Components([x, y, z])
     }
     #[inline(always)]
@@ -312,10 +311,6 @@ impl Geometry for Solid {
         zero: X,
     ) -> [[X; 4]; 2] {
         [[x, y, z, zero], [a, b, c, zero]]
-    }
-    #[inline(always)]
-    fn as_spin<X: Number>(vector: [X; 3]) -> Components<X, 3> {
-        Components(vector)
     }
     #[inline(always)]
     fn whole<X: Number>(Components(vector): Components<X, 3>, _zero: X) -> [X; 3] {

@@ -126,7 +126,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             let moves = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];
             velocity = S::vector(moves[0]) - S::vector(moves[1]);
             (inverse_masses, inverse_mass) = ([moves[0][3], moves[1][3]], moves[0][3] + moves[1][3]);
-            spins = Some([S::spin(moves[0], [zero; 4]), S::spin(moves[1], [zero; 4])]);
+            spins = Some([S::spin(moves[0]), S::spin(moves[1])]);
         } else {
             let moves = laws::between(lanes, movement, 0, [second, first]);
             (velocity, inverse_mass) = (S::vector(moves), moves[3]);
@@ -134,7 +134,7 @@ impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize
             if T::ACTIVE {
                 let turns = [gathered_of(lanes, movement, Q - 1, first), gathered_of(lanes, movement, Q - 1, second)];
                 apart.radii = [turns[0][3], turns[1][3]];
-                spins = Some([S::spin([zero; 4], turns[0]), S::spin([zero; 4], turns[1])]);
+                spins = Some([S::spin(turns[0]), S::spin(turns[1])]);
             }
             if R::ACTIVE {
                 let masses = [gathered_of(lanes, movement, 0, first), gathered_of(lanes, movement, 0, second)];

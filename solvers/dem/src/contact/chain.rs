@@ -75,7 +75,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
     let Terms { options, elapsed, record, .. } = terms;
     let normal = N::force(touch, options);
     let zero = touch.overlap.like(0.0);
-    let none = S::as_spin([zero; 3]);
+    let none = S::spin([zero; 4]);
     let mut answer = Answer {
         normal: touch.normal,
         overlap: touch.overlap,

@@ -24,7 +24,7 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
         _inertia: X,
         _memory: &mut [X],
     ) -> S::Spins<X> {
-        S::as_spin([touch.overlap.like(0.0); 3])
+        S::spin([touch.overlap.like(0.0); 4])
     }
     /// Returns the energy in the rolling spring (J).
     fn energy<N: Normal, X: Number>(touch: &ContactInput<'_, S, X>, _memory: &[X]) -> X {
@@ -86,7 +86,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         let spring = -(angle * stiffness);
         let dashpot = rate * (law.rolling_damping * 2.0 * (inertia * stiffness).sqrt());
         // A contact without rolling resistance stores zero, even if other contacts in the register have resistance.
-        let (resists, none) = (zero.below(arm), S::as_spin([zero; 3]));
+        let (resists, none) = (zero.below(arm), S::spin([zero; 4]));
         S::Spins::<X>::choose(resists, angle, none).write(memory);
         S::Spins::<X>::choose(resists, S::Spins::<X>::choose(yields, spring, spring - dashpot), none)
     }
