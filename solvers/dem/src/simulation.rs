@@ -17,7 +17,7 @@ use crate::neighbours::NeighbourSearch;
 use crate::recording::Recording;
 use crate::share::{ContactModel, Evaluation, FEWEST, ThreadPartition, Threads};
 use crate::stability::CriticalStep;
-use crate::walls::{MovingWall, WallNeighbours};
+use crate::walls::MovingWall;
 use grainbench_lanes::Team;
 use grainbench_scene::overlap::nearest_image;
 use grainbench_scene::scene::Scene;
@@ -278,13 +278,7 @@ impl<S: Geometry> DemSimulation<S> {
     fn rebuild(&mut self) -> Result<(), Box<SimulationFailure>> {
         self.refuse_broken_state()?;
         let domain = self.scene.domain.filter(|_| self.scene.is_periodic());
-        let by_wall: Vec<WallNeighbours> = self
-            .walls
-            .iter()
-            .map(|wall| wall.kept.near.iter().map(|&(slot, memory)| (self.grains.id[slot as usize], memory)).collect())
-            .collect();
-        let any_mesh = self.walls.iter().any(|wall| wall.mesh().is_some());
-        let ids = if any_mesh { self.grains.id.clone() } else { Vec::new() };
+        let ids = self.grains.id.clone();
         let layout = self.model.loops.layout();
         let slots = self.come_and_go();
         if let Some(slots) = &slots {
@@ -296,14 +290,15 @@ impl<S: Geometry> DemSimulation<S> {
         neighbours.list.rebuild(&threads.team, shares, moved, domain.as_ref(), radii, layout);
         let mut remembered = vec![[0.0; MEMORY]; self.scene.grains.len()];
         let (mut extent, skin) = (0.0_f64, self.neighbours.list.skin);
-        for (wall, before) in self.walls.iter_mut().zip(&by_wall) {
+        for wall in &mut self.walls {
             if wall.list_triangles(&self.grains, &ids, skin) {
                 (0..self.grains.len()).for_each(|slot| {
                     extent = extent.max(wall.distance_to_centre(self.grains.position(slot)));
                 });
                 continue;
             }
-            before.iter().for_each(|&(id, memory)| remembered[id as usize] = memory);
+            let before = wall.kept.near.clone();
+            before.iter().for_each(|&(slot, memory)| remembered[ids[slot as usize] as usize] = memory);
             wall.begin_list();
             if wall.is_gone() {
                 continue;
@@ -315,7 +310,7 @@ impl<S: Geometry> DemSimulation<S> {
                 }
                 extent = extent.max(wall.distance_to_centre(position));
             }
-            before.iter().for_each(|&(id, _)| remembered[id as usize] = [0.0; MEMORY]);
+            before.iter().for_each(|&(slot, _)| remembered[ids[slot as usize] as usize] = [0.0; MEMORY]);
         }
         self.neighbours.begin(extent, self.step);
         self.cost.neighbour_builds = self.neighbours.list.builds;

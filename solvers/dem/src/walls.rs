@@ -11,9 +11,6 @@ use grainbench_scene::scene::{Piston, Wall, WallShape};
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 
-/// Slots or ids of grains near a wall, with their contact history.
-pub(crate) type WallNeighbours = Vec<(u32, Memory<f64>)>;
-
 /// Wall with its present position, its motion over the last step, and nearby grains.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingWall {
@@ -42,7 +39,7 @@ pub(crate) struct WallMemory {
     displacement: Displacement,
     at_list: Displacement,
     /// Slots of the grains near the wall, with contact history.
-    pub(crate) near: WallNeighbours,
+    pub(crate) near: Vec<(u32, Memory<f64>)>,
     /// Nearby grains and contacts of a mesh. A mesh uses them instead of `near`.
     pub(crate) at_mesh: MeshContacts,
     /// Force of the grains on the wall in the last force evaluation (N).
