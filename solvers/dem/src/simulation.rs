@@ -298,11 +298,11 @@ impl<S: Geometry> DemSimulation<S> {
                 continue;
             }
             let before = wall.kept.near.clone();
-            before.iter().for_each(|&(slot, memory)| remembered[ids[slot as usize] as usize] = memory);
             wall.begin_list();
             if wall.is_gone() {
                 continue;
             }
+            before.iter().for_each(|&(slot, memory)| remembered[ids[slot as usize] as usize] = memory);
             for slot in 0..self.grains.len() {
                 let position = self.grains.position(slot);
                 if wall.facing(position).distance < self.grains.radius(slot) + skin {
