@@ -1,7 +1,8 @@
 //! Recording of contacts for output, for the energy budget and for the mean stress of grains.
 
+use crate::contact::chain::Energies;
 use crate::mean_virial::MeanVirial;
-use crate::seen::{Energies, RecordedContacts};
+use crate::seen::RecordedContacts;
 use crate::share::ThreadPartition;
 use grainbench_scene::columns::Chosen;
 use grainbench_scene::scene::{Grain, Probe, ProbeTarget, Scene};
@@ -59,7 +60,7 @@ impl Recording {
     }
 
     /// Returns the energies of the contacts in the last recorded force evaluation.
-    pub(crate) fn energies<'a>(&'a self, partitions: &'a [ThreadPartition]) -> impl Iterator<Item = &'a Energies> {
+    pub(crate) fn energies<'a>(&'a self, partitions: &'a [ThreadPartition]) -> impl Iterator<Item = &'a Energies<f64>> {
         let list_energies = |list: usize| partitions.iter().flat_map(move |share| &share.work.seen[list].energies);
         self.at_walls.energies.iter().chain(list_energies(0)).chain(list_energies(1))
     }

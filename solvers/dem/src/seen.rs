@@ -1,6 +1,6 @@
 //! Contacts recorded in a force evaluation, for snapshots and the energy budget.
 
-use crate::contact::chain::Answer;
+use crate::contact::chain::{Answer, Energies};
 use crate::geometry::Geometry;
 use crate::listed::reserve;
 use grainbench_lanes::Number;
@@ -17,18 +17,7 @@ pub(crate) struct RecordedContacts {
     /// Number of slipping contacts.
     pub(crate) slipping: usize,
     /// Energies of each contact.
-    pub(crate) energies: Vec<Energies>,
-}
-
-/// Spring energy of a contact, and the energies that it dissipated or released in one step.
-#[derive(Clone, Copy, Debug)]
-pub(crate) struct Energies {
-    /// Energy in the springs (J).
-    pub(crate) elastic: f64,
-    /// Frictional work in the step (J).
-    pub(crate) rubbed: f64,
-    /// Energy released by a change of stiffness in the step (J).
-    pub(crate) released: f64,
+    pub(crate) energies: Vec<Energies<f64>>,
 }
 
 impl RecordedContacts {
@@ -64,7 +53,8 @@ impl RecordedContacts {
         let zero = answer.overlap.like(0.0);
         let slipping = X::choose(answer.slipping, zero.like(1.0), zero).first() > 0.0;
         self.slipping += usize::from(slipping);
-        let [elastic, rubbed, released] = [answer.elastic_energy, answer.rubbed, answer.released].map(X::first);
+        let Energies { elastic, rubbed, released } = answer.energies;
+        let (elastic, rubbed, released) = (elastic.first(), rubbed.first(), released.first());
         self.energies.push(Energies { elastic, rubbed, released });
         if !self.one_by_one {
             return;

@@ -37,6 +37,17 @@ pub(crate) struct BodyRotations<S: Geometry, X: Number> {
     pub(crate) inertia: X,
 }
 
+/// Spring energy of a contact, and the energies that it dissipated or released in one step.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Energies<X> {
+    /// Energy in the springs (J).
+    pub(crate) elastic: X,
+    /// Frictional work in the step (J).
+    pub(crate) rubbed: X,
+    /// Energy released by the tangential spring in the step because its stiffness changes (J).
+    pub(crate) released: X,
+}
+
 /// Forces, torques and output data of a contact, computed by the chain of stages.
 pub(crate) struct Answer<S: Geometry, X: Number> {
     /// Unit normal e from the first body to the second.
@@ -53,13 +64,8 @@ pub(crate) struct Answer<S: Geometry, X: Number> {
     pub(crate) shear: S::Tangents<X>,
     /// True if the Coulomb limit was reached.
     pub(crate) slipping: X::Mask,
-    /// Energy in the springs (J); computed only if contacts are recorded.
-    pub(crate) elastic_energy: X,
-    /// Frictional work in the step (J); computed only if contacts are recorded.
-    pub(crate) rubbed: X,
-    /// Energy released by the tangential spring in the step because its stiffness changes (J); computed only if
-    /// contacts are recorded.
-    pub(crate) released: X,
+    /// Energies; computed only if contacts are recorded.
+    pub(crate) energies: Energies<X>,
 }
 
 /// Evaluates the stages for one contact, or for several contacts at a time. `arms` holds the lever arms of both bodies
@@ -84,9 +90,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
         normal_force: normal.total,
         shear: S::tangential(S::vector([zero; 4]), touch.normal),
         slipping: zero.below(zero),
-        elastic_energy: zero,
-        rubbed: zero,
-        released: zero,
+        energies: Energies { elastic: zero, rubbed: zero, released: zero },
     };
     if let (true, Some(turning)) = (T::ACTIVE, turning) {
         let slip = S::slip(touch.velocity, turning.surface, touch.velocity_normal);
@@ -97,7 +101,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
         let twist = S::torque_of(touch.normal, force);
         answer.torques = [twist * arms[0], twist * arms[1]];
         if record {
-            [answer.rubbed, answer.released] = T::lost::<N, X>(touch, slip, elapsed, &before, memory);
+            [answer.energies.rubbed, answer.energies.released] = T::lost::<N, X>(touch, slip, elapsed, &before, memory);
         }
         (answer.shear, answer.slipping) = (shear.force, shear.slipping);
         if R::ACTIVE {
@@ -108,7 +112,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
     }
     if record {
         let shear = T::energy(memory, N::tangential_stiffness(touch));
-        answer.elastic_energy = N::energy(touch) + shear + R::energy::<N, X>(touch, &memory[T::NUMBERS..]);
+        answer.energies.elastic = N::energy(touch) + shear + R::energy::<N, X>(touch, &memory[T::NUMBERS..]);
     }
     answer
 }
