@@ -36,22 +36,17 @@ impl<S: Geometry> DemSimulation<S> {
                 .flat_map(Pairs::remembered)
                 .map(|(row, partner, memory)| (of_slot(row), of_slot(partner), memory[..numbers].to_vec()))
                 .collect(),
-            walls: self
-                .walls
-                .iter()
-                .flat_map(|wall| wall.kept.near.iter().map(move |near| (wall.name(), near)))
-                .filter(|(_, (_, memory))| memory[..numbers].iter().any(|&number| number != 0.0))
-                .map(|(name, &(slot, memory))| (of_slot(slot), name.to_owned(), memory[..numbers].to_vec()))
-                .chain(
-                    self.walls
-                        .iter()
-                        .flat_map(|wall| wall.kept.at_mesh.held.iter().map(move |held| (wall.name(), held)))
-                        .map(|(name, held)| {
-                            (of_slot(held.slot), format!("{name}{PART}{}", held.group), held.memory[..numbers].to_vec())
-                        }),
-                )
-                .collect(),
+            walls: Vec::new(),
         };
+        for wall in &self.walls {
+            let name = wall.name();
+            let near =
+                wall.kept.near.iter().filter(|(_, memory)| memory[..numbers].iter().any(|&number| number != 0.0));
+            let near = near.map(|(slot, memory)| (*slot, name.to_owned(), &memory[..numbers]));
+            let held = wall.kept.at_mesh.held.iter();
+            let held = held.map(|held| (held.slot, format!("{name}{PART}{}", held.group), &held.memory[..numbers]));
+            springs.walls.extend(near.chain(held).map(|(slot, name, memory)| (of_slot(slot), name, memory.to_vec())));
+        }
         // The order of the lists depends on the number of threads, so they are sorted.
         springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
         springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
@@ -96,8 +91,8 @@ impl<S: Geometry> DemSimulation<S> {
         for (grain, name, numbers) in &springs.walls {
             let (name, part) =
                 name.rsplit_once(PART).map_or((&name[..], None), |(wall, part)| (wall, part.parse().ok()));
-            let wall =
-                self.walls.iter_mut().find(|wall| wall.name() == name && wall.mesh().is_some() == part.is_some());
+            let mut walls = self.walls.iter_mut();
+            let wall = walls.find(|wall| wall.name() == name && wall.mesh().is_some() == part.is_some());
             let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
             match part {
                 None => wall.kept.near.push((slot, memory(numbers))),
