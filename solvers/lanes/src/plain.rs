@@ -114,7 +114,14 @@ impl<const WIDTH: usize> Lanes for ScalarBackend<WIDTH> {
     }
     #[inline(always)]
     fn pack(self, integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
-        packed(integers, bits)
+        let (mut all, mut count) = ([0; WIDEST], 0);
+        for (lane, &value) in integers.iter().enumerate() {
+            // Every integer is written. If its bit is not set, the next integer overwrites it. This avoids an
+            // unpredictable branch.
+            all[count % WIDEST] = value;
+            count += (bits >> lane & 1) as usize;
+        }
+        all
     }
     #[inline(always)]
     fn quads(self, rows: [[f64; WIDTH]; 4]) -> [Quad; WIDEST] {
@@ -152,17 +159,4 @@ impl FourLanes for ScalarBackend<LANES> {
 #[inline(always)]
 const fn less(Quad(from): &Quad, Quad(to): &Quad) -> [f64; 4] {
     [to[0] - from[0], to[1] - from[1], to[2] - from[2], to[3] + from[3]]
-}
-
-/// Moves the integers whose bit is set to the front, in their order.
-#[inline(always)]
-fn packed(integers: &[u32; WIDEST], bits: u32) -> [u32; WIDEST] {
-    let (mut all, mut count) = ([0; WIDEST], 0);
-    for (lane, &value) in integers.iter().enumerate() {
-        // Every integer is written. If its bit is not set, the next integer overwrites it. This avoids an unpredictable
-        // branch.
-        all[count % WIDEST] = value;
-        count += (bits >> lane & 1) as usize;
-    }
-    all
 }
