@@ -12,7 +12,8 @@ pub(crate) struct Cells {
     /// Lowest and highest coordinates of the centres of the grains that have a cell (m).
     pub(crate) bounds: [Vector3<f64>; 2],
     width: Vector3<f64>,
-    reach: f64,
+    /// Distance between the centres below which two grains with cells can be neighbours (m).
+    pub(crate) reach: f64,
     pub(crate) count: [usize; 3],
     /// First slot of every cell, then the number of grains. Grains without a cell have the slots before the first cell.
     pub(crate) start: Vec<u32>,
@@ -86,11 +87,6 @@ impl Cells {
     pub(crate) fn place(&self, cell: usize) -> [usize; 3] {
         let [along, across, _] = self.count;
         [cell % along, cell / along % across, cell / (along * across)]
-    }
-
-    /// Returns the distance between the centres (m) below which two grains with cells can be neighbours.
-    pub(crate) fn reach(&self) -> f64 {
-        self.reach
     }
 
     /// Returns the number of grains without a cell. They have the first slots.

@@ -31,9 +31,9 @@ impl<S: Geometry> DemSimulation<S> {
 
     fn refuse_stiff_at(&self, wall: &MovingWall) -> Result<(), Box<SimulationFailure>> {
         for (slot, distance) in wall.distances(&self.grains) {
-            let radius = self.grains.radius(slot);
+            let (radius, inverse_mass) = (self.grains.radius(slot), self.grains.inverse_mass(slot));
             if distance < radius {
-                self.refuse_stiff(slot, wall.material(), radius - distance, radius, self.grains.inverse_mass(slot))?;
+                self.refuse_stiff(slot, wall.initial.material, radius - distance, radius, inverse_mass)?;
             }
         }
         Ok(())

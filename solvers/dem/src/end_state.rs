@@ -39,10 +39,10 @@ impl<S: Geometry> DemSimulation<S> {
             walls: Vec::new(),
         };
         for wall in &self.walls {
-            let name = wall.name();
+            let name = &wall.initial.name;
             let near =
                 wall.kept.near.iter().filter(|(_, memory)| memory[..numbers].iter().any(|&number| number != 0.0));
-            let near = near.map(|(slot, memory)| (*slot, name.to_owned(), &memory[..numbers]));
+            let near = near.map(|(slot, memory)| (*slot, name.clone(), &memory[..numbers]));
             let held = wall.kept.at_mesh.held.iter();
             let held = held.map(|held| (held.slot, format!("{name}{PART}{}", held.group), &held.memory[..numbers]));
             springs.walls.extend(near.chain(held).map(|(slot, name, memory)| (of_slot(slot), name, memory.to_vec())));
@@ -92,7 +92,7 @@ impl<S: Geometry> DemSimulation<S> {
             let (name, part) =
                 name.rsplit_once(PART).map_or((&name[..], None), |(wall, part)| (wall, part.parse().ok()));
             let mut walls = self.walls.iter_mut();
-            let wall = walls.find(|wall| wall.name() == name && wall.mesh().is_some() == part.is_some());
+            let wall = walls.find(|wall| wall.initial.name == name && wall.mesh().is_some() == part.is_some());
             let (Some(wall), Some(slot)) = (wall, slot(*grain)) else { continue };
             match part {
                 None => wall.kept.near.push((slot, memory(numbers))),

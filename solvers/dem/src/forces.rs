@@ -70,7 +70,7 @@ fn at_contact<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>>(
 ) {
     let (position, radius) = (grains.position(slot), grains.radius(slot));
     let at_wall = WallContact::<S> {
-        law: terms.laws.between(grains.material[slot], wall.material()),
+        law: terms.laws.between(grains.material[slot], wall.initial.material),
         normal: S::vector_of(facing.normal),
         distance: facing.distance,
         radius,

@@ -72,7 +72,7 @@ fn owner(walls: &[MovingWall], number: usize, edges: &[(usize, Vec<usize>)], at:
     let is_owner = |&&other: &&usize| {
         let theirs = walls[other].facing(at).distance;
         let is_nearer = theirs < distance * (1.0 - ROUNDING);
-        !walls[other].is_gone() && (is_nearer || (other < number && theirs <= distance * (1.0 + ROUNDING)))
+        !walls[other].kept.gone && (is_nearer || (other < number && theirs <= distance * (1.0 + ROUNDING)))
     };
     joined.filter(is_owner).min().copied()
 }

@@ -268,6 +268,7 @@ impl Pairs {
         }
     }
 
+    /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.memory.iter_mut().flatten().for_each(|memory| memory.fill(0.0));
     }

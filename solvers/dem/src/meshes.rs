@@ -31,7 +31,7 @@ pub(crate) struct MeshContacts {
     /// Slot of every nearby grain, and the end of its range in `triangles`, sorted by slot.
     near: Vec<(u32, u32)>,
     /// Indices of the triangles near each grain, grain by grain.
-    triangles: Vec<u32>,
+    pub(crate) triangles: Vec<u32>,
     /// Contacts of the last force evaluation, sorted by slot.
     pub(crate) held: Vec<PreviousContact>,
     /// Buffer for the contacts of one grain.
@@ -65,11 +65,6 @@ impl MeshContacts {
         self.near.is_empty() && self.triangles.is_empty() && self.held.is_empty()
     }
 
-    /// Returns the number of listed pairs of a grain and a triangle.
-    pub(crate) fn pairs(&self) -> usize {
-        self.triangles.len()
-    }
-
     /// Clears the list of nearby triangles, and moves out the contacts of the last force evaluation.
     pub(crate) fn begin_list(&mut self) -> Vec<PreviousContact> {
         self.near.clear();
@@ -85,11 +80,6 @@ impl MeshContacts {
         if self.near.last().map_or(0, |&(_, end)| end) < end {
             self.near.push((slot as u32, end));
         }
-    }
-
-    /// Clears the history of every contact.
-    pub(crate) fn forget(&mut self) {
-        self.held.clear();
     }
 
     /// Finds the contacts of every nearby grain and evaluates each with its history. Returns the number of contacts.

@@ -129,7 +129,7 @@ impl Neighbours {
 
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
-        self.shares.iter_mut().for_each(ThreadPartition::forget);
+        self.shares.iter_mut().flat_map(|share| [&mut share.near, &mut share.across]).for_each(Pairs::forget);
     }
 }
 
@@ -277,7 +277,7 @@ fn beside_a_large_one<S: Geometry>(place: &[Quad], cells: &Cells, skin: f64, slo
     let mut take = |range: Range<usize>| {
         partners.extend(range.filter(|&other| is_near::<S>(grain, &place[other], skin)).map(|other| other as u32));
     };
-    let reach = Vector3::repeat(grain.0[3] + cells.reach());
+    let reach = Vector3::repeat(grain.0[3] + cells.reach);
     let middle = S::vector_in_space(grain);
     let (low, high) = (cells.coordinates(middle - reach), cells.coordinates(middle + reach));
     take(slot + 1..without);

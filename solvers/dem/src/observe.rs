@@ -25,8 +25,8 @@ pub(crate) fn observed<S: Geometry>(simulation: &mut DemSimulation<S>) -> StepSt
         .walls
         .iter()
         .map(|wall| {
-            let (corners, infinite) = if wall.is_gone() { (Vec::new(), false) } else { wall.shape.corners() };
-            WallState { name: wall.name().to_owned(), corners, infinite, force: Some(wall.kept.force) }
+            let (corners, infinite) = if wall.kept.gone { (Vec::new(), false) } else { wall.shape.corners() };
+            WallState { name: wall.initial.name.clone(), corners, infinite, force: Some(wall.kept.force) }
         })
         .collect();
     let snapshot = Snapshot::new(scene, simulation.step, simulation.time(), grains, walls, contacts);

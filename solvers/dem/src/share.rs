@@ -160,12 +160,6 @@ impl ThreadPartition {
         }
     }
 
-    /// Clears the history of every contact.
-    pub(crate) fn forget(&mut self) {
-        self.near.forget();
-        self.across.forget();
-    }
-
     /// Returns the number of pairs in the partition's own rows.
     pub(crate) fn pairs(&self) -> usize {
         self.near.own().len() + self.across.own().len()
@@ -193,7 +187,7 @@ impl ThreadPartition {
             for block in list.blocks(evaluation.one_by_one) {
                 list.evaluate(evaluation, grains, sums.lent(), block);
             }
-            contacts += list.own();
+            contacts += list.own;
         }
         contacts
     }
@@ -206,7 +200,7 @@ pub(crate) struct List<'a> {
     touching: &'a mut ContactList,
     seen: &'a mut RecordedContacts,
     /// Number of contacts in the partition's own rows so far.
-    own: u64,
+    pub(crate) own: u64,
 }
 
 impl List<'_> {
@@ -247,10 +241,5 @@ impl List<'_> {
     /// forces on the grains of all earlier rows are complete.
     pub(crate) fn row_after(&self, block: &Range<usize>) -> Option<usize> {
         (block.end < self.pairs.len()).then(|| self.pairs.row[block.end] as usize)
-    }
-
-    /// Returns the number of contacts in the partition's own rows.
-    pub(crate) fn own(self) -> u64 {
-        self.own
     }
 }

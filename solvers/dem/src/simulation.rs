@@ -299,7 +299,7 @@ impl<S: Geometry> DemSimulation<S> {
             }
             let before = wall.kept.near.clone();
             wall.begin_list();
-            if wall.is_gone() {
+            if wall.kept.gone {
                 continue;
             }
             before.iter().for_each(|&(slot, memory)| remembered[ids[slot as usize] as usize] = memory);
@@ -332,7 +332,7 @@ impl<S: Geometry> DemSimulation<S> {
             };
             let into_wall = |(number, wall): (usize, &MovingWall)| {
                 let ratio = 1.0 - wall.facing(position).distance / radius;
-                (!wall.is_gone() && ratio > LARGEST_ENTRY_OVERLAP)
+                (!wall.kept.gone && ratio > LARGEST_ENTRY_OVERLAP)
                     .then_some(Cause::CameIntoWall { wall: number as u16 + 1, ratio })
             };
             let cause = (0..slot).find_map(into_grain).or_else(|| self.walls.iter().enumerate().find_map(into_wall));
@@ -411,5 +411,5 @@ fn evaluate_and_move<S: Geometry>(
         let left = moved..grains.len();
         fastest = fastest.max(motion.advance::<S>(evaluation.model.processor, MotionData::new(grains, left)));
     }
-    (across.own() + near.own(), fastest)
+    (across.own + near.own, fastest)
 }

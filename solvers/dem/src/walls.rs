@@ -14,7 +14,8 @@ use serde::{Deserialize, Serialize};
 /// Wall with its present position, its motion over the last step, and nearby grains.
 #[derive(Clone, Debug)]
 pub(crate) struct MovingWall {
-    wall: Wall,
+    /// Wall of the scene, at its initial position.
+    pub(crate) initial: Wall,
     /// Shape at the present position.
     pub(crate) shape: WallShape,
     centre: Vector3<f64>,
@@ -47,7 +48,7 @@ pub(crate) struct WallMemory {
     /// For a piston: displacement along its normal (m), and speed half a step earlier (m/s).
     pressed: [f64; 2],
     /// True if the wall has been removed.
-    gone: bool,
+    pub(crate) gone: bool,
 }
 
 impl WallMemory {
@@ -84,12 +85,8 @@ impl MovingWall {
             swing: [1.0, 0.0],
             covered: Vec::new(),
             kept: WallMemory::default(),
-            wall: wall.clone(),
+            initial: wall.clone(),
         }
-    }
-
-    pub(crate) fn material(&self) -> u16 {
-        self.wall.material
     }
 
     /// Returns the mesh; `None` if the wall is not a mesh.
@@ -99,17 +96,13 @@ impl MovingWall {
 
     /// Returns the number of listed pairs of a grain and the wall, or of a grain and a triangle.
     pub(crate) fn pairs(&self) -> usize {
-        self.kept.near.len() + self.kept.at_mesh.pairs()
+        self.kept.near.len() + self.kept.at_mesh.triangles.len()
     }
 
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
         self.kept.near.iter_mut().for_each(|(_, memory)| *memory = [0.0; MEMORY]);
-        self.kept.at_mesh.forget();
-    }
-
-    pub(crate) fn name(&self) -> &str {
-        &self.wall.name
+        self.kept.at_mesh.held.clear();
     }
 
     /// Restores the state between two steps.
@@ -120,14 +113,9 @@ impl MovingWall {
         self.kept = memory;
     }
 
-    /// Returns true if the wall has been removed.
-    pub(crate) fn is_gone(&self) -> bool {
-        self.kept.gone
-    }
-
     /// Removes the wall if `time` (s) has reached its removal time. Returns true if this call removes it.
     pub(crate) fn take_away(&mut self, time: f64) -> bool {
-        let now = !self.kept.gone && self.wall.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
+        let now = !self.kept.gone && self.initial.until.is_some_and(|until| time >= until * (1.0 - 1e-9));
         self.kept.gone |= now;
         now
     }
@@ -135,7 +123,7 @@ impl MovingWall {
     /// Returns the data of a piston: its parameters, its acceleration along the normal due to the piston force and the
     /// grains (m/s²), and its normal. Returns `None` for a wall without piston.
     fn pressure(&self) -> Option<(Piston, f64, Vector3<f64>)> {
-        let (Some(piston), WallShape::Plane { normal, .. }) = (self.wall.piston, &self.shape) else { return None };
+        let (Some(piston), WallShape::Plane { normal, .. }) = (self.initial.piston, &self.shape) else { return None };
         Some((piston, (piston.force + self.kept.force.dot(normal)) / piston.mass, *normal))
     }
 
@@ -149,7 +137,7 @@ impl MovingWall {
     /// Moves the wall to its position at `time` (s), over one step. The motion of a piston is integrated like that of a
     /// grain, with the force of the grains in the last force evaluation.
     pub(crate) fn move_to(&mut self, time: f64, time_step: f64) {
-        let motion = &self.wall.motion;
+        let motion = &self.initial.motion;
         let pressure = self.pressure();
         if !motion.is_moving() && pressure.is_none() {
             return;
@@ -169,10 +157,10 @@ impl MovingWall {
     }
 
     fn displaced_to(&mut self, displacement: Displacement) {
-        let motion = &self.wall.motion;
+        let motion = &self.initial.motion;
         self.kept.displacement = displacement;
         self.centre = motion.centre + displacement.translation;
-        self.shape = self.wall.shape.moved(motion, &displacement);
+        self.shape = self.initial.shape.moved(motion, &displacement);
     }
 
     /// Returns an upper bound of the displacement since the neighbour list was built (m), for points within `extent` (m) of
