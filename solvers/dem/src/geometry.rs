@@ -146,20 +146,26 @@ pub(crate) trait Geometry: Space {
     fn twist<X: Number>(spin: Self::Spins<X>, normal: Self::Vectors<X>) -> X;
     /// Returns a stored tangential quantity after the rotation of its contact. `middle` is the normal in the middle of
     /// the step. The contact rotates about `normal` by an angle whose half has the tangent `half_twist`. In two
-    /// dimensions, the scalar does not change.
+    /// dimensions, the scalar does not change, which is the provided function.
+    #[inline(always)]
     fn turned_tangent<X: Number>(
         tangent: Self::Tangents<X>,
-        middle: Self::Vectors<X>,
-        normal: Self::Vectors<X>,
-        half_twist: X,
-    ) -> Self::Tangents<X>;
+        _middle: Self::Vectors<X>,
+        _normal: Self::Vectors<X>,
+        _half_twist: X,
+    ) -> Self::Tangents<X> {
+        tangent
+    }
     /// Returns a stored rolling angle after the rotation of its contact. The arguments are those of `turned_tangent`.
+    #[inline(always)]
     fn turned_spin<X: Number>(
         spin: Self::Spins<X>,
-        middle: Self::Vectors<X>,
-        normal: Self::Vectors<X>,
-        half_twist: X,
-    ) -> Self::Spins<X>;
+        _middle: Self::Vectors<X>,
+        _normal: Self::Vectors<X>,
+        _half_twist: X,
+    ) -> Self::Spins<X> {
+        spin
+    }
 
     /// Returns the vector in a quad as three components. In two dimensions, the third component is zero.
     #[inline(always)]
@@ -246,24 +252,6 @@ impl Geometry for Plane {
     #[inline(always)]
     fn twist<X: Number>(Components([spin]): Components<X, 1>, _normal: Components<X, 2>) -> X {
         spin.like(0.0)
-    }
-    #[inline(always)]
-    fn turned_tangent<X: Number>(
-        tangent: Components<X, 1>,
-        _middle: Components<X, 2>,
-        _normal: Components<X, 2>,
-        _half_twist: X,
-    ) -> Components<X, 1> {
-        tangent
-    }
-    #[inline(always)]
-    fn turned_spin<X: Number>(
-        spin: Components<X, 1>,
-        _middle: Components<X, 2>,
-        _normal: Components<X, 2>,
-        _half_twist: X,
-    ) -> Components<X, 1> {
-        spin
     }
 }
 
