@@ -63,6 +63,7 @@ impl<S: Geometry> DemSimulation<S> {
 
     /// Returns the sum of the contact forces on each group of grains with prescribed motion (N).
     pub(crate) fn forces_on_driven(&self) -> Vec<Vector3<f64>> {
-        self.scene.driven.iter().map(|driven| self.grains.force_on(&driven.grains)).collect()
+        let force = |&grain: &usize| self.grains.force(self.grains.slot[grain] as usize);
+        self.scene.driven.iter().map(|driven| driven.grains.iter().map(force).sum()).collect()
     }
 }

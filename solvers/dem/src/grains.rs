@@ -220,11 +220,6 @@ impl<S: Geometry> Grains<S> {
         self.load[at..end].fill(Quad::default());
     }
 
-    /// Returns the sum of the contact forces on a group of grains (N). `group` holds their indices in the scene.
-    pub(crate) fn force_on(&self, group: &[usize]) -> Vector3<f64> {
-        group.iter().map(|&id| self.force(self.slot[id] as usize)).sum()
-    }
-
     /// Sorts the grains: slot `k` gets the grain of slot `order[k]`. Grains that are not in `order` are dropped.
     pub(crate) fn reorder(&mut self, order: &[u32]) {
         fn gather<T: Copy>(values: &mut Vec<T>, order: &[u32]) {

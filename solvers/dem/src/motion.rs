@@ -70,11 +70,12 @@ impl Motion {
     /// Moves grains over one step by the forces and torques on them, then sets forces and torques to zero. Returns the
     /// square of the largest speed (m²/s²); infinite if any speed is NaN.
     pub(crate) fn advance<S: Geometry>(&self, processor: Processor, grains: MotionData<'_>) -> f64 {
+        let (motion, space) = (self, PhantomData);
         match (self.global_damping == 0.0, self.gravity == Vector3::zeros()) {
-            (true, true) => processor.run(Drift::<S, false, false>::new(self, grains)),
-            (true, false) => processor.run(Drift::<S, false, true>::new(self, grains)),
-            (false, true) => processor.run(Drift::<S, true, false>::new(self, grains)),
-            (false, false) => processor.run(Drift::<S, true, true>::new(self, grains)),
+            (true, true) => processor.run(Drift::<S, false, false> { motion, grains, space }),
+            (true, false) => processor.run(Drift::<S, false, true> { motion, grains, space }),
+            (false, true) => processor.run(Drift::<S, true, false> { motion, grains, space }),
+            (false, false) => processor.run(Drift::<S, true, true> { motion, grains, space }),
         }
     }
 
@@ -108,12 +109,6 @@ struct Drift<'a, S, const DAMPED: bool, const GRAVITY: bool> {
     motion: &'a Motion,
     grains: MotionData<'a>,
     space: PhantomData<S>,
-}
-
-impl<'a, S: Geometry, const DAMPED: bool, const GRAVITY: bool> Drift<'a, S, DAMPED, GRAVITY> {
-    fn new(motion: &'a Motion, grains: MotionData<'a>) -> Self {
-        Self { motion, grains, space: PhantomData }
-    }
 }
 
 /// Factors of a step. Each has one value for each number of a quad, so that a quad is updated as one register. The

@@ -144,7 +144,7 @@ impl<S: Geometry> DemSimulation<S> {
         let time = self.time();
         self.begin_and_end_driving();
         let mut walls_moved = 0.0_f64;
-        let mut changed = self.has_comers(time) || self.has_leavers();
+        let mut changed = self.scene.stays.entered_by(time) > self.entered || self.has_leavers();
         for wall in &mut self.walls {
             wall.move_to(time, self.motion.time_step);
             changed |= wall.take_away(time);
@@ -233,11 +233,6 @@ impl<S: Geometry> DemSimulation<S> {
         accounts.impulse += self.scene.gravity * (*free_mass * self.motion.time_step);
         accounts.friction += energies().map(|energies| energies.rubbed).sum::<f64>();
         accounts.released += energies().map(|energies| energies.released).sum::<f64>();
-    }
-
-    /// Returns true if grains are due for insertion at a time (s).
-    fn has_comers(&self, time: f64) -> bool {
-        self.scene.stays.entered_by(time) > self.entered
     }
 
     /// Returns true if grains are due for removal at this step.
