@@ -39,51 +39,45 @@ pub(crate) struct Coefficients {
     pub(crate) restitution: f64,
 }
 
-/// Materials, masses and laws of a scene.
-#[derive(Clone, Debug)]
-pub(crate) struct Pairs(pub(crate) Scene);
-
-impl Pairs {
-    /// Returns the index of the material and the inverse mass (1/kg) of a contact partner.
-    fn side(&self, side: Side) -> (u16, f64) {
-        match side {
-            Side::Grain(at) => (self.0.grains[at].material, 1.0 / self.0.grains[at].mass),
-            Side::Wall(at) => (self.0.walls[at].material, 0.0),
-        }
+/// Returns the index of the material and the inverse mass (1/kg) of a contact partner.
+fn body(scene: &Scene, side: Side) -> (u16, f64) {
+    match side {
+        Side::Grain(at) => (scene.grains[at].material, 1.0 / scene.grains[at].mass),
+        Side::Wall(at) => (scene.walls[at].material, 0.0),
     }
+}
 
-    /// Returns the coefficients of a pair; `None` if the scene has no law for this pair.
-    pub(crate) fn between(&self, one: Side, other: Side) -> Option<Coefficients> {
-        let ((a, inverse_a), (b, inverse_b)) = (self.side(one), self.side(other));
-        let law = self.0.law(a, b)?;
-        Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
-    }
+/// Returns the coefficients of a pair; `None` if the scene has no law for this pair.
+pub(crate) fn coefficients(scene: &Scene, one: Side, other: Side) -> Option<Coefficients> {
+    let ((a, inverse_a), (b, inverse_b)) = (body(scene, one), body(scene, other));
+    let law = scene.law(a, b)?;
+    Some(Coefficients { friction: law.friction, restitution: restitution(law, 1.0 / (inverse_a + inverse_b)) })
+}
 
-    /// Returns the coefficients if all pairs of the scene have the same coefficients, otherwise `None`. The result is
-    /// also `None` if there are more than [`MOST_KINDS`] kinds of grains.
-    pub(crate) fn shared(&self) -> Option<Coefficients> {
-        let Scene { grains, walls, .. } = &self.0;
-        let mut kinds: Vec<(u16, f64)> = grains.iter().map(|grain| (grain.material, grain.mass)).collect();
-        kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
-        kinds.dedup();
-        // With many different masses and damping, some pairs have different coefficients. A comparison of all pairs
-        // would have quadratic cost.
-        if kinds.len() > MOST_KINDS {
-            return None;
-        }
-        let of_kind = |kind: &(u16, f64)| grains.iter().position(|grain| (grain.material, grain.mass) == *kind);
-        let kinds: Vec<usize> = kinds.iter().filter_map(of_kind).collect();
-        let several = grains.len() > 1;
-        let grain_pairs = kinds.iter().enumerate().flat_map(|(at, &a)| {
-            kinds[at..].iter().map(move |&b| (Side::Grain(a), Side::Grain(b))).filter(move |_| several)
-        });
-        let walls = kinds.iter().flat_map(|&a| (0..walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
-        let mut all = grain_pairs.chain(walls).map(|(one, other)| self.between(one, other));
-        // A scene without pairs never uses the coefficients.
-        let Some(first) = all.next() else { return Some(Coefficients { friction: 0.0, restitution: 0.0 }) };
-        let first = first?;
-        all.all(|next| next == Some(first)).then_some(first)
+/// Returns the coefficients if all pairs of a scene have the same coefficients, otherwise `None`. The result is also
+/// `None` if there are more than [`MOST_KINDS`] kinds of grains.
+pub(crate) fn common_coefficients(scene: &Scene) -> Option<Coefficients> {
+    let Scene { grains, walls, .. } = scene;
+    let mut kinds: Vec<(u16, f64)> = grains.iter().map(|grain| (grain.material, grain.mass)).collect();
+    kinds.sort_by(|a, b| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));
+    kinds.dedup();
+    // With many different masses and damping, some pairs have different coefficients. A comparison of all pairs would
+    // have quadratic cost.
+    if kinds.len() > MOST_KINDS {
+        return None;
     }
+    let of_kind = |kind: &(u16, f64)| grains.iter().position(|grain| (grain.material, grain.mass) == *kind);
+    let kinds: Vec<usize> = kinds.iter().filter_map(of_kind).collect();
+    let several = grains.len() > 1;
+    let grain_pairs = kinds.iter().enumerate().flat_map(|(at, &a)| {
+        kinds[at..].iter().map(move |&b| (Side::Grain(a), Side::Grain(b))).filter(move |_| several)
+    });
+    let walls = kinds.iter().flat_map(|&a| (0..walls.len()).map(move |w| (Side::Grain(a), Side::Wall(w))));
+    let mut all = grain_pairs.chain(walls).map(|(one, other)| coefficients(scene, one, other));
+    // A scene without pairs never uses the coefficients.
+    let Some(first) = all.next() else { return Some(Coefficients { friction: 0.0, restitution: 0.0 }) };
+    let first = first?;
+    all.all(|next| next == Some(first)).then_some(first)
 }
 
 /// Maximum number of kinds of grains, distinguished by material and mass, for which pairs are compared.

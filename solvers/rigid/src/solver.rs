@@ -2,6 +2,7 @@
 
 use crate::engine::Stepping;
 use crate::limits;
+use crate::pairs::common_coefficients;
 use crate::settings::Settings;
 use crate::simulation::Simulation;
 use grainbench_scene::scene::{Duration, Scene};
@@ -108,7 +109,7 @@ impl Rigid {
     /// Returns a description of engine, settings, units and coefficients.
     fn words(&self, scene: &Scene, stepping: &Stepping) -> Vec<String> {
         let Settings { recycling, frequency, wall_frequency, damping_ratio } = self.settings;
-        let shared = crate::pairs::Pairs(scene.clone()).shared();
+        let shared = common_coefficients(scene);
         let mut words = vec![
             RAPIER.to_owned(),
             format!("{} iterations a step", stepping.iterations),

@@ -9,19 +9,19 @@ use super::{
     choose_friction, embedded, embedded_spin, finite, mass_properties, orientation, pose, shear, spin, vector,
 };
 use crate::engine::{Engine, GrainMotion, LoadedContact, Placement, Stepping};
-use crate::pairs::{Pairs, Side};
+use crate::pairs::{Side, coefficients, common_coefficients};
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::Vector3;
 
 /// Hook that sets the coefficients of every pair from the scene.
-struct SceneCoefficients(Pairs);
+struct SceneCoefficients(Scene);
 
 impl PhysicsHooks for SceneCoefficients {
     fn modify_solver_contacts(&self, context: &mut ContactModificationContext<'_>) {
         let side = |handle| context.colliders.get(handle).map(|collider| Side::of_tag(collider.user_data));
         let (Some(one), Some(other)) = (side(context.collider1), side(context.collider2)) else { return };
         let Some(contact) = context.rigid_mut() else { return };
-        match self.0.between(one, other) {
+        match coefficients(&self.0, one, other) {
             Some(coefficients) => {
                 *contact.friction = coefficients.friction;
                 *contact.restitution = coefficients.restitution;
@@ -44,8 +44,7 @@ pub(crate) struct World {
 
 impl World {
     pub(crate) fn new(scene: &Scene, stepping: &Stepping) -> Self {
-        let pairs = Pairs(scene.clone());
-        let shared = pairs.shared();
+        let shared = common_coefficients(scene);
         // If all pairs have the same coefficients, the shapes store them, as is usual with rapier. Otherwise a hook
         // sets the coefficients of each pair.
         let with_coefficients = |builder: ColliderBuilder, side: Side| {
@@ -99,7 +98,7 @@ impl World {
             }
         });
         let walls = walls.collect();
-        Self { world, hooks: SceneCoefficients(pairs), grains, walls, mass: stepping.mass }
+        Self { world, hooks: SceneCoefficients(scene.clone()), grains, walls, mass: stepping.mass }
     }
 }
 
