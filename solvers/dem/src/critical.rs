@@ -11,7 +11,7 @@ impl<S: Geometry> DemSimulation<S> {
     pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<SimulationFailure>> {
         let grains = &self.grains;
         for share in &self.neighbours.list.shares {
-            for pairs in [&share.across, &share.near] {
+            for pairs in [&share.across.pairs, &share.near.pairs] {
                 for at in pairs.own() {
                     let [one, other] = [pairs.row[at], pairs.partner[at]].map(|slot| slot as usize);
                     let shift = pairs.shift.get(at).map_or_else(Default::default, S::vector_in_space);

@@ -29,7 +29,7 @@ impl<S: Geometry> DemSimulation<S> {
         let place: BTreeMap<u32, u32> = states.iter().map(|grain| grain.id - 1).zip(0..).collect();
         let of_slot = |slot: u32| place[&self.grains.id[slot as usize]];
         let numbers = self.model.loops.layout().numbers;
-        let pairs = self.neighbours.list.shares.iter().flat_map(|share| [&share.across, &share.near]);
+        let pairs = self.neighbours.list.shares.iter().flat_map(|share| [&share.across.pairs, &share.near.pairs]);
         let mut springs = Springs {
             layout: words(self.model.loops.springs()),
             pairs: pairs
@@ -85,7 +85,7 @@ impl<S: Geometry> DemSimulation<S> {
         let layout = self.model.loops.layout();
         if layout.numbers > 0 {
             let mut whole = ThreadPartition::new(0..count);
-            whole.near = Pairs::remembering(count, layout, &pairs);
+            whole.near.pairs = Pairs::remembering(count, layout, &pairs);
             self.neighbours.list.shares = vec![whole];
         }
         for (grain, name, numbers) in &springs.walls {

@@ -101,8 +101,8 @@ impl Neighbours {
         let mut shares: Vec<ThreadPartition> =
             rows_of(grains.len(), count).into_iter().map(ThreadPartition::new).collect();
         team.each(shares.iter_mut(), |_, share| {
-            share.near = near_pairs::<S>(&grains.place, &cells, self.skin, share.rows.clone(), layout);
-            share.across =
+            share.near.pairs = near_pairs::<S>(&grains.place, &cells, self.skin, share.rows.clone(), layout);
+            share.across.pairs =
                 pairs_across::<S>(&grains.place, &cells, [self.skin, reach], &shifts, share.rows.clone(), layout);
             share.take_over(&old, &order, &layout);
         });
@@ -129,7 +129,10 @@ impl Neighbours {
 
     /// Clears the history of every contact.
     pub(crate) fn forget(&mut self) {
-        self.shares.iter_mut().flat_map(|share| [&mut share.near, &mut share.across]).for_each(Pairs::forget);
+        self.shares
+            .iter_mut()
+            .flat_map(|share| [&mut share.near.pairs, &mut share.across.pairs])
+            .for_each(Pairs::forget);
     }
 }
 
@@ -369,7 +372,7 @@ mod tests {
     /// of the grain that moves first.
     fn assert_lists<S: Geometry>(neighbours: &Neighbours, grains: &Grains<S>, is_near: impl Fn(usize, usize) -> bool) {
         let mut listed = BTreeSet::new();
-        for pairs in neighbours.shares.iter().flat_map(|share| [&share.near, &share.across]) {
+        for pairs in neighbours.shares.iter().flat_map(|share| [&share.near.pairs, &share.across.pairs]) {
             for at in pairs.own() {
                 let [row, partner] = [pairs.row[at], pairs.partner[at]];
                 assert!(row < partner || !pairs.shift.is_empty(), "a grain moves before its row is reached");

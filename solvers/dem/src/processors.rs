@@ -61,8 +61,8 @@ fn state<S: Geometry>(mut simulation: DemSimulation<S>, path: Processor) -> Stri
     let partitions = simulation.threads.partitions(simulation.grains.len());
     assert_eq!(simulation.neighbours.list.shares.len(), partitions, "lists were made anew on the way");
     let listed = simulation.neighbours.list.in_shares(1);
-    let touched: u32 = listed.shares[0].near.touches.iter().map(|bits| bits.count_ones()).sum();
-    let across: u32 = listed.shares[0].across.touches.iter().map(|bits| bits.count_ones()).sum();
+    let touched: u32 = listed.shares[0].near.pairs.touches.iter().map(|bits| bits.count_ones()).sum();
+    let across: u32 = listed.shares[0].across.pairs.touches.iter().map(|bits| bits.count_ones()).sum();
     assert!(touched == 0 || (touched > 10 && across > 0), "{touched} pairs touch, {across} across a face");
     let DemSimulation { grains, recording, neighbours, step, cost, .. } = &mut simulation;
     let contacts = recording.take_contacts(*step, &mut neighbours.list.shares);
@@ -149,7 +149,7 @@ fn cycles_taken_together_leave_the_bits_of_cycles_taken_alone() {
         let end = |at_once: u64| {
             let mut simulation = simulated::<Solid>(&scene, &Convention::DEFAULT, Team::default());
             (0..60 / at_once).for_each(|_| simulation.take_cycles(at_once).expect("it goes on"));
-            format!("{:?} {:?}", simulation.grains, simulation.neighbours.list.shares[0].near.memory)
+            format!("{:?} {:?}", simulation.grains, simulation.neighbours.list.shares[0].near.pairs.memory)
         };
         assert!(end(60) == end(1), "{name}");
     }
@@ -193,7 +193,7 @@ fn whatever_touches_is_listed_while_the_skin_widens() {
     let first = simulation.neighbours.list.skin;
     for _ in 0..8 {
         simulation.take_cycles(100).expect("it goes on");
-        let (grains, near) = (&simulation.grains, &simulation.neighbours.list.shares[0].near);
+        let (grains, near) = (&simulation.grains, &simulation.neighbours.list.shares[0].near.pairs);
         let listed: std::collections::BTreeSet<(u32, u32)> =
             near.own().map(|at| (near.row[at].min(near.partner[at]), near.row[at].max(near.partner[at]))).collect();
         for a in 0..grains.len() {

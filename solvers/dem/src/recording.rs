@@ -61,15 +61,16 @@ impl Recording {
 
     /// Returns the energies of the contacts in the last recorded force evaluation.
     pub(crate) fn energies<'a>(&'a self, partitions: &'a [ThreadPartition]) -> impl Iterator<Item = &'a Energies<f64>> {
-        let list_energies = |list: usize| partitions.iter().flat_map(move |share| &share.work.seen[list].energies);
-        self.at_walls.energies.iter().chain(list_energies(0)).chain(list_energies(1))
+        let across = partitions.iter().flat_map(|share| &share.across.seen.energies);
+        let near = partitions.iter().flat_map(|share| &share.near.seen.energies);
+        self.at_walls.energies.iter().chain(across).chain(near)
     }
 
     /// Returns the number of contacts and the number of slipping contacts in this step; `None` if contacts were not
     /// recorded, or if `take_contacts` has moved them out.
     pub(crate) fn touching(&self, step: u64, partitions: &[ThreadPartition]) -> Option<[usize; 2]> {
         self.step.filter(|&at| at == step)?;
-        let lists = partitions.iter().flat_map(|share| &share.work.seen).chain([&self.at_walls]);
+        let lists = partitions.iter().flat_map(|share| [&share.near.seen, &share.across.seen]).chain([&self.at_walls]);
         Some(lists.fold([0, 0], |[count, slipping], seen| [count + seen.energies.len(), slipping + seen.slipping]))
     }
 
@@ -80,11 +81,11 @@ impl Recording {
         self.step.take().filter(|&at| at == step && self.one_by_one)?;
         let [mut before, mut contacts] = [std::mem::take(&mut self.at_walls.contacts), Vec::new()];
         for share in &mut *partitions {
-            before.append(&mut share.work.seen[0].contacts);
+            before.append(&mut share.across.seen.contacts);
         }
         // With a single partition, the largest list is moved, not copied.
         for share in partitions {
-            let mut others = std::mem::take(&mut share.work.seen[1].contacts);
+            let mut others = std::mem::take(&mut share.near.seen.contacts);
             if contacts.is_empty() {
                 contacts = others;
             } else {
@@ -109,8 +110,9 @@ impl Recording {
     pub(crate) fn add_virials(&mut self, step: u64, partitions: &[ThreadPartition], grains: &[Grain]) {
         let Self { mean_virial, at_walls, .. } = self;
         if let Some(mean) = mean_virial.as_mut().filter(|mean| mean.is_due(step)) {
-            let list_contacts = |list: usize| partitions.iter().flat_map(move |share| &share.work.seen[list].contacts);
-            mean.add(at_walls.contacts.iter().chain(list_contacts(0)).chain(list_contacts(1)), grains);
+            let across = partitions.iter().flat_map(|share| &share.across.seen.contacts);
+            let near = partitions.iter().flat_map(|share| &share.near.seen.contacts);
+            mean.add(at_walls.contacts.iter().chain(across).chain(near), grains);
         }
     }
 }

@@ -43,25 +43,25 @@ pub(crate) struct ThreadPartition {
     /// Own rows of the list. A row has the slot of its grain as index.
     pub(crate) rows: Range<usize>,
     /// Nearby pairs inside the domain.
-    pub(crate) near: Pairs,
+    pub(crate) near: PairList,
     /// Nearby pairs across a periodic face.
-    pub(crate) across: Pairs,
-    /// Working memory of force evaluations, which checkpoints do not contain.
-    #[serde(skip)]
-    pub(crate) work: Work,
+    pub(crate) across: PairList,
 }
 
-/// Working memory of a partition. Recorded contacts remain until the next evaluation that records contacts.
-#[derive(Clone, Debug, Default)]
-pub(crate) struct Work {
-    /// Pairs in contact in the present block. The first list is for pairs across a periodic face, the second for all
-    /// others.
-    touching: [ContactList; 2],
-    /// Recorded contacts. The first list is for pairs across a periodic face, the second for all others.
-    pub(crate) seen: [RecordedContacts; 2],
-    /// History index of each pair in the previous list. The first list is for pairs across a periodic face, the second
-    /// for all others.
-    places: [Vec<u32>; 2],
+/// Listed pairs of a partition, which a force evaluation processes block by block. Checkpoints contain only the pairs, and
+/// not the working memory of evaluations.
+#[derive(Clone, Debug, Serialize, Deserialize)]
+pub(crate) struct PairList {
+    pub(crate) pairs: Pairs,
+    /// Pairs in contact in the present block.
+    #[serde(skip)]
+    touching: ContactList,
+    /// Contacts that the last force evaluation recorded.
+    #[serde(skip)]
+    pub(crate) seen: RecordedContacts,
+    /// Index of the history of each pair in its block, if this is the previous list.
+    #[serde(skip)]
+    places: Vec<u32>,
 }
 
 /// Contact laws of a scene with the options of the convention, and the loops over contacts compiled for them.
@@ -104,7 +104,7 @@ pub(crate) fn rows_of(rows: usize, shares: usize) -> Vec<Range<usize>> {
 impl ThreadPartition {
     /// Creates an empty partition of these rows.
     pub(crate) fn new(rows: Range<usize>) -> Self {
-        Self { rows, near: Pairs::empty(), across: Pairs::empty(), work: Work::default() }
+        Self { rows, near: PairList::new(Pairs::empty()), across: PairList::new(Pairs::empty()) }
     }
 
     /// Creates the partition with these rows from the partitions of the whole list. It contains the pairs in `rows`,
@@ -112,15 +112,16 @@ impl ThreadPartition {
     pub(crate) fn reaching(shares: &[Self], rows: Range<usize>) -> Self {
         let chosen = |pairs_of: fn(&Self) -> &Pairs| {
             let lists: Vec<&Pairs> = shares.iter().map(pairs_of).collect();
-            Pairs::chosen(&lists, rows.clone())
+            PairList::new(Pairs::chosen(&lists, rows.clone()))
         };
-        Self { near: chosen(|share| &share.near), across: chosen(|share| &share.across), ..Self::new(rows.clone()) }
+        let (near, across) = (chosen(|share| &share.near.pairs), chosen(|share| &share.across.pairs));
+        Self { rows, near, across }
     }
 
     /// Returns true if the partition covers all `grains` grains and its lists are valid for this layout of the contact
     /// history.
     pub(crate) fn is_of(&self, grains: usize, layout: Layout) -> bool {
-        let Self { near, across, rows, .. } = self;
+        let Self { near: PairList { pairs: near, .. }, across: PairList { pairs: across, .. }, rows } = self;
         let shifted = across.shift.len() == across.partner.len() || across.len() == 0;
         *rows == (0..grains)
             && shifted
@@ -131,7 +132,9 @@ impl ThreadPartition {
 
     /// Computes the history index of every pair, for `take_over`.
     pub(crate) fn find_places(&mut self) {
-        self.work.places = [self.across.places(), self.near.places()];
+        for list in [&mut self.near, &mut self.across] {
+            list.places = list.pairs.places();
+        }
     }
 
     /// Copies the contact history from the `old` partitions, for which `find_places` must have been called. `order`
@@ -143,10 +146,10 @@ impl ThreadPartition {
         let found = |a: u32, b: u32| {
             // An inserted grain has no row in the old partitions.
             let share = old.get(old.partition_point(|share| share.rows.end <= a as usize))?;
-            let mut lists = [&share.near, &share.across].into_iter().zip(share.work.places.iter().rev());
-            lists.find_map(|(list, places)| list.find(a, b).map(|from| (list, (from, places[from]))))
+            let mut lists = [&share.near, &share.across].into_iter();
+            lists.find_map(|PairList { pairs, places, .. }| pairs.find(a, b).map(|from| (pairs, (from, places[from]))))
         };
-        for pairs in [&mut self.near, &mut self.across] {
+        for pairs in [&mut self.near.pairs, &mut self.across.pairs] {
             for at in 0..pairs.len() {
                 let (a, b) = (order[pairs.row[at] as usize], order[pairs.partner[at] as usize]);
                 let (found, exchanged) = match found(a, b) {
@@ -162,48 +165,32 @@ impl ThreadPartition {
 
     /// Returns the number of pairs in the partition's own rows.
     pub(crate) fn pairs(&self) -> usize {
-        self.near.own().len() + self.across.own().len()
+        self.near.pairs.own().len() + self.across.pairs.own().len()
     }
 
-    /// Returns the lists in the order of evaluation: pairs across a periodic face, then all other pairs.
-    pub(crate) fn lists(&mut self) -> [List<'_>; 2] {
-        let Self { rows, near, across, work: Work { touching, seen: [seen_across, seen_near], .. } } = self;
-        let [touching_across, touching_near] = touching;
-        [
-            List { rows: rows.clone(), pairs: across, touching: touching_across, seen: seen_across, own: 0 },
-            List { rows: rows.clone(), pairs: near, touching: touching_near, seen: seen_near, own: 0 },
-        ]
-    }
-
-    /// Computes the forces of the partition's pairs. Returns the number of contacts in the own rows of the partition.
+    /// Computes the forces of the partition's pairs: first pairs across a periodic face, then all other pairs. Returns the
+    /// number of contacts in the own rows of the partition.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
         evaluation: &Evaluation<'_, S>,
         grains: GrainTables<'_>,
         mut sums: Sums<'_>,
     ) -> u64 {
-        let mut contacts = 0;
-        for mut list in self.lists() {
+        let (Self { rows, near, across }, mut contacts) = (self, 0);
+        for list in [across, near] {
             for block in list.blocks(evaluation.one_by_one) {
-                list.evaluate(evaluation, grains, sums.lent(), block);
+                contacts += list.evaluate(rows, evaluation, grains, sums.lent(), block);
             }
-            contacts += list.own;
         }
         contacts
     }
 }
 
-/// List of pairs that a force evaluation processes block by block.
-pub(crate) struct List<'a> {
-    rows: Range<usize>,
-    pairs: &'a mut Pairs,
-    touching: &'a mut ContactList,
-    seen: &'a mut RecordedContacts,
-    /// Number of contacts in the partition's own rows so far.
-    pub(crate) own: u64,
-}
+impl PairList {
+    pub(crate) fn new(pairs: Pairs) -> Self {
+        Self { pairs, touching: ContactList::default(), seen: RecordedContacts::default(), places: Vec::new() }
+    }
 
-impl List<'_> {
     /// Clears the recorded contacts and returns the blocks of pairs, which must be evaluated in order. With
     /// `one_by_one`, contacts are recorded individually.
     pub(crate) fn blocks(&mut self, one_by_one: bool) -> impl Iterator<Item = Range<usize>> + use<> {
@@ -211,30 +198,32 @@ impl List<'_> {
         blocks(self.pairs.len())
     }
 
-    /// Computes the forces of the pairs in a block.
+    /// Computes the forces of the pairs in a block. Returns the number of contacts in the own rows of the partition.
     pub(crate) fn evaluate<S: Geometry>(
         &mut self,
+        rows: &Range<usize>,
         evaluation: &Evaluation<'_, S>,
         grains: GrainTables<'_>,
         sums: Sums<'_>,
         block: Range<usize>,
-    ) {
-        let (Self { rows, pairs, touching, seen, own }, model) = (self, evaluation.model);
+    ) -> u64 {
+        let (Self { pairs, touching, seen, .. }, model) = (self, evaluation.model);
         let number = block.start / BLOCK;
         let (whole, own_pairs) = (0..pairs.len(), pairs.own());
         touching.find::<S>(model.processor, grains.place, pairs, block);
-        *own += if own_pairs == whole {
-            touching.count as u64
+        let contacts = if own_pairs == whole {
+            touching.count
         } else {
-            touching.first[..touching.count].iter().filter(|&&first| rows.contains(&(first as usize))).count() as u64
+            touching.first[..touching.count].iter().filter(|&&first| rows.contains(&(first as usize))).count()
         };
         if evaluation.terms.record {
             seen.make_room(touching.count);
         }
-        let seen = evaluation.terms.record.then_some(&mut **seen);
+        let seen = evaluation.terms.record.then_some(seen);
         let (terms, grains) = (evaluation.terms, (grains, sums));
         model.loops.of_pairs(model.processor, terms, grains, (pairs, number), touching, seen);
         pairs.remember(number, touching.count);
+        contacts as u64
     }
 
     /// Returns the row of the first pair after a block; `None` for the last block. After the evaluation of the block, the

@@ -102,7 +102,7 @@ impl<S: Geometry> DemSimulation<S> {
             let apart = self.grains.position(other) - self.grains.position(one) - shift;
             apart.norm() < self.grains.radius(one) + self.grains.radius(other)
         };
-        let lists = self.neighbours.list.shares.iter().flat_map(|share| [&share.near, &share.across]);
+        let lists = self.neighbours.list.shares.iter().flat_map(|share| [&share.near.pairs, &share.across.pairs]);
         let pairs = lists.map(|pairs| pairs.own().filter(|&at| in_contact(pairs, at)).count());
         pairs.sum::<usize>() + self.walls.iter().map(MovingWall::pairs).sum::<usize>()
     }
@@ -388,15 +388,15 @@ fn evaluate_and_move<S: Geometry>(
     grains: &mut Grains<S>,
     motion: Option<&Motion>,
 ) -> (u64, f64) {
-    let [mut across, mut near] = whole.lists();
+    let ThreadPartition { rows, near, across } = whole;
+    let (mut contacts, mut moved, mut fastest) = (0, 0, 0.0_f64);
     for block in across.blocks(evaluation.one_by_one) {
         let (read, sums) = grains.parts();
-        across.evaluate(evaluation, read, sums, block);
+        contacts += across.evaluate(rows, evaluation, read, sums, block);
     }
-    let (mut moved, mut fastest) = (0, 0.0_f64);
     for block in near.blocks(evaluation.one_by_one) {
         let (read, sums) = grains.parts();
-        near.evaluate(evaluation, read, sums, block.clone());
+        contacts += near.evaluate(rows, evaluation, read, sums, block.clone());
         if let (Some(motion), Some(row)) = (motion, near.row_after(&block)) {
             fastest = fastest.max(motion.advance::<S>(evaluation.model.processor, MotionData::new(grains, moved..row)));
             moved = row;
@@ -406,5 +406,5 @@ fn evaluate_and_move<S: Geometry>(
         let left = moved..grains.len();
         fastest = fastest.max(motion.advance::<S>(evaluation.model.processor, MotionData::new(grains, left)));
     }
-    (across.own + near.own, fastest)
+    (contacts, fastest)
 }
