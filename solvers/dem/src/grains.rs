@@ -137,12 +137,6 @@ impl<S: Geometry> Grains<S> {
         self.set_spin(slot, grain.spin);
     }
 
-    /// Removes all grains except those in `slots`, which keep their order.
-    pub(crate) fn keep(&mut self, slots: &[u32]) {
-        self.slot.fill(ABSENT);
-        self.reorder(slots);
-    }
-
     /// Returns the number of grains.
     pub(crate) fn len(&self) -> usize {
         self.place.len()
@@ -186,11 +180,6 @@ impl<S: Geometry> Grains<S> {
     /// Returns the angular velocity ω (rad/s); `None` if grains do not rotate.
     pub(crate) fn spin(&self, slot: usize) -> Option<Vector3<f64>> {
         self.rotate().then(|| turned::<S>(&self.movement[self.first_quad(slot)..]))
-    }
-
-    /// Returns the rotation angle θ about the z axis since the start (rad); zero in three dimensions.
-    pub(crate) fn angle(&self, slot: usize) -> f64 {
-        if S::DIMENSION == 2 { self.place[slot].0[2] } else { 0.0 }
     }
 
     /// Returns the sum of the contact forces (N).

@@ -72,7 +72,8 @@ impl Pairs {
         if layout.numbers > 0 {
             let count = pairs.partner.len();
             pairs.touches = vec![0; count.div_ceil(WIDEST)];
-            pairs.memory = vec![nothing(layout); count.div_ceil(BLOCK)];
+            let nothing: BlockHistory = std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)]);
+            pairs.memory = vec![nothing; count.div_ceil(BLOCK)];
         }
         pairs.fill_up();
         pairs
@@ -272,11 +273,6 @@ impl Pairs {
     pub(crate) fn forget(&mut self) {
         self.memory.iter_mut().flatten().for_each(|memory| memory.fill(0.0));
     }
-}
-
-/// Returns the history of a block without contacts.
-fn nothing(layout: Layout) -> BlockHistory {
-    std::array::from_fn(|number| vec![0.0; usize::from(number < layout.numbers)])
 }
 
 /// Reserves memory for more entries. A full list grows by at least an eighth, because it may have millions of entries.

@@ -72,8 +72,9 @@ fn grain_state<S: Geometry>(simulation: &DemSimulation<S>, id: usize) -> GrainSt
     };
     let domain = scene.domain.filter(|_| scene.is_periodic());
     let position = grains.position(slot);
+    // In two dimensions, the third number of a place is the angle.
     let angle = if grains.rotate() {
-        grains.angle(slot)
+        grains.place[slot].0[2]
     } else {
         start.spin.z * simulation.step as f64 * simulation.motion.time_step
     };

@@ -255,7 +255,8 @@ impl<S: Geometry> DemSimulation<S> {
         let mut slots: Vec<u32> = (0..self.grains.len() as u32).collect();
         if let Some(removal) = self.scene.stays.removal.filter(|_| leave) {
             slots.retain(|&slot| !removal.takes(self.grains.position(slot as usize), S::DIMENSION));
-            self.grains.keep(&slots);
+            self.grains.slot.fill(ABSENT);
+            self.grains.reorder(&slots);
         }
         let rotate = self.model.loops.turn();
         for entry in coming {

@@ -385,10 +385,4 @@ mod tests {
             }
         }
     }
-
-    #[test]
-    fn absent_stages_remember_nothing() {
-        assert_eq!(<Frictionless as Tangential<Plane>>::NUMBERS, 0);
-        assert_eq!(<Coulomb<Turned> as Tangential<Plane>>::NUMBERS, 1);
-    }
 }
