@@ -3,8 +3,6 @@
 
 mod support;
 
-use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, VonMises};
-use grainbench_mpm::off::AbsentEffect;
 use grainbench_mpm::options::Transfer;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::effect::Effect;
@@ -38,15 +36,6 @@ fn bits(record: &Record) -> String {
 
 fn bytes_of(solver: Mpm, scene: &Scene) -> u64 {
     ran(solver, scene).cost.bytes.unwrap()
-}
-
-#[test]
-fn what_is_off_has_no_size() {
-    assert_eq!(size_of::<AbsentEffect>(), 0);
-    assert_eq!(size_of::<<Hypoelastic as Law>::PlasticStrain>(), 0);
-    assert_eq!(size_of::<<NeoHookean as Law>::PlasticStrain>(), 0);
-    assert_eq!(size_of::<<KelvinVoigt as Law>::PlasticStrain>(), 0);
-    assert_eq!(size_of::<<VonMises as Law>::PlasticStrain>(), size_of::<f64>());
 }
 
 /// Each absent effect saves the memory of its data: friction four springs of 32 B per tracer, plasticity a number per

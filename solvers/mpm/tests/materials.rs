@@ -1,8 +1,7 @@
 //! Tests of constitutive laws at a point.
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, State, VolumeRatio, VonMises};
-use grainbench_mpm::off::AbsentEffect;
+use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, PointStep, State, VolumeRatio, VonMises};
 use grainbench_solver::space::{Plane, Solid, Space};
 use nalgebra::{Matrix3, Rotation3, Vector3};
 
@@ -102,7 +101,8 @@ fn turned<S: Space>(stress: Matrix3<f64>, axis: Vector3<f64>, angle: f64, steps:
     let increment = S::restrict_gradient(rotation - Matrix3::identity());
     let mut stress = S::restrict_symmetric(stress);
     for _ in 0..steps {
-        stress = law.follow::<S>(increment, VolumeRatio::new(1.0), increment, stress, &mut AbsentEffect);
+        let step = PointStep { increment, deformation: increment, volume: VolumeRatio::new(1.0), stress };
+        stress = law.follow::<S>(step, &mut 0.0);
     }
     S::embed_symmetric(stress)
 }
@@ -237,8 +237,9 @@ fn kelvin_and_voigt_add_the_stress_of_a_fluid() {
     let deviator = rate - Matrix3::from_diagonal_element(rate.trace() / 3.0);
     let exact = deviator * (2.0 * viscosity) + Matrix3::from_diagonal_element(bulk * rate.trace());
     assert!((viscous.stress - elastic.stress - exact).norm() < 1e-12, "{}", viscous.stress - elastic.stress);
-    let [strain, stress] = [rate * step, viscous.stress].map(Plane::restrict_symmetric);
-    let work = law.viscous_work::<Plane>(strain, ratio, Plane::restrict_gradient(deformation), stress);
+    let [increment, deformation] = [at_start(gradient * step), deformation].map(Plane::restrict_gradient);
+    let (volume, stress) = (VolumeRatio::new(ratio), Plane::restrict_symmetric(viscous.stress));
+    let work = law.viscous_work::<Plane>(PointStep { increment, deformation, volume, stress });
     let exact = (2.0 * viscosity * deviator.norm_squared() + bulk * rate.trace().powi(2)) * step;
     assert!((work / exact - 1.0).abs() < 1e-9, "{work} and {exact}");
 }

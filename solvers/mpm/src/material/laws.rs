@@ -1,8 +1,7 @@
 //! Constitutive laws and their selection. A new law needs a variant of [`Material`], a line in [`with_law`] and an
 //! implementation of [`Law`].
 
-use super::{Law, State, VolumeRatio, symmetric_root};
-use crate::off::AbsentEffect;
+use super::{Law, PointStep, State, VolumeRatio, symmetric_root};
 use grainbench_lanes::logarithm::ln;
 use grainbench_scene::material::{Constitutive, Deformable};
 use grainbench_solver::space::{Solid, Space};
@@ -71,19 +70,11 @@ impl NeoHookean {
 }
 
 impl Law for NeoHookean {
-    type PlasticStrain = AbsentEffect;
     const LOGARITHM: bool = true;
 
     #[inline(always)]
-    fn follow<S: Space>(
-        &self,
-        _increment: S::Matrix,
-        volume: VolumeRatio,
-        deformation: S::Matrix,
-        _stress: S::Symmetric,
-        _plastic_strain: &mut AbsentEffect,
-    ) -> S::Symmetric {
-        self.stress::<S>(deformation, volume)
+    fn follow<S: Space>(&self, step: PointStep<S>, _plastic_strain: &mut f64) -> S::Symmetric {
+        self.stress::<S>(step.deformation, step.volume)
     }
 
     /// Returns λ (1 − ln J) + G (1 + b_nn), with the largest row sum of |b| as an upper bound of b_nn.
@@ -145,35 +136,22 @@ pub struct KelvinVoigt {
 }
 
 impl Law for KelvinVoigt {
-    type PlasticStrain = AbsentEffect;
     const LOGARITHM: bool = true;
     const VISCOUS: bool = true;
 
     #[inline(always)]
-    fn follow<S: Space>(
-        &self,
-        increment: S::Matrix,
-        volume: VolumeRatio,
-        deformation: S::Matrix,
-        _stress: S::Symmetric,
-        _plastic_strain: &mut AbsentEffect,
-    ) -> S::Symmetric {
-        let strain = S::symmetric_part(S::at_midpoint(increment));
+    fn follow<S: Space>(&self, step: PointStep<S>, _plastic_strain: &mut f64) -> S::Symmetric {
+        let strain = S::symmetric_part(S::at_midpoint(step.increment));
         let mean = (self.bulk_viscosity - 2.0 / 3.0 * self.shear_viscosity) * S::trace(strain);
-        let elastic = self.elastic.stress::<S>(deformation, volume);
+        let elastic = self.elastic.stress::<S>(step.deformation, step.volume);
         S::scaled_sum(strain, 2.0 * self.shear_viscosity, S::scaled_sum(S::isotropic(mean), 1.0, elastic))
     }
 
     #[inline(always)]
-    fn viscous_work<S: Space>(
-        &self,
-        strain: S::Symmetric,
-        volume_ratio: f64,
-        deformation: S::Matrix,
-        stress: S::Symmetric,
-    ) -> f64 {
-        let elastic = self.elastic.stress::<S>(deformation, VolumeRatio::new(volume_ratio));
-        S::double_dot(S::scaled_sum(elastic, -1.0, stress), strain)
+    fn viscous_work<S: Space>(&self, step: PointStep<S>) -> f64 {
+        let elastic = self.elastic.stress::<S>(step.deformation, step.volume);
+        let strain = S::symmetric_part(S::at_midpoint(step.increment));
+        S::double_dot(S::scaled_sum(elastic, -1.0, step.stress), strain)
     }
 
     fn wave_modulus(&self, volume_ratio: f64, finger: &Matrix3<f64>) -> f64 {
@@ -205,37 +183,17 @@ pub struct Hypoelastic {
     pub shear_modulus: f64,
 }
 
-impl Hypoelastic {
+impl Law for Hypoelastic {
+    const TRIES: bool = true;
+
     #[inline(always)]
-    fn stress<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> S::Symmetric {
+    fn trial<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
         let middle = S::at_midpoint(increment);
         let strain = S::symmetric_part(middle);
         let pressure = (self.bulk_modulus - 2.0 / 3.0 * self.shear_modulus) * S::trace(strain);
         let turned = S::turned(stress, middle);
-        S::scaled_sum(strain, 2.0 * self.shear_modulus, S::scaled_sum(turned, 1.0, S::isotropic(pressure)))
-    }
-}
-
-impl Law for Hypoelastic {
-    type PlasticStrain = AbsentEffect;
-
-    const TRIES: bool = true;
-
-    #[inline(always)]
-    fn follow<S: Space>(
-        &self,
-        increment: S::Matrix,
-        _volume: VolumeRatio,
-        _deformation: S::Matrix,
-        stress: S::Symmetric,
-        _plastic_strain: &mut AbsentEffect,
-    ) -> S::Symmetric {
-        self.stress::<S>(increment, stress)
-    }
-
-    #[inline(always)]
-    fn trial<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
-        (self.stress::<S>(increment, stress), 0.0)
+        let sum = S::scaled_sum(turned, 1.0, S::isotropic(pressure));
+        (S::scaled_sum(strain, 2.0 * self.shear_modulus, sum), 0.0)
     }
 
     /// Returns J (K + 4G/3), because the moduli belong to the Cauchy stress and the density is ρ₀/J.
@@ -270,24 +228,12 @@ pub struct VonMises {
 }
 
 impl Law for VonMises {
-    type PlasticStrain = f64;
+    const YIELDS: bool = true;
     const TRIES: bool = true;
 
     #[inline(always)]
-    fn follow<S: Space>(
-        &self,
-        increment: S::Matrix,
-        _volume: VolumeRatio,
-        _deformation: S::Matrix,
-        stress: S::Symmetric,
-        plastic_strain: &mut f64,
-    ) -> S::Symmetric {
-        self.flow::<S>(self.trial::<S>(increment, stress), plastic_strain)
-    }
-
-    #[inline(always)]
     fn trial<S: Space>(&self, increment: S::Matrix, stress: S::Symmetric) -> (S::Symmetric, f64) {
-        let stress = self.elastic.stress::<S>(increment, stress);
+        let (stress, _) = self.elastic.trial::<S>(increment, stress);
         let deviator = S::scaled_sum(stress, 1.0, S::isotropic(-(S::trace(stress) / 3.0)));
         (stress, 1.5 * S::norm_squared(deviator))
     }

@@ -2,12 +2,10 @@
 //! but the stress is not.
 
 mod laws;
-mod plastic_strain;
 pub(crate) mod stress;
 
 pub use laws::{Hypoelastic, KelvinVoigt, NeoHookean, VonMises};
 pub(crate) use laws::{Material, with_law};
-pub use plastic_strain::PlasticStrain;
 
 use grainbench_lanes::logarithm::ln;
 use grainbench_solver::space::{Solid, Space};
@@ -48,37 +46,38 @@ impl VolumeRatio {
     }
 }
 
+/// Step of a material point, from which a law computes the stress.
+#[derive(Clone, Copy, Debug)]
+pub struct PointStep<S: Space> {
+    /// Displacement gradient Δt ∇v on the configuration at the start of the step.
+    pub increment: S::Matrix,
+    /// Deformation after the step.
+    pub deformation: S::Matrix,
+    /// Determinant of `deformation`.
+    pub volume: VolumeRatio,
+    /// Stress before the step (Pa).
+    pub stress: S::Symmetric,
+}
+
 /// Constitutive law, which gives the stress of a material point.
 pub trait Law: Copy + Send + Sync + 'static {
-    /// Plastic strain that the law reads and changes: [`crate::off::AbsentEffect`] for laws without yielding.
-    type PlasticStrain: PlasticStrain;
+    /// True if the law reads and changes the plastic strain.
+    const YIELDS: bool = false;
     /// True if the stress depends on the logarithm of the volume ratio.
     const LOGARITHM: bool = false;
     /// True if a part of the stress is viscous.
     const VISCOUS: bool = false;
-    /// Returns the stress after a step. `increment` is the displacement gradient Δt ∇v on the configuration at the
-    /// start of the step.
-    ///
-    /// `stress` is the stress before the step. `deformation` is the deformation after the step, with the determinant
-    /// `volume`.
-    fn follow<S: Space>(
-        &self,
-        increment: S::Matrix,
-        volume: VolumeRatio,
-        deformation: S::Matrix,
-        stress: S::Symmetric,
-        plastic_strain: &mut Self::PlasticStrain,
-    ) -> S::Symmetric;
+    /// Returns the stress after a step.
+    #[inline(always)]
+    fn follow<S: Space>(&self, step: PointStep<S>, plastic_strain: &mut f64) -> S::Symmetric {
+        self.flow::<S>(self.trial::<S>(step.increment, step.stress), plastic_strain)
+    }
     /// Updates stress and plastic strain of a state in three dimensions. On entry, the state contains the deformation
     /// after the step and the stress before the step.
     fn update(&self, increment: &Matrix3<f64>, volume_ratio: f64, state: &mut State) {
-        let stress = Solid::restrict_symmetric(state.stress);
-        let own = std::slice::from_mut(&mut state.plastic_strain);
-        let mut plastic_strain = Self::PlasticStrain::read(own, 0);
-        let volume = VolumeRatio::new(volume_ratio);
-        let stress = self.follow::<Solid>(*increment, volume, state.deformation, stress, &mut plastic_strain);
-        plastic_strain.write(own, 0);
-        state.stress = Solid::embed_symmetric(stress);
+        let (deformation, stress) = (state.deformation, Solid::restrict_symmetric(state.stress));
+        let step = PointStep { increment: *increment, deformation, volume: VolumeRatio::new(volume_ratio), stress };
+        state.stress = Solid::embed_symmetric(self.follow::<Solid>(step, &mut state.plastic_strain));
     }
     /// True if the stress is computed by [`Law::trial`], for many points at once, followed by [`Law::flow`].
     const TRIES: bool = false;
@@ -91,27 +90,18 @@ pub trait Law: Copy + Send + Sync + 'static {
     }
     /// Returns the stress after plastic flow, if any, from the result of [`Law::trial`].
     #[inline(always)]
-    fn flow<S: Space>(
-        &self,
-        (stress, _squared): (S::Symmetric, f64),
-        _plastic_strain: &mut Self::PlasticStrain,
-    ) -> S::Symmetric {
+    fn flow<S: Space>(&self, (stress, _squared): (S::Symmetric, f64), _plastic_strain: &mut f64) -> S::Symmetric {
         stress
     }
     /// Returns the flow stress at a plastic strain (Pa); zero for laws without yielding.
     #[inline(always)]
-    fn flow_stress(&self, _plastic_strain: Self::PlasticStrain) -> f64 {
+    fn flow_stress(&self, _plastic_strain: f64) -> f64 {
         0.0
     }
-    /// Returns the work per volume of a state's viscous stress on a strain (J/m³); zero without viscosity.
+    /// Returns the work per volume of the viscous stress on the strain of a step (J/m³); zero without viscosity.
+    /// Deformation and stress belong to one state, before or after the step.
     #[inline(always)]
-    fn viscous_work<S: Space>(
-        &self,
-        _strain: S::Symmetric,
-        _volume_ratio: f64,
-        _deformation: S::Matrix,
-        _stress: S::Symmetric,
-    ) -> f64 {
+    fn viscous_work<S: Space>(&self, _step: PointStep<S>) -> f64 {
         0.0
     }
     /// Returns ρ₀c² (Pa) of the fastest longitudinal wave, with the initial density ρ₀ and the spatial wave speed c

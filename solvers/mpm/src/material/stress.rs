@@ -5,7 +5,7 @@ use crate::failure::Failure;
 use crate::grid::basis::with_basis;
 use crate::grid::lattice::Node;
 use crate::grid::nodes::{Grid, Velocities};
-use crate::material::{Law, PlasticStrain, VolumeRatio, with_law};
+use crate::material::{Law, PointStep, VolumeRatio, with_law};
 use crate::options::Transfer;
 use crate::points::arrays::PointsMut;
 use crate::points::body::Body;
@@ -155,7 +155,7 @@ impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
         let gradients = &gradients[..range.len()];
         let deformations = &mut points.deformation[range.clone()];
         let stresses = &mut points.stress[range.clone()];
-        let plastic_strains = L::PlasticStrain::those_of(points.plastic_strain, range.clone());
+        let plastic_strains = if L::YIELDS { &mut points.plastic_strain[range.clone()] } else { &mut [] };
         let (volumes, references) = (&mut points.volume[range.clone()], &points.reference_volume[range.clone()]);
         // Values computed for many points at once: volume ratios, their logarithms, 3/2 s:s, and work against
         // viscosity.
@@ -163,10 +163,9 @@ impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
         let (mut squares, mut works) = ([0.0; LONGEST], [0.0; LONGEST]);
         if counts && L::VISCOUS {
             for (at, work) in works.iter_mut().enumerate().take(range.len()) {
-                let strain = S::symmetric_part(S::at_midpoint(gradients[at] * time_step));
-                let ratio = volumes[at] / references[at];
-                let density = law.viscous_work::<S>(strain, ratio, deformations[at], stresses[at]);
-                *work = 0.5 * volumes[at] * density;
+                let (increment, volume) = (gradients[at] * time_step, VolumeRatio::new(volumes[at] / references[at]));
+                let step = PointStep { increment, deformation: deformations[at], volume, stress: stresses[at] };
+                *work = 0.5 * volumes[at] * law.viscous_work::<S>(step);
             }
         }
         for ((deformation, gradient), ratio) in deformations.iter_mut().zip(gradients).zip(&mut ratios) {
@@ -187,20 +186,24 @@ impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
             for place in run.start - start..run.end - start {
                 let increment = gradients[place] * time_step;
                 let (deformation, stress, volume) = (deformations[place], &mut stresses[place], &mut volumes[place]);
-                let ratio = VolumeRatio { ratio: ratios[place], logarithm: logarithms[place] };
-                if (ratio.ratio <= 0.0 || ratio.ratio.is_nan()) && failure.is_none() {
-                    *failure = Some(BrokenPoint { point: start + place, cause: cause::<S>(increment, ratio.ratio) });
+                let ratio = ratios[place];
+                if (ratio <= 0.0 || ratio.is_nan()) && failure.is_none() {
+                    *failure = Some(BrokenPoint { point: start + place, cause: cause::<S>(increment, ratio) });
                 }
-                let mut plastic_strain = L::PlasticStrain::read(plastic_strains, place);
-                let before = (*volume, plastic_strain.value());
-                *volume = references[place] * ratio.ratio;
+                let mut plastic_strain = if L::YIELDS { plastic_strains[place] } else { 0.0 };
+                let before = (*volume, plastic_strain);
+                *volume = references[place] * ratio;
+                let ratio = VolumeRatio { ratio, logarithm: logarithms[place] };
+                let step = PointStep { increment, deformation, volume: ratio, stress: *stress };
                 *stress = if L::TRIES {
                     law.flow::<S>((*stress, squares[place]), &mut plastic_strain)
                 } else {
-                    law.follow::<S>(increment, ratio, deformation, *stress, &mut plastic_strain)
+                    law.follow::<S>(step, &mut plastic_strain)
                 };
-                let flown = plastic_strain.value() - before.1;
-                plastic_strain.write(plastic_strains, place);
+                let flown = plastic_strain - before.1;
+                if L::YIELDS {
+                    plastic_strains[place] = plastic_strain;
+                }
                 if spins && flown > 0.0 {
                     let strain_rate = S::embed_symmetric(S::symmetric_part(gradients[place]));
                     affines[range.start + place] =
@@ -210,9 +213,7 @@ impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
                     flow.taken += *volume * S::double_dot(*stress, S::symmetric_part(increment));
                     if L::VISCOUS {
                         flow.viscous += works[place];
-                        let strain = S::symmetric_part(S::at_midpoint(increment));
-                        let density = law.viscous_work::<S>(strain, ratio.ratio, deformation, *stress);
-                        flow.viscous += 0.5 * *volume * density;
+                        flow.viscous += 0.5 * *volume * law.viscous_work::<S>(PointStep { stress: *stress, ..step });
                     }
                     if flown > 0.0 {
                         flow.plastic += 0.5 * (before.0 + *volume) * law.flow_stress(plastic_strain) * flown;
