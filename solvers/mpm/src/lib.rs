@@ -13,10 +13,9 @@
 //! (`contact`), materials (`material`) and energies (`energy`). The sums over points and nodes are in `transfer`.
 //!
 //! Type parameters select space, basis, transfer and material, each only in the loops over points that need it. An enum
-//! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Types also
-//! remove absent effects. A run without friction of springs, plastic strain or an energy budget uses
-//! [`off::AbsentEffect`] instead, which needs no memory. The affine part of velocities is stored only if the transfer
-//! uses it.
+//! selects each stage. The number of compiled kernels is therefore a sum and not a product of the options. Absent effects
+//! need no memory: friction of springs, plastic strain, an energy budget, and the affine part of velocities are stored
+//! only if the run uses them.
 
 mod boundary;
 mod checks;
@@ -27,7 +26,6 @@ mod grid;
 mod limits;
 pub mod material;
 mod observe;
-pub mod off;
 pub mod options;
 mod points;
 #[cfg(test)]

@@ -5,7 +5,6 @@
 //! springs (N/m).
 
 use super::ContactPartner;
-use crate::off::AbsentEffect;
 use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -60,6 +59,14 @@ impl<S: Space> Shear<S> {
         }
     }
 
+    /// Returns the response without friction. Surfaces slip if they move along each other.
+    #[inline(always)]
+    pub(crate) fn without_friction(overlap: &Overlap<S>) -> Self {
+        let along = overlap.along(overlap.slip);
+        let slipping = overlap.stiffness * S::dot(along, along).sqrt() > 0.0;
+        Self { force: S::ORIGIN, stretch: [S::ORIGIN; 2], slipping }
+    }
+
     /// Returns the frictional work in the step (J): the mean spring force times the sliding displacement of the
     /// spring's end.
     ///
@@ -93,26 +100,6 @@ impl<S: Space> Shear<S> {
     }
 }
 
-/// Friction of tracer springs. [`AbsentEffect`] is the implementation without friction.
-pub(crate) trait Tangential<S: Space> {
-    /// True if tangential forces exist.
-    const ACTIVE: bool;
-    /// Computes the tangential response of a tracer that penetrates `other`.
-    fn respond(&mut self, tracer: usize, other: ContactPartner, overlap: &Overlap<S>) -> Shear<S>;
-}
-
-impl<S: Space> Tangential<S> for AbsentEffect {
-    const ACTIVE: bool = false;
-
-    /// Returns no force. Surfaces slip if they move along each other.
-    #[inline(always)]
-    fn respond(&mut self, _tracer: usize, _other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
-        let along = overlap.along(overlap.slip);
-        let slipping = overlap.stiffness * S::dot(along, along).sqrt() > 0.0;
-        Shear { force: S::ORIGIN, stretch: [S::ORIGIN; 2], slipping }
-    }
-}
-
 /// Maximum number of tangential springs of a tracer.
 const AT_ONCE: usize = 4;
 
@@ -138,9 +125,25 @@ pub(crate) struct Coulomb<S: Space> {
 }
 
 impl<S: Space> Coulomb<S> {
-    fn new(tracers: usize) -> Self {
+    /// Creates the tangential springs of a number of tracers.
+    pub(crate) fn new(tracers: usize) -> Self {
         let none = Spring { other: ContactPartner::Wall(u16::MAX), stamp: 0, stretch: S::ORIGIN };
         Self { of: vec![[none; AT_ONCE]; tracers], now: 1 }
+    }
+
+    /// Returns the number of tracers.
+    pub(crate) const fn tracers(&self) -> usize {
+        self.of.len()
+    }
+
+    /// Returns the memory in use (bytes).
+    pub(crate) fn bytes(&self) -> usize {
+        size_of_val(&*self.of)
+    }
+
+    /// Starts a new evaluation of all contacts.
+    pub(crate) const fn begin(&mut self) {
+        self.now += 1;
     }
 
     /// Returns the tangential spring displacement of a tracer and contact partner, and marks the spring as in contact.
@@ -157,58 +160,14 @@ impl<S: Space> Coulomb<S> {
         spring.stamp = now;
         &mut spring.stretch
     }
-}
 
-impl<S: Space> Tangential<S> for &mut Coulomb<S> {
-    const ACTIVE: bool = true;
-
+    /// Computes the tangential response of a tracer that penetrates `other`.
     #[inline(always)]
-    fn respond(&mut self, tracer: usize, other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
+    pub(crate) fn respond(&mut self, tracer: usize, other: ContactPartner, overlap: &Overlap<S>) -> Shear<S> {
         let stretch = self.stretch(tracer, other);
         let shear = Shear::new(*stretch, overlap);
         *stretch = shear.stretch[1];
         shear
-    }
-}
-
-/// Friction of the springs of a scene.
-#[derive(Clone, Debug, Serialize, Deserialize)]
-#[serde(bound = "")]
-pub(crate) enum Friction<S: Space> {
-    /// μ = 0 for all laws, or contact acts at nodes.
-    Absent,
-    /// Every tracer has tangential springs.
-    Present(Coulomb<S>),
-}
-
-impl<S: Space> Friction<S> {
-    /// Creates the tangential springs of a number of tracers if friction `acts`, otherwise none.
-    pub(crate) fn new(acts: bool, tracers: usize) -> Self {
-        if acts { Self::Present(Coulomb::new(tracers)) } else { Self::Absent }
-    }
-
-    /// Starts a new evaluation of all contacts.
-    pub(crate) const fn begin(&mut self) {
-        if let Self::Present(springs) = self {
-            springs.now += 1;
-        }
-    }
-
-    /// Returns the memory in use (bytes).
-    pub(crate) fn bytes(&self) -> usize {
-        match self {
-            Self::Absent => 0,
-            Self::Present(springs) => size_of_val(&*springs.of),
-        }
-    }
-
-    /// Returns true if friction is absent in both, or if both have springs for the same number of tracers.
-    pub(crate) const fn is_like(&self, other: &Self) -> bool {
-        match (self, other) {
-            (Self::Absent, Self::Absent) => true,
-            (Self::Present(one), Self::Present(two)) => one.of.len() == two.of.len(),
-            _ => false,
-        }
     }
 }
 
@@ -219,17 +178,16 @@ mod tests {
     use nalgebra::Vector2;
 
     /// Returns the force along x on a tracer with springs of 200 N/m at a depth of .01 m, after it has slipped by `slip` (m).
-    fn force(friction: &mut Friction<Plane>, slip: f64, coefficient: f64) -> f64 {
-        let Friction::Present(springs) = friction else { return f64::NAN };
+    fn force(springs: &mut Coulomb<Plane>, slip: f64, coefficient: f64) -> f64 {
         let (normal, slip) = (Vector2::y(), Vector2::new(slip, 0.0));
         let overlap = Overlap { depth: 0.01, normal, stiffness: 200.0, slip, friction: coefficient };
-        Tangential::respond(&mut &mut *springs, 0, ContactPartner::Wall(0), &overlap).force.x
+        springs.respond(0, ContactPartner::Wall(0), &overlap).force.x
     }
 
     /// A spring keeps its displacement only during contact. After an evaluation without contact it restarts at zero.
     #[test]
     fn a_hop_leaves_no_stretch() {
-        let mut friction = Friction::<Plane>::new(true, 1);
+        let mut springs = Coulomb::<Plane>::new(1);
         for (touches, slip, expected) in [
             (true, 1e-3, -0.2),
             (true, 1e-3, -0.4),
@@ -239,9 +197,9 @@ mod tests {
             (true, 0.0, 0.0),
             (true, -1e-3, 0.2),
         ] {
-            friction.begin();
+            springs.begin();
             if touches {
-                let found = force(&mut friction, slip, 1.0);
+                let found = force(&mut springs, slip, 1.0);
                 assert!((found - expected).abs() < 1e-15, "{found} for {expected}");
             }
         }
@@ -265,10 +223,10 @@ mod tests {
     #[test]
     fn what_slips_feels_the_coefficient_of_friction() {
         for coefficient in [0.3, 0.3 * 1.002] {
-            let mut friction = Friction::<Plane>::new(true, 1);
+            let mut springs = Coulomb::<Plane>::new(1);
             for _ in 0..3 {
-                friction.begin();
-                let found = force(&mut friction, 0.1, coefficient);
+                springs.begin();
+                let found = force(&mut springs, 0.1, coefficient);
                 assert!((found / (-2.0 * coefficient) - 1.0).abs() < 1e-14, "{found} of {coefficient}");
             }
         }

@@ -19,7 +19,7 @@ use super::shared::{Field, Member, SharedNodes};
 use super::{ContactPartner, FrictionTable};
 use crate::boundary::driven::Group;
 use crate::boundary::walls::RigidPlane;
-use crate::energy::ledger::Ledger;
+use crate::energy::ledger::Tally;
 use crate::grid::lattice::Lattice;
 use crate::options::Contact;
 use crate::points::body::Body;
@@ -40,19 +40,19 @@ pub(crate) struct Rules<'a> {
 }
 
 /// Walls and driven bodies. The reactions of contact are added to them as forces over the step.
-pub(crate) struct ReactionReceivers<'a, S: Space, A> {
+pub(crate) struct ReactionReceivers<'a, S: Space> {
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) driven: &'a mut [Group<S>],
-    /// Receiver of contact energies; `AbsentEffect` if the run requests no energy budget.
-    pub(crate) ledger: A,
+    /// Energies of contacts, if the run requests an energy budget.
+    pub(crate) tally: Option<&'a mut Tally>,
 }
 
 /// Applies nodal contact to the velocities of `field`.
-pub(crate) fn meet<S: Space, F: Field<S>, A: Ledger>(
+pub(crate) fn meet<S: Space, F: Field<S>>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut SharedNodes<S>,
-    felt: &mut ReactionReceivers<'_, S, A>,
+    felt: &mut ReactionReceivers<'_, S>,
     field: &mut F,
 ) {
     match rules.contact {
@@ -184,15 +184,15 @@ impl Condition for Compression {
 }
 
 /// Applies a contact condition at all shared nodes.
-fn apply<S: Space, C: Condition, F: Field<S>, A: Ledger>(
+fn apply<S: Space, C: Condition, F: Field<S>>(
     condition: &C,
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &SharedNodes<S>,
-    felt: &mut ReactionReceivers<'_, S, A>,
+    felt: &mut ReactionReceivers<'_, S>,
     field: &mut F,
 ) {
-    let ReactionReceivers { walls, driven, ledger } = felt;
+    let ReactionReceivers { walls, driven, tally } = felt;
     for group in &shared.groups {
         let members = &shared.members[group.members.clone()];
         let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
@@ -237,7 +237,7 @@ fn apply<S: Space, C: Condition, F: Field<S>, A: Ledger>(
             field.set(member.slot, velocity - total);
             if F::COUNTS {
                 let impulse = total * member.mass;
-                if let Some(tally) = ledger.tally() {
+                if let Some(tally) = tally {
                     tally.friction += member.mass * S::dot(friction, field.before(member.slot) - common_before);
                     if group.wall.is_some() {
                         tally.walls -= S::dot(impulse, common);
@@ -258,14 +258,14 @@ fn apply<S: Space, C: Condition, F: Field<S>, A: Ledger>(
 /// While a pair approaches or is under pressure, an impulse along the common normal stops the relative motion, with
 /// Coulomb friction. The pairs of each node are solved by projected Gauss–Seidel iteration. Impulses are equal and
 /// opposite, so momentum is conserved to rounding for any number of bodies.
-fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
+fn apply_pairs<S: Space, F: Field<S>>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut SharedNodes<S>,
-    felt: &mut ReactionReceivers<'_, S, A>,
+    felt: &mut ReactionReceivers<'_, S>,
     field: &mut F,
 ) {
-    let ReactionReceivers { walls, driven, ledger } = felt;
+    let ReactionReceivers { walls, driven, tally } = felt;
     let SharedNodes { meetings, faces, .. } = shared;
     for node in meetings.chunk_by_mut(|a, b| a.key == b.key) {
         let single = node.len() == 1;
@@ -313,7 +313,7 @@ fn apply_pairs<S: Space, F: Field<S>, A: Ledger>(
                 }
                 if F::COUNTS {
                     let force = change * (1.0 / rules.time_step);
-                    if let Some(tally) = ledger.tally() {
+                    if let Some(tally) = tally {
                         let slip = match meeting.other {
                             ContactPartner::Body(_) => field.before(one) - field.before(meeting.slots[1]),
                             ContactPartner::Wall(_) => {
@@ -352,7 +352,6 @@ mod tests {
     use super::*;
     use crate::contact::shared::{Face, NodalContact, SteppedVelocities};
     use crate::grid::lattice::Node;
-    use crate::off::AbsentEffect;
     use crate::options::Setting;
     use crate::trial::prepared;
     use grainbench_solver::space::Plane;
@@ -389,7 +388,7 @@ mod tests {
         let friction = FrictionTable::from_scene(&simulation.scene);
         let lattice = &simulation.grid.lattice;
         let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
-        let mut felt = ReactionReceivers { walls: &mut [], driven: &mut [], ledger: AbsentEffect };
+        let mut felt = ReactionReceivers { walls: &mut [], driven: &mut [], tally: None };
         meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut SteppedVelocities(&mut nodes));
         [0, 1, 2].map(|at| nodes[at].velocity)
     }

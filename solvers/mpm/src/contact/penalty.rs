@@ -3,11 +3,11 @@
 //! same stiffness acts along the surface ([`super::friction`]). Forces on both surfaces act at the same contact point,
 //! so linear momentum is conserved to rounding and torques are consistent.
 
-use super::friction::{Friction, Overlap, Tangential};
+use super::friction::{Coulomb, Overlap, Shear};
 use super::search::{PenetratingPoint, Rules, SearchResults};
 use super::{ContactPartner, ContactPoint};
 use crate::boundary::walls::RigidPlane;
-use crate::energy::ledger::Ledger;
+use crate::energy::ledger::Tally;
 use crate::grid::basis::Basis;
 use crate::grid::lattice::Node;
 use crate::points::body::Body;
@@ -17,57 +17,33 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
-/// Springs of all tracers, with the results of the contact search.
-#[derive(Clone, Debug)]
-pub(crate) struct Springs<S: Space> {
+/// Friction and outputs of the springs in a step.
+pub(crate) struct Springs<'a, S: Space> {
     /// Tangential springs, if there is friction.
-    pub(crate) friction: Friction<S>,
-    /// Penetrating tracers, with one list for each subrange of pairs.
-    pub(crate) found: Vec<SearchResults<S>>,
-    /// Number of tracers in contact since the evaluation began.
-    pub(crate) touched: u64,
-}
-
-impl<S: Space> Springs<S> {
-    /// Creates the springs of a number of tracers, with friction if it `acts`.
-    pub(crate) fn new(acts: bool, tracers: usize) -> Self {
-        Self { friction: Friction::new(acts, tracers), found: Vec::new(), touched: 0 }
-    }
-
-    /// Starts a new evaluation of all contacts.
-    pub(crate) const fn begin(&mut self) {
-        self.friction.begin();
-        self.touched = 0;
-    }
-}
-
-/// Outputs of the springs in a step.
-pub(crate) struct SpringOutputs<'a, S: Space, A> {
-    /// Receiver of contact energies; `AbsentEffect` if the run requests no energy budget.
-    pub(crate) ledger: A,
+    pub(crate) friction: Option<&'a mut Coulomb<S>>,
+    /// Energies of contacts, if the run requests an energy budget.
+    pub(crate) tally: Option<&'a mut Tally>,
     /// Contact points, if requested.
     pub(crate) touches: Option<&'a mut Vec<ContactPoint<S>>>,
     /// Number of tracers in contact.
     pub(crate) touched: &'a mut u64,
 }
 
-/// Kernel that applies the springs of one step between bodies, and between bodies and walls. Type parameters select
-/// friction and energy budget.
-pub(crate) struct Push<'a, S: Space, B, F, A> {
+/// Kernel that applies the springs of one step between bodies, and between bodies and walls.
+pub(crate) struct Push<'a, S: Space, B> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
     pub(crate) found: &'a [SearchResults<S>],
     pub(crate) tracers: &'a Tracers<S>,
-    pub(crate) friction: F,
     pub(crate) walls: &'a mut [RigidPlane<S>],
     pub(crate) nodes: &'a mut [Node<S>],
     /// Weight limit of each node at a surface.
     pub(crate) most: &'a [f64],
-    pub(crate) told: SpringOutputs<'a, S, A>,
+    pub(crate) springs: Springs<'a, S>,
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> FourKernel for Push<'_, S, B, F, A> {
+impl<S: Space, B: Basis> FourKernel for Push<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(mut self, _: L) {
         self.at_walls();
@@ -77,11 +53,11 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> FourKernel for Push<'_, S,
     }
 }
 
-impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
+impl<S: Space, B: Basis> Push<'_, S, B> {
     /// Applies springs between bodies and walls.
     #[inline(always)]
     fn at_walls(&mut self) {
-        let Self { rules, bodies, tracers, friction, walls, nodes, most, told: outputs, .. } = self;
+        let Self { rules, bodies, tracers, walls, nodes, most, springs, .. } = self;
         let cell = rules.lattice.shortest(S::DIMENSION);
         for (number, wall) in walls.iter_mut().enumerate() {
             let other = ContactPartner::Wall(number as u16);
@@ -109,11 +85,10 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
                         slip: (grip.velocity - wall.velocity(position)) * rules.time_step,
                         friction: coefficient,
                     };
-                    let place = Place { body: place as u32, other, point: position };
-                    let force = outputs.force(friction, at, &overlap, place);
+                    let force = springs.force(at, &overlap, place as u32, other, position);
                     grip.push::<B>(&body.part, force, nodes, most);
                     wall.force -= force;
-                    if let Some(tally) = outputs.ledger.tally() {
+                    if let Some(tally) = &mut springs.tally {
                         let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
                         tally.walls += worked;
                         // The velocity of the wall is prescribed, so its contribution with the velocity after the step
@@ -128,52 +103,50 @@ impl<S: Space, B: Basis, F: Tangential<S>, A: Ledger> Push<'_, S, B, F, A> {
     /// Applies the spring at a tracer of the first body of a pair that penetrates the surface of the second body.
     #[inline(always)]
     fn between(&mut self, PenetratingPoint { pair, tracer, overlap, there, grips: [one, two] }: &PenetratingPoint<S>) {
-        let Self { bodies, friction, nodes, most, told: outputs, .. } = self;
+        let Self { bodies, nodes, most, springs, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
-        let place = Place { body: pair.first, other: ContactPartner::Body(pair.second), point: *there };
-        let force = outputs.force(friction, *tracer, overlap, place);
+        let force = springs.force(*tracer, overlap, pair.first, ContactPartner::Body(pair.second), *there);
         one.push::<B>(&first.part, force, nodes, most);
         two.push::<B>(&second.part, -force, nodes, most);
-        if let Some(tally) = outputs.ledger.tally() {
+        if let Some(tally) = &mut springs.tally {
             tally.taken -= 0.5 * S::dot(force, overlap.slip);
         }
     }
 }
 
-/// Contact point of a tracer.
-struct Place<S: Space> {
-    body: u32,
-    other: ContactPartner,
-    /// Contact point (m).
-    point: S::Vector,
-}
-
-impl<S: Space, A: Ledger> SpringOutputs<'_, S, A> {
-    /// Returns the force on a tracer (N), which is the normal force k g plus friction. Records the requested outputs.
+impl<S: Space> Springs<'_, S> {
+    /// Returns the force on a tracer of a body at a contact `point` (m), which is the normal force k g plus friction (N).
+    /// Records the requested outputs.
     #[inline(always)]
-    fn force<F: Tangential<S>>(
+    fn force(
         &mut self,
-        friction: &mut F,
         tracer: usize,
         overlap: &Overlap<S>,
-        Place { body, other, point }: Place<S>,
+        body: u32,
+        other: ContactPartner,
+        point: S::Vector,
     ) -> S::Vector {
         *self.touched += 1;
         let &Overlap { depth, normal, stiffness, .. } = overlap;
         let push = normal * (stiffness * depth);
-        let shear = friction.respond(tracer, other, overlap);
-        if let Some(tally) = self.ledger.tally() {
-            if F::ACTIVE {
+        let has_friction = self.friction.is_some();
+        let shear = match &mut self.friction {
+            Some(friction) => friction.respond(tracer, other, overlap),
+            None => Shear::without_friction(overlap),
+        };
+        let force = if has_friction { push + shear.force } else { push };
+        if let Some(tally) = &mut self.tally {
+            if has_friction {
                 tally.friction += shear.rubbed(overlap);
             }
             tally.springs += shear.energy(overlap);
         }
-        if let Some(touches) = self.touches.as_mut() {
+        if let Some(touches) = &mut self.touches {
             let energy = shear.energy_ahead(overlap);
             let (shear, slipping) = (shear.force, shear.slipping);
             touches.push(ContactPoint { body, other, point, push, shear, depth, slipping, energy });
         }
-        if F::ACTIVE { push + shear.force } else { push }
+        force
     }
 }
 

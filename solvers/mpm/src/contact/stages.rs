@@ -1,10 +1,10 @@
 //! Contact stages of a cycle: spring forces between surfaces, and conditions on node velocities.
 
 use crate::boundary::Boundary;
-use crate::contact::friction::Friction;
+use crate::contact::friction::Coulomb;
 use crate::contact::nodal::{self, ReactionReceivers};
 use crate::contact::pairs::Pairs;
-use crate::contact::penalty::{Push, SpringOutputs, Springs};
+use crate::contact::penalty::{Push, Springs};
 use crate::contact::search::{Rules, Search, SearchResults, TracerSurroundings};
 use crate::contact::shared::{Field, SharedNodes};
 use crate::contact::{ContactPoint, FrictionTable};
@@ -12,7 +12,6 @@ use crate::energy::accounts::Accounts;
 use crate::grid::basis::with_basis;
 use crate::grid::lattice::{Lattice, Node};
 use crate::grid::nodes::{Grid, Velocities};
-use crate::off::AbsentEffect;
 use crate::options::{Contact, StressUpdate};
 use crate::points::state::State;
 use crate::scheme::Scheme;
@@ -40,8 +39,11 @@ pub(crate) struct ContactRequest<'a, S: Space> {
 #[derive(Clone, Debug)]
 pub(crate) struct Contacts<S: Space> {
     pub(crate) tracers: Tracers<S>,
-    pub(crate) springs: Springs<S>,
+    /// Tangential springs of tracers; `None` if μ = 0 for all laws, or contact acts at nodes.
+    pub(crate) springs: Option<Coulomb<S>>,
     pub(crate) touches: Vec<ContactPoint<S>>,
+    /// Penetrating tracers, with one list for each subrange of pairs.
+    found: Vec<SearchResults<S>>,
     friction: FrictionTable,
     pairs: Pairs<S>,
     shared: SharedNodes<S>,
@@ -50,15 +52,15 @@ pub(crate) struct Contacts<S: Space> {
 impl<S: Space> Contacts<S> {
     pub(crate) fn new(scene: &Scene, contact: Contact, tracers: Tracers<S>) -> Self {
         let friction = FrictionTable::from_scene(scene);
-        let springs = Springs::new(friction.acts() && contact == Contact::Penalty, tracers.len());
+        let springs = (friction.acts() && contact == Contact::Penalty).then(|| Coulomb::new(tracers.len()));
         let (pairs, shared) = (Pairs::default(), SharedNodes::default());
-        Self { tracers, springs, touches: Vec::new(), friction, pairs, shared }
+        Self { tracers, springs, touches: Vec::new(), found: Vec::new(), friction, pairs, shared }
     }
 
     /// Returns the memory in use (bytes).
     pub(crate) fn bytes(&self) -> usize {
         self.tracers.len() * Tracers::<S>::BYTES
-            + self.springs.friction.bytes()
+            + self.springs.as_ref().map_or(0, Coulomb::bytes)
             + self.shared.bytes()
             + self.pairs.bytes()
     }
@@ -81,7 +83,7 @@ impl<S: Space> Contacts<S> {
         if Self::can_touch(state, boundary) && matches!(contact, Contact::Penalty | Contact::Gap) {
             return;
         }
-        (self.tracers, self.springs) = (Tracers::default(), Springs::new(false, 0));
+        (self.tracers, self.springs) = (Tracers::default(), None);
         for body in &mut state.bodies {
             (body.tracers, body.chunks) = (0..0, 0..0);
         }
@@ -146,48 +148,32 @@ impl<S: Space> Contacts<S> {
         }
         let Grid { lattice, nodes, most, .. } = grid;
         let (bodies, walls) = (&state.bodies, &mut boundary.walls);
-        let Self { tracers, springs, touches, friction, pairs, .. } = self;
+        let Self { tracers, springs, touches, found, friction, pairs, .. } = self;
         touches.clear();
-        springs.begin();
+        springs.iter_mut().for_each(Coulomb::begin);
         pairs.find(bodies, lattice, 0.0);
         let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
         let shares = if state.team.members() > 1 { SHARES * state.team.members() } else { 1 };
-        springs.found.resize(shares, SearchResults::default());
+        found.resize(shares, SearchResults::default());
         let (all, tracers) = (&pairs.found[..], &*tracers);
-        state.team.each(springs.found.iter_mut(), |number, found| {
+        state.team.each(found.iter_mut(), |number, found| {
             let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
             with_basis!(setting.basis, B => {
                 let around = TracerSurroundings { rules, bodies, tracers, nodes, most, basis: PhantomData::<B> };
                 processor.run_by_four(Search { around, pairs, found });
             });
         });
-        let Springs { friction, found, touched } = springs;
-        macro_rules! push {
-            ($B:ty, $friction:expr, $ledger:expr) => {{
-                let (found, friction, basis) = (&found[..], $friction, PhantomData::<$B>);
-                let outputs = SpringOutputs { ledger: $ledger, touches: record.then_some(touches), touched };
-                processor.run_by_four(Push {
-                    rules,
-                    bodies,
-                    found,
-                    tracers,
-                    friction,
-                    walls,
-                    nodes,
-                    most,
-                    told: outputs,
-                    basis,
-                });
-            }};
-        }
-        with_basis!(setting.basis, B => match (friction, accounts) {
-            (Friction::Absent, None) => push!(B, AbsentEffect, AbsentEffect),
-            (Friction::Absent, Some(accounts)) => push!(B, AbsentEffect, &mut accounts.tally),
-            (Friction::Present(friction), None) => push!(B, friction, AbsentEffect),
-            (Friction::Present(friction), Some(accounts)) => push!(B, friction, &mut accounts.tally),
+        let springs = Springs {
+            friction: springs.as_mut(),
+            tally: accounts.map(|accounts| &mut accounts.tally),
+            touches: record.then_some(touches),
+            touched: &mut cost.contact_evaluations,
+        };
+        with_basis!(setting.basis, B => {
+            let basis = PhantomData::<B>;
+            processor.run_by_four(Push { rules, bodies, found, tracers, walls, nodes, most, springs, basis });
         });
         cost.pair_tests += pairs.tests;
-        cost.contact_evaluations += springs.touched;
     }
 
     /// Applies nodal contact to the velocities of `field`. The energy budget includes the impulses on velocities after the
@@ -208,11 +194,8 @@ impl<S: Space> Contacts<S> {
         let Self { friction, shared, .. } = self;
         let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
         let (walls, driven, bodies) = (&mut *boundary.walls, &mut *boundary.driven.groups, &state.bodies);
-        if let Some(Accounts { tally, .. }) = accounts {
-            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: tally }, field);
-        } else {
-            nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, ledger: AbsentEffect }, field);
-        }
+        let tally = accounts.map(|accounts| &mut accounts.tally);
+        nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, tally }, field);
     }
 
     /// Moves the tracers of all bodies; each thread handles a range of bodies.

@@ -1,6 +1,5 @@
 //! Energies that the loops over tracers, nodes and points record for the energy budget, if a run requests it.
 
-use crate::off::AbsentEffect;
 use serde::{Deserialize, Serialize};
 
 /// Energies of contacts in a step.
@@ -15,26 +14,6 @@ pub(crate) struct Tally {
     /// Energy that springs take from the motion of surfaces (J). It includes the half with velocities before the step,
     /// and the full contribution of walls.
     pub(crate) taken: f64,
-}
-
-/// Receiver of contact energies: a [`Tally`] if the run requests an energy budget, otherwise [`AbsentEffect`].
-pub(crate) trait Ledger {
-    /// Returns the energies of contacts in the step, if requested.
-    fn tally(&mut self) -> Option<&mut Tally>;
-}
-
-impl Ledger for AbsentEffect {
-    #[inline(always)]
-    fn tally(&mut self) -> Option<&mut Tally> {
-        None
-    }
-}
-
-impl Ledger for &mut Tally {
-    #[inline(always)]
-    fn tally(&mut self) -> Option<&mut Tally> {
-        Some(self)
-    }
 }
 
 /// Stress work, plastic work and viscous work of a step (J).
