@@ -5,7 +5,7 @@
 //! nodes are in [`crate::transfer::scatter`] and [`crate::transfer::gather`].
 
 use crate::boundary::Boundary;
-use crate::contact::shared::{ProjectedVelocities, SteppedVelocities};
+use crate::contact::shared::Field;
 use crate::contact::stages::{ContactRequest, Contacts};
 use crate::energy::accounts::{Accounts, work_of};
 use crate::energy::ledger::{EnergyGuard, Tally};
@@ -190,7 +190,7 @@ impl<S: Space> Simulation<S> {
         let Self { scheme, state, grid, boundary, contacts, .. } = self;
         boundary.hold_projected(state, grid);
         let Grid { lattice, projected, .. } = grid;
-        contacts.meet(scheme, state, lattice, boundary, None, &mut ProjectedVelocities(projected));
+        contacts.meet(scheme, state, lattice, boundary, None, &mut Field::Projected(projected));
     }
 
     /// Adds the body force of a manufactured solution.
@@ -231,7 +231,7 @@ impl<S: Space> Simulation<S> {
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         boundary.driven.hold(&mut grid.nodes, scheme.time_step);
         let Grid { lattice, nodes, .. } = grid;
-        contacts.meet(scheme, state, lattice, boundary, accounts.as_mut(), &mut SteppedVelocities(nodes));
+        contacts.meet(scheme, state, lattice, boundary, accounts.as_mut(), &mut Field::Stepped(nodes));
         grid.find_changes(state, damping);
     }
 

@@ -48,12 +48,12 @@ pub(crate) struct ReactionReceivers<'a, S: Space> {
 }
 
 /// Applies nodal contact to the velocities of `field`.
-pub(crate) fn meet<S: Space, F: Field<S>>(
+pub(crate) fn meet<S: Space>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut SharedNodes<S>,
     felt: &mut ReactionReceivers<'_, S>,
-    field: &mut F,
+    field: &mut Field<'_, S>,
 ) {
     match rules.contact {
         Contact::Gap => apply_pairs(rules, bodies, shared, felt, field),
@@ -184,13 +184,13 @@ impl Condition for Compression {
 }
 
 /// Applies a contact condition at all shared nodes.
-fn apply<S: Space, C: Condition, F: Field<S>>(
+fn apply<S: Space, C: Condition>(
     condition: &C,
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &SharedNodes<S>,
     felt: &mut ReactionReceivers<'_, S>,
-    field: &mut F,
+    field: &mut Field<'_, S>,
 ) {
     let ReactionReceivers { walls, driven, tally } = felt;
     for group in &shared.groups {
@@ -198,7 +198,7 @@ fn apply<S: Space, C: Condition, F: Field<S>>(
         let (mut mass, mut momentum, mut before) = (0.0, S::ORIGIN, S::ORIGIN);
         for member in members {
             mass += member.mass;
-            momentum += field.velocity(member.slot) * member.mass;
+            momentum += *field.velocity(member.slot) * member.mass;
             before += field.before(member.slot) * member.mass;
         }
         let mover = members.iter().find_map(|member| bodies[member.body as usize].driven).map(usize::from);
@@ -214,7 +214,7 @@ fn apply<S: Space, C: Condition, F: Field<S>>(
             if body.driven.is_some() && !C::CONSTRAINS_DRIVEN {
                 continue;
             }
-            let velocity = field.velocity(member.slot);
+            let velocity = *field.velocity(member.slot);
             let surface = || {
                 let face = &shared.faces[member.slot];
                 let (normal, friction) = if let Some(wall) = group.wall {
@@ -234,8 +234,8 @@ fn apply<S: Space, C: Condition, F: Field<S>>(
             let Some(Change { total, friction }) = condition.change(rules, velocity - common, surface) else {
                 continue;
             };
-            field.set(member.slot, velocity - total);
-            if F::COUNTS {
+            *field.velocity(member.slot) = velocity - total;
+            if matches!(field, Field::Stepped(_)) {
                 let impulse = total * member.mass;
                 if let Some(tally) = tally {
                     tally.friction += member.mass * S::dot(friction, field.before(member.slot) - common_before);
@@ -258,12 +258,12 @@ fn apply<S: Space, C: Condition, F: Field<S>>(
 /// While a pair approaches or is under pressure, an impulse along the common normal stops the relative motion, with
 /// Coulomb friction. The pairs of each node are solved by projected Gauss–Seidel iteration. Impulses are equal and
 /// opposite, so momentum is conserved to rounding for any number of bodies.
-fn apply_pairs<S: Space, F: Field<S>>(
+fn apply_pairs<S: Space>(
     rules: &Rules<'_>,
     bodies: &[Body],
     shared: &mut SharedNodes<S>,
     felt: &mut ReactionReceivers<'_, S>,
-    field: &mut F,
+    field: &mut Field<'_, S>,
 ) {
     let ReactionReceivers { walls, driven, tally } = felt;
     let SharedNodes { meetings, faces, .. } = shared;
@@ -282,11 +282,11 @@ fn apply_pairs<S: Space, F: Field<S>>(
                     }
                     ContactPartner::Body(other) => {
                         let (two, other) = (meeting.slots[1], &bodies[other as usize]);
-                        (field.velocity(two), 1.0 / meeting.masses[1], other.material, faces[two].stress)
+                        (*field.velocity(two), 1.0 / meeting.masses[1], other.material, faces[two].stress)
                     }
                 };
                 let Some(friction) = rules.friction.between(body.material, material) else { continue };
-                let apart = field.velocity(one) - velocity;
+                let apart = *field.velocity(one) - velocity;
                 let along = S::dot(apart, normal);
                 let stress = faces[one].stress + traction;
                 let pressing = S::dot(normal, stress * normal) < 0.0;
@@ -306,12 +306,11 @@ fn apply_pairs<S: Space, F: Field<S>>(
                 let impulse = normal * push + rub;
                 let change = impulse - before;
                 meeting.impulse = impulse;
-                field.set(one, field.velocity(one) - change * (1.0 / meeting.masses[0]));
+                *field.velocity(one) -= change * (1.0 / meeting.masses[0]);
                 if let ContactPartner::Body(_) = meeting.other {
-                    let two = meeting.slots[1];
-                    field.set(two, field.velocity(two) + change * inverse);
+                    *field.velocity(meeting.slots[1]) += change * inverse;
                 }
-                if F::COUNTS {
+                if matches!(field, Field::Stepped(_)) {
                     let force = change * (1.0 / rules.time_step);
                     if let Some(tally) = tally {
                         let slip = match meeting.other {
@@ -350,7 +349,7 @@ const SWEEPS: usize = 12;
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::contact::shared::{Face, NodalContact, SteppedVelocities};
+    use crate::contact::shared::{Face, NodalContact};
     use crate::grid::lattice::Node;
     use crate::options::Setting;
     use crate::trial::prepared;
@@ -389,7 +388,7 @@ mod tests {
         let lattice = &simulation.grid.lattice;
         let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
         let mut felt = ReactionReceivers { walls: &mut [], driven: &mut [], tally: None };
-        meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut SteppedVelocities(&mut nodes));
+        meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut Field::Stepped(&mut nodes));
         [0, 1, 2].map(|at| nodes[at].velocity)
     }
 

@@ -11,51 +11,32 @@ use crate::surface::tracers::Tracers;
 use grainbench_solver::space::Space;
 use std::ops::Range;
 
-/// Velocities of nodes, either after the step or projected from points.
-pub(crate) trait Field<S: Space> {
-    /// True if impulses count as forces on walls and driven bodies.
-    const COUNTS: bool;
-    fn velocity(&self, slot: usize) -> S::Vector;
-    /// Returns the velocity before the step.
-    fn before(&self, slot: usize) -> S::Vector;
-    fn set(&mut self, slot: usize, velocity: S::Vector);
+/// Velocities of nodes.
+pub(crate) enum Field<'a, S: Space> {
+    /// Velocities after the step. `change` of the nodes contains the velocities before the step. Impulses count as forces
+    /// on walls and driven bodies.
+    Stepped(&'a mut [Node<S>]),
+    /// Velocities projected from points. There are no separate velocities before the step, and impulses do not count.
+    Projected(&'a mut [S::Vector]),
 }
 
-/// Velocities after the step. `change` of the nodes contains the velocities before the step.
-pub(crate) struct SteppedVelocities<'a, S: Space>(pub(crate) &'a mut [Node<S>]);
+impl<S: Space> Field<'_, S> {
+    /// Returns the velocity of a node.
+    #[inline(always)]
+    pub(crate) const fn velocity(&mut self, slot: usize) -> &mut S::Vector {
+        match self {
+            Self::Stepped(nodes) => &mut nodes[slot].velocity,
+            Self::Projected(velocities) => &mut velocities[slot],
+        }
+    }
 
-impl<S: Space> Field<S> for SteppedVelocities<'_, S> {
-    const COUNTS: bool = true;
+    /// Returns the velocity of a node before the step.
     #[inline(always)]
-    fn velocity(&self, slot: usize) -> S::Vector {
-        self.0[slot].velocity
-    }
-    #[inline(always)]
-    fn before(&self, slot: usize) -> S::Vector {
-        self.0[slot].change
-    }
-    #[inline(always)]
-    fn set(&mut self, slot: usize, velocity: S::Vector) {
-        self.0[slot].velocity = velocity;
-    }
-}
-
-/// Nodal velocities projected from points. There are no separate velocities before the step.
-pub(crate) struct ProjectedVelocities<'a, S: Space>(pub(crate) &'a mut [S::Vector]);
-
-impl<S: Space> Field<S> for ProjectedVelocities<'_, S> {
-    const COUNTS: bool = false;
-    #[inline(always)]
-    fn velocity(&self, slot: usize) -> S::Vector {
-        self.0[slot]
-    }
-    #[inline(always)]
-    fn before(&self, slot: usize) -> S::Vector {
-        self.0[slot]
-    }
-    #[inline(always)]
-    fn set(&mut self, slot: usize, velocity: S::Vector) {
-        self.0[slot] = velocity;
+    pub(crate) const fn before(&self, slot: usize) -> S::Vector {
+        match self {
+            Self::Stepped(nodes) => nodes[slot].change,
+            Self::Projected(velocities) => velocities[slot],
+        }
     }
 }
 

@@ -185,7 +185,7 @@ impl<S: Space> Contacts<S> {
         lattice: &Lattice,
         boundary: &mut Boundary<S>,
         accounts: Option<&mut Accounts<S>>,
-        field: &mut impl Field<S>,
+        field: &mut Field<'_, S>,
     ) {
         let contact = scheme.setting.contact;
         if !Self::is_nodal(contact, state, boundary) {
