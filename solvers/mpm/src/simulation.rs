@@ -13,12 +13,11 @@ use crate::failure::Failure;
 use crate::grid::basis::{Basis, with_basis};
 use crate::grid::damping::Damping;
 use crate::grid::lattice::Lattice;
-use crate::grid::nodes::{Grid, Velocities};
+use crate::grid::nodes::Grid;
 use crate::material::stress;
 use crate::options::Setting;
-use crate::points::arrays::PointsMut;
 use crate::points::bodies::seed;
-use crate::points::share::{FEWEST, LargestDisplacement, ThreadPartition, cut_nodes};
+use crate::points::share::{FEWEST, cut_nodes};
 use crate::points::state::State;
 use crate::scheme::{Scheme, Surroundings};
 use crate::transfer::gather::gather;
@@ -121,7 +120,7 @@ impl<S: Space> Simulation<S> {
         self.spring_forces(record || self.wants_touches());
         self.step_nodes();
         self.gather();
-        self.move_on(if self.scheme.is_projected() { Velocities::Projected } else { Velocities::Stepped })
+        self.move_on()
     }
 
     /// Returns the memory (bytes) of points, tracers, nodes, contacts and the energy budget.
@@ -163,11 +162,10 @@ impl<S: Space> Simulation<S> {
 
     /// Updates stresses from the velocities scattered by points, before nodes are integrated.
     fn stress_first(&mut self) -> Result<(), Failure> {
-        self.grid.project();
+        self.grid.project(&self.state);
         self.finish_projection();
         let Self { scheme, state, grid, accounts, .. } = self;
-        let stay = |_: &mut ThreadPartition<S>, _: &mut PointsMut<'_, S>| LargestDisplacement::default();
-        let (flow, _) = stress::follow(scheme, state, (grid, Velocities::Projected), accounts.is_some(), stay)?;
+        let (flow, _) = stress::follow(scheme, state, grid, accounts.is_some(), None)?;
         if let Some(accounts) = accounts {
             accounts.add_flow(flow);
         }
@@ -249,29 +247,26 @@ impl<S: Space> Simulation<S> {
         }
         if self.scheme.is_projected() {
             self.finish_projection();
+        } else {
+            self.grid.project(&self.state);
         }
         let Self { scheme, surroundings, state, grid, accounts, .. } = self;
         if let Some(accounts) = accounts {
-            accounts.add_contacts(&state.team, scheme, surroundings.damping, grid);
+            accounts.add_contacts(&state.team, scheme.time_step, surroundings.damping, grid);
         }
     }
 
     /// Moves tracers and points, and updates stresses unless they were updated first. Rejects displacements above one
     /// cell.
-    fn move_on(&mut self, velocities: Velocities) -> Result<(), Failure> {
+    fn move_on(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, contacts, accounts, .. } = self;
         let cell = grid.lattice.shortest(S::DIMENSION);
-        contacts.move_tracers(scheme, state, grid, velocities);
+        contacts.move_tracers(scheme, state, grid);
         let start = with_basis!(scheme.setting.basis, B => B::START);
         let way = if scheme.has_stress_first() {
             state.move_points(&grid.lattice, start)
         } else {
-            let counts = accounts.is_some();
-            let lattice = &grid.lattice;
-            let go = |share: &mut ThreadPartition<S>, points: &mut PointsMut<'_, S>| {
-                share.move_points(points, lattice, start)
-            };
-            let (flow, way) = stress::follow(scheme, state, (grid, velocities), counts, go)?;
+            let (flow, way) = stress::follow(scheme, state, grid, accounts.is_some(), Some(start))?;
             if let Some(accounts) = accounts {
                 accounts.add_flow(flow);
             }

@@ -224,7 +224,7 @@ mod tests {
         for kind in ["sliding", "fixed"] {
             let mut simulation = scattered(kind, "[3.0, 5.0]");
             let Simulation { state, grid, boundary, .. } = &mut simulation;
-            grid.project();
+            grid.project(state);
             boundary.held.fold(&state.bodies, &mut grid.nodes, Vector2::zeros());
             boundary.hold_projected(state, grid);
             let window = state.bodies[0].part.window;

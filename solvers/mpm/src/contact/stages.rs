@@ -10,8 +10,8 @@ use crate::contact::shared::{Field, SharedNodes};
 use crate::contact::{ContactPoint, FrictionTable};
 use crate::energy::accounts::Accounts;
 use crate::grid::basis::with_basis;
-use crate::grid::lattice::{Lattice, Node};
-use crate::grid::nodes::{Grid, Velocities};
+use crate::grid::lattice::Lattice;
+use crate::grid::nodes::Grid;
 use crate::options::{Contact, StressUpdate};
 use crate::points::state::State;
 use crate::scheme::Scheme;
@@ -198,10 +198,10 @@ impl<S: Space> Contacts<S> {
         nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, tally }, field);
     }
 
-    /// Moves the tracers of all bodies; each thread handles a range of bodies.
-    pub(crate) fn move_tracers(&mut self, scheme: &Scheme, state: &State<S>, grid: &Grid<S>, velocities: Velocities) {
+    /// Moves the tracers of all bodies with the projected velocities; each thread handles a range of bodies.
+    pub(crate) fn move_tracers(&mut self, scheme: &Scheme, state: &State<S>, grid: &Grid<S>) {
         let Scheme { setting, time_step: elapsed, processor } = *scheme;
-        let Grid { lattice, nodes, projected, most, .. } = grid;
+        let Grid { lattice, projected: velocities, most, .. } = grid;
         let (count, members) = (self.tracers.len(), state.team.members());
         let mut left = self.tracers.lent();
         let mut bodies = &state.bodies[..];
@@ -216,18 +216,7 @@ impl<S: Space> Contacts<S> {
                 let (part, view) = (&body.part, tracers.take_off(slice::from_ref(body)));
                 with_basis!(setting.basis, B => {
                     let basis = PhantomData::<B>;
-                    match velocities {
-                        Velocities::Stepped => {
-                            let velocity = |node: &Node<S>| node.velocity;
-                            let motion = TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis };
-                            processor.run_by_four(motion);
-                        }
-                        Velocities::Projected => {
-                            let (nodes, velocity) = (projected, |velocity: &S::Vector| *velocity);
-                            let motion = TracerMotion { lattice, part, of: view, nodes, most, velocity, elapsed, basis };
-                            processor.run_by_four(motion);
-                        }
-                    }
+                    processor.run_by_four(TracerMotion { lattice, part, of: view, velocities, most, elapsed, basis });
                 });
             }
         });

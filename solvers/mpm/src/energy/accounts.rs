@@ -246,9 +246,8 @@ impl<S: Space> Accounts<S> {
     }
 
     /// Adds the sums over contacts. It must be called after points have transferred their new velocities to the nodes.
-    pub(crate) fn add_contacts(&mut self, team: &Team, scheme: &Scheme, damping: f64, grid: &Grid<S>) {
+    pub(crate) fn add_contacts(&mut self, team: &Team, time_step: f64, damping: f64, grid: &Grid<S>) {
         let Grid { nodes, projected, .. } = grid;
-        let time_step = scheme.time_step;
         let Self { sums, impulses, forces, springs, .. } = self;
         let Damping { keep, .. } = Damping::over(damping, time_step);
         let used = grid.used;
@@ -257,7 +256,7 @@ impl<S: Space> Accounts<S> {
             let mut sum = [0.0; 3];
             for slot in block {
                 let node = &nodes[slot];
-                let after = if scheme.is_projected() { projected[slot] } else { node.velocity };
+                let after = projected[slot];
                 sum[0] += S::dot(impulses[slot], (before(node, keep) + after) * 0.5);
                 sum[1] += 0.5 * S::dot(forces[slot], node.velocity - after);
                 sum[2] -= 0.5 * S::dot(springs[slot], after) * time_step;

@@ -13,21 +13,13 @@ use nalgebra::Vector3;
 /// Maximum number of nodes. A grid with more nodes is an error.
 const MOST_NODES: f64 = 5e7;
 
-/// Kind of node velocities that a stage uses.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Velocities {
-    /// Velocities after the step.
-    Stepped,
-    /// Velocities that points scatter to the nodes again.
-    Projected,
-}
-
 /// Lattice and nodes. The nodes of all windows are stored one window after another.
 #[derive(Clone, Debug)]
 pub(crate) struct Grid<S: Space> {
     pub(crate) lattice: Lattice,
     pub(crate) nodes: Vec<Node<S>>,
-    /// Momenta (kg m/s) that points scatter to the nodes again; later velocities (m/s).
+    /// Momenta (kg m/s) that points scatter to the nodes again, later velocities (m/s) of the stress update and of tracers.
+    /// If points do not scatter again, a copy of the node velocities.
     pub(crate) projected: Vec<S::Vector>,
     /// Weight limit of each node at a surface.
     pub(crate) most: Vec<f64>,
@@ -132,11 +124,11 @@ impl<S: Space> Grid<S> {
         });
     }
 
-    /// Copies the momenta that points have scattered. `StressUpdate::First` uses them.
-    pub(crate) fn project(&mut self) {
-        for (projected, node) in self.projected[..self.used].iter_mut().zip(&self.nodes) {
-            *projected = node.velocity;
-        }
+    /// Copies the momenta or velocities of the nodes.
+    pub(crate) fn project(&mut self, state: &State<S>) {
+        state.team.each(self.parts(&state.shares), |_, own| {
+            own.projected.iter_mut().zip(own.nodes).for_each(|(projected, node)| *projected = node.velocity);
+        });
     }
 
     /// Divides projected momenta by mass.

@@ -3,8 +3,7 @@
 use crate::energy::ledger::Flow;
 use crate::failure::Failure;
 use crate::grid::basis::with_basis;
-use crate::grid::lattice::Node;
-use crate::grid::nodes::{Grid, Velocities};
+use crate::grid::nodes::Grid;
 use crate::material::{Law, PointStep, VolumeRatio, with_law};
 use crate::options::Transfer;
 use crate::points::arrays::PointsMut;
@@ -19,6 +18,7 @@ use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::failure::Cause;
 use grainbench_solver::space::Space;
 use nalgebra::Matrix3;
+use std::marker::PhantomData;
 
 /// Material point with an invalid state, by its index.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -37,18 +37,19 @@ pub(crate) fn embed_deformation<S: Space>(deformation: S::Matrix) -> Matrix3<f64
     full
 }
 
-/// Computes velocity gradients, deformation and stress of the points, then calls `then` for each thread partition.
+/// Computes velocity gradients, deformation and stress of the points from the projected velocities. With `start`, the
+/// [`Basis::START`](crate::grid::basis::Basis::START) of the basis, it then moves the points.
 ///
-/// Returns the energies for the budget (zero unless `counts`) and the largest displacement that `then` returns.
+/// Returns the energies for the budget (zero unless `counts`) and the largest displacement of a point.
 ///
 /// # Errors
 /// Returns the failure of the first point with an invalid state.
 pub(crate) fn follow<S: Space>(
     scheme: &Scheme,
     state: &mut State<S>,
-    grid: (&Grid<S>, Velocities),
+    grid: &Grid<S>,
     counts: bool,
-    then: impl Fn(&mut ThreadPartition<S>, &mut PointsMut<'_, S>) -> LargestDisplacement + Sync,
+    start: Option<f64>,
 ) -> Result<(Flow, LargestDisplacement), Failure> {
     let State { bodies, points, shares, team, .. } = state;
     let mut left = points.lent();
@@ -59,7 +60,7 @@ pub(crate) fn follow<S: Space>(
         for number in 0..share.pieces.len() {
             follow_piece(scheme, share, number, bodies, &mut points, grid, counts);
         }
-        then(share, &mut points)
+        start.map_or_else(Default::default, |start| share.move_points(&mut points, &grid.lattice, start))
     };
     let way = team.fold(parts, follow, LargestDisplacement::default(), LargestDisplacement::farther);
     if let Some(failure) = shares.iter_mut().find_map(|share| share.failure.take()) {
@@ -81,10 +82,9 @@ fn follow_piece<S: Space>(
     number: usize,
     bodies: &[Body],
     points: &mut PointsMut<'_, S>,
-    (grid, velocities): (&Grid<S>, Velocities),
+    Grid { lattice, projected: velocities, .. }: &Grid<S>,
     counts: bool,
 ) {
-    let Grid { lattice, nodes, projected, .. } = grid;
     let Scheme { setting, time_step, processor } = *scheme;
     let ThreadPartition { runs, pieces, gradients, flows, failure, .. } = share;
     let (spins, piece) = (setting.transfer == Transfer::Spin, &pieces[number]);
@@ -92,19 +92,10 @@ fn follow_piece<S: Space>(
     let mut broken = None;
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
         let (ground, next) = Ground::and_next(lattice, part, runs, points);
-        macro_rules! find_gradients {
-            ($B:ty, $nodes:expr, $velocity:expr, $next:expr) => {{
-                let (nodes, velocity) = ($nodes, $velocity);
-                let find = Gradients::<S, $B, _, _>::new(ground, nodes, velocity, gradients, $next, time_step);
-                processor.run_by_four(find);
-            }};
-        }
-        with_basis!(setting.basis, B => match velocities {
-            Velocities::Stepped => find_gradients!(B, nodes, |node: &Node<S>| node.velocity, None),
-            Velocities::Projected => {
-                let next = scheme.moves_with_stress().then_some(next);
-                find_gradients!(B, projected, |velocity: &S::Vector| *velocity, next);
-            }
+        let next = scheme.moves_with_stress().then_some(next);
+        with_basis!(setting.basis, B => {
+            let basis = PhantomData::<B>;
+            processor.run_by_four(Gradients { ground, velocities, gradients, next, time_step, basis });
         });
         let (gradients, failure) = (&gradients[..], &mut broken);
         with_law!(*law, law => {

@@ -14,29 +14,27 @@ use std::ops::Range;
 
 /// Kernel that moves the tracers of a body for `elapsed` (s) and updates the boxes of their chunks.
 ///
-/// The node `velocity` (m/s) is interpolated over nodes with mass.
-pub(crate) struct TracerMotion<'a, S: Space, B, N, V> {
+/// The velocity is interpolated over nodes with mass.
+pub(crate) struct TracerMotion<'a, S: Space, B> {
     pub(crate) lattice: &'a Lattice,
     pub(crate) part: &'a Part,
     /// Tracers to move.
     pub(crate) of: TracersMut<'a, S>,
-    pub(crate) nodes: &'a [N],
+    /// Velocities of the nodes (m/s).
+    pub(crate) velocities: &'a [S::Vector],
     /// Weight limit of each node.
     pub(crate) most: &'a [f64],
-    pub(crate) velocity: V,
     pub(crate) elapsed: f64,
     pub(crate) basis: PhantomData<B>,
 }
 
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerMotion<'_, S, B, N, V> {
+impl<S: Space, B: Basis> FourKernel for TracerMotion<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, of: tracers, nodes, most, velocity, elapsed, .. } = self;
+        let Self { lattice, part, of: tracers, velocities, most, elapsed, .. } = self;
         let TracersMut { first, position, area, neighbours, chunks } = tracers;
         let zero = SimdPack::splat(lanes, 0.0);
-        // Placeholder that is overwritten before it is read.
-        let Some(&any) = nodes.first() else { return };
-        let (mut copies, mut most_copies): (Copies<N>, Copies<f64>) = ([any; _], [0.0; _]);
+        let (mut copies, mut most_copies): (Copies<S::Vector>, Copies<f64>) = ([S::ORIGIN; _], [0.0; _]);
         let mut range = 0..position.len();
         while !range.is_empty() {
             let (batch, base) = runs::first_batch::<S, B>(lattice, range.clone(), position);
@@ -44,7 +42,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerM
             if !part.window.holds(S::DIMENSION, base, B::WIDTH as i32) {
                 continue;
             }
-            let (seen, patch) = part.window.seen::<S, B, _>(base, nodes, &mut copies);
+            let (seen, patch) = part.window.seen::<S, B, _>(base, velocities, &mut copies);
             let (bounds, _) = part.window.seen::<S, B, _>(base, most, &mut most_copies);
             let at = batch.spread_vectors::<S, L>(lanes, position);
             let stencil = Stencil::around::<S, B>(lattice, base, at, [SimdPack::splat(lanes, part.half); 3]);
@@ -59,7 +57,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for TracerM
                     let value = across.value * values[node];
                     let weight = value.pick_below(bound, value, bound);
                     total = total + weight;
-                    let velocity = velocity(&seen[place]);
+                    let velocity = seen[place];
                     for (component, way) in way.iter_mut().enumerate().take(S::DIMENSION) {
                         *way = *way + weight * S::component(velocity, component);
                     }

@@ -9,44 +9,28 @@ use grainbench_solver::space::Space;
 use std::marker::PhantomData;
 
 /// Kernel that computes velocity gradients (1/s) at the points of some batches of a body.
-pub(crate) struct Gradients<'a, S: Space, B, N, V> {
-    ground: Ground<'a, S>,
-    nodes: &'a [N],
-    /// Function that returns the velocity of a node (m/s).
-    velocity: V,
-    gradients: &'a mut [S::Matrix],
+pub(crate) struct Gradients<'a, S: Space, B> {
+    pub(crate) ground: Ground<'a, S>,
+    /// Velocities of the nodes (m/s).
+    pub(crate) velocities: &'a [S::Vector],
+    pub(crate) gradients: &'a mut [S::Matrix],
     /// Next positions x_p + Δt Σ N_i(x_p) v_i (m), with the same index offset as the positions of `ground`. If `None`,
     /// they are not computed.
-    next: Option<&'a mut [S::Vector]>,
+    pub(crate) next: Option<&'a mut [S::Vector]>,
     /// Time step Δt (s).
-    time_step: f64,
-    basis: PhantomData<B>,
+    pub(crate) time_step: f64,
+    pub(crate) basis: PhantomData<B>,
 }
 
-impl<'a, S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> Gradients<'a, S, B, N, V> {
-    pub(crate) const fn new(
-        ground: Ground<'a, S>,
-        nodes: &'a [N],
-        velocity: V,
-        gradients: &'a mut [S::Matrix],
-        next: Option<&'a mut [S::Vector]>,
-        time_step: f64,
-    ) -> Self {
-        Self { ground, nodes, velocity, gradients, next, time_step, basis: PhantomData }
-    }
-}
-
-impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradients<'_, S, B, N, V> {
+impl<S: Space, B: Basis> FourKernel for Gradients<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { ground, nodes, velocity, gradients, mut next, time_step, .. } = self;
+        let Self { ground, velocities, gradients, mut next, time_step, .. } = self;
         let zero = SimdPack::splat(lanes, 0.0);
         let first = ground.runs.first().map_or(0, |run| run.start);
-        // Placeholder that is overwritten before it is read.
-        let Some(&any) = nodes.first() else { return };
-        let mut copies: Copies<N> = [any; _];
+        let mut copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in ground.runs {
-            let (seen, patch) = ground.part.window.seen::<S, B, _>(run.base, nodes, &mut copies);
+            let (seen, patch) = ground.part.window.seen::<S, B, _>(run.base, velocities, &mut copies);
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let [values, slopes] = stencil.along_x();
@@ -54,7 +38,7 @@ impl<S: Space, B: Basis, N: Copy, V: Fn(&N) -> S::Vector> FourKernel for Gradien
                 for row in 0..StencilBlock::rows::<S, B>() {
                     let across = stencil.across::<S, B>(row);
                     let nodes = &seen[patch.row::<S, B>(row)];
-                    let nodes = [velocity(&nodes[0]), velocity(&nodes[1]), velocity(&nodes[B::WIDTH - 1])];
+                    let nodes = [nodes[0], nodes[1], nodes[B::WIDTH - 1]];
                     let sums = gradient.iter_mut().zip(&mut around).enumerate().take(S::DIMENSION);
                     for (component, (gradient, around)) in sums {
                         let mut velocity = [zero; 3];
