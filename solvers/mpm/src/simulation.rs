@@ -176,7 +176,7 @@ impl<S: Space> Simulation<S> {
             with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let (stress, volume) = (points.stress[at], -points.volume[at]);
                 stencil.each::<S, B>(&body.part.window, |node| {
-                    nodes[node.slot].change += S::apply(stress, stencil.gradient(&node)) * volume;
+                    nodes[node.slot].change += S::apply(stress, stencil.gradient::<S>(&node)) * volume;
                 });
             }));
         }

@@ -198,7 +198,7 @@ impl<S: Space> SharedNodes<S> {
                 let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
                 stencil.each::<S, B>(&body.part.window, |node| {
                     let face = &mut self.faces[node.slot];
-                    face.normal += stencil.gradient(&node) * mass;
+                    face.normal += stencil.gradient::<S>(&node) * mass;
                     face.stress += stress * node.weight;
                 });
             });
@@ -316,12 +316,11 @@ impl<S: Space> SharedNodes<S> {
         let &SurfaceContact { body, other, position, normal, shift } = met;
         let window = bodies[body].part.window;
         let stencil = Stencil::new::<S, Linear>(lattice, position, [0.0; 3]);
-        if !window.holds(S::DIMENSION, stencil.base(), Linear::WIDTH as i32) {
+        if !window.holds(S::DIMENSION, stencil.base, Linear::WIDTH as i32) {
             return;
         }
-        let base = stencil.base();
         stencil.each::<S, Linear>(&window, |node| {
-            let place = [0, 1, 2].map(|axis| base[axis] + node.offset(axis));
+            let place = [0, 1, 2].map(|axis| stencil.base[axis] + node.axes[axis] as i32);
             let mass_of = |body: usize, slot: usize| {
                 let mass = nodes[slot].mass;
                 // A driven body has a prescribed motion and thus infinite mass.

@@ -149,7 +149,8 @@ impl Lattice {
 /// Nodes that influence a point (or four points with the same nodes), with their basis functions.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Stencil<N> {
-    base: [i32; 3],
+    /// First node along each axis.
+    pub(crate) base: [i32; 3],
     pub(crate) axes: [Axis<N>; 3],
     inverse: [f64; 3],
     /// Distance from the first node to the point (cells).
@@ -170,20 +171,13 @@ pub(crate) struct RowBasis<N> {
 
 /// Node of a stencil, with index and weight.
 #[derive(Clone, Copy, Debug)]
-pub(crate) struct StencilNode<S: Space> {
+pub(crate) struct StencilNode {
     /// Slot of the node in the common node array.
     pub(crate) slot: usize,
     /// Value of the node's basis function at the point.
     pub(crate) weight: f64,
-    axes: [usize; 3],
-    _space: std::marker::PhantomData<S>,
-}
-
-impl<S: Space> StencilNode<S> {
-    /// Returns the index of the node within the stencil along an axis.
-    pub(crate) const fn offset(&self, axis: usize) -> i32 {
-        self.axes[axis] as i32
-    }
+    /// Index of the node within the stencil along each axis.
+    pub(crate) axes: [usize; 3],
 }
 
 impl<N: Number> Stencil<N> {
@@ -257,13 +251,9 @@ impl Stencil<f64> {
         Self::around::<S, B>(lattice, lattice.first::<S, B>(position), S::embed(position).into(), half)
     }
 
-    pub(crate) const fn base(&self) -> [i32; 3] {
-        self.base
-    }
-
     /// Calls `visit` for every node of the stencil.
     #[inline(always)]
-    pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(StencilNode<S>)) {
+    pub(crate) fn each<S: Space, B: Basis>(&self, window: &Window, mut visit: impl FnMut(StencilNode)) {
         let solid = S::DIMENSION == 3;
         let row = window.size[0] as usize;
         let layer = row * window.size[1] as usize;
@@ -281,36 +271,24 @@ impl Stencil<f64> {
                 let y = z + window.along(1, self.base[1] + j as i32) * row;
                 let weight = across * self.axes[1].value[j];
                 for (i, x) in x.into_iter().enumerate().take(B::WIDTH) {
-                    visit(StencilNode {
-                        slot: y + x,
-                        weight: weight * self.axes[0].value[i],
-                        axes: [i, j, k],
-                        _space: std::marker::PhantomData,
-                    });
+                    visit(StencilNode { slot: y + x, weight: weight * self.axes[0].value[i], axes: [i, j, k] });
                 }
             }
         }
     }
 
-    /// Returns a vector whose component along each axis is a product of function values, with `other` instead of the
-    /// value along this axis (1/m).
+    /// Returns the gradient of the node's basis function at the point (1/m).
     #[inline(always)]
-    fn along<S: Space>(&self, node: &StencilNode<S>, other: impl Fn(&Axis<f64>) -> &[f64; 3]) -> S::Vector {
+    pub(crate) fn gradient<S: Space>(&self, node: &StencilNode) -> S::Vector {
         let [i, j, k] = node.axes;
         let [a, b, c] = &self.axes;
         let (x, y) = (a.value[i], b.value[j]);
         let z = if S::DIMENSION == 3 { c.value[k] } else { 1.0 };
         S::restrict(Vector3::new(
-            other(a)[i] * y * z * self.inverse[0],
-            x * other(b)[j] * z * self.inverse[1],
-            x * y * other(c)[k] * self.inverse[2],
+            a.slope[i] * y * z * self.inverse[0],
+            x * b.slope[j] * z * self.inverse[1],
+            x * y * c.slope[k] * self.inverse[2],
         ))
-    }
-
-    /// Returns the gradient of the node's basis function at the point (1/m).
-    #[inline(always)]
-    pub(crate) fn gradient<S: Space>(&self, node: &StencilNode<S>) -> S::Vector {
-        self.along(node, |axis| &axis.slope)
     }
 }
 
@@ -329,10 +307,10 @@ mod tests {
         for position in [Vector3::new(4.1, 7.3, -2.2), Vector3::new(0.35, -0.9, 3.6)] {
             let stencil = Stencil::new::<Solid, B>(&lattice, position, [0.2; 3]);
             let field = |node: [i32; 3]| slope.dot(&lattice.place::<Solid>(node));
-            let window = Window { low: stencil.base(), size: [3; 3], ..Window::default() };
+            let window = Window { low: stencil.base, size: [3; 3], ..Window::default() };
             let mut by_nodes = Vector3::zeros();
             stencil.each::<Solid, B>(&window, |node| {
-                by_nodes += stencil.gradient(&node) * field(window.node(node.slot));
+                by_nodes += stencil.gradient::<Solid>(&node) * field(window.node(node.slot));
             });
             assert!((by_nodes - slope).norm() < 1e-12, "{by_nodes}");
             let [values, slopes] = stencil.along_x();
@@ -341,7 +319,7 @@ mod tests {
                 let across = stencil.across::<Solid, B>(row);
                 for i in 0..B::WIDTH {
                     let offset = [i, row % B::WIDTH, row / B::WIDTH].map(|place| place as i32);
-                    let value = field([0, 1, 2].map(|axis| stencil.base()[axis] + offset[axis]));
+                    let value = field([0, 1, 2].map(|axis| stencil.base[axis] + offset[axis]));
                     let [y, z] = across.slope;
                     by_rows += Vector3::new(slopes[i] * across.value, values[i] * y, values[i] * z) * value;
                 }

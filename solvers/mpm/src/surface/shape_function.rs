@@ -50,7 +50,7 @@ impl<S: Space> SurfaceShapeFunction<S> {
         most: &[f64],
     ) -> Option<Self> {
         let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
-        if !part.window.holds(S::DIMENSION, stencil.base(), B::WIDTH as i32) {
+        if !part.window.holds(S::DIMENSION, stencil.base, B::WIDTH as i32) {
             return None;
         }
         let (mut total, mut velocity) = (0.0, S::ORIGIN);
