@@ -12,7 +12,6 @@ use crate::simulation::Simulation;
 use grainbench_scene::scene::{Scene, crossing_time};
 use grainbench_solver::failure::{Cause, SimulationFailure};
 use grainbench_solver::space::Space;
-use nalgebra::Vector3;
 
 /// Number of steps between two checks. A check takes about as long as two steps.
 const INTERVAL: u64 = 256;
@@ -177,22 +176,14 @@ impl<S: Space> Simulation<S> {
         let Self { scheme, state, grid, .. } = self;
         let elastic: f64 = state.bodies.iter().map(|body| self.elastic_energy(body)).sum();
         let kinetic = state.kinetic_energy(scheme.setting.basis, &grid.lattice);
-        [kinetic + elastic, self.height_energy()]
-    }
-
-    /// Returns the gravitational potential energy (J).
-    fn height_energy(&self) -> f64 {
-        let (points, gravity) = (&self.state.points, self.scene.gravity);
-        if gravity == Vector3::zeros() {
-            return 0.0;
-        }
-        (0..points.len()).map(|at| -points.mass[at] * gravity.dot(&S::embed(points.position[at]))).sum()
+        [kinetic + elastic, state.points.gravitational_energy(self.scene.gravity)]
     }
 
     /// Returns an estimate of the rounding error of the energy (J), from potential and initial energy and the number of
     /// steps.
     fn rounding(&self) -> f64 {
         let start = self.watched.map_or(0.0, |watched| watched.start.abs());
-        (start + self.height_energy().abs()) * f64::EPSILON * self.step as f64
+        let height = self.state.points.gravitational_energy(self.scene.gravity);
+        (start + height.abs()) * f64::EPSILON * self.step as f64
     }
 }

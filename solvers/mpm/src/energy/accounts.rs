@@ -76,7 +76,7 @@ pub(crate) struct Sums {
 }
 
 /// Sums since the start, and intermediate values of the current step.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct Accounts<S: Space> {
     pub(crate) sums: Sums,
     /// Energies of contacts in the last step.
@@ -165,15 +165,8 @@ fn added<const N: usize>(a: [f64; N], b: [f64; N]) -> [f64; N] {
 impl<S: Space> Accounts<S> {
     /// Starts a budget with the current state of the points.
     pub(crate) fn open(basis: Basis, state: &State<S>, lattice: &Lattice) -> Self {
-        Self {
-            sums: Sums { kinetic_at_start: state.kinetic_energy(basis, lattice), ..Sums::default() },
-            tally: Tally::default(),
-            impulses: Vec::new(),
-            forces: Vec::new(),
-            springs: Vec::new(),
-            held: 0.0,
-            brought: 0.0,
-        }
+        let sums = Sums { kinetic_at_start: state.kinetic_energy(basis, lattice), ..Sums::default() };
+        Self { sums, ..Self::default() }
     }
 
     /// Returns the memory in use (bytes).
@@ -290,13 +283,11 @@ impl<S: Space> Accounts<S> {
         let Self { sums, tally, .. } = self;
         let kinetic = state.kinetic_energy(setting.basis, lattice);
         let points = &state.points;
-        let all = 0..points.len();
-        let height = |at: usize| -points.mass[at] * gravity.dot(&S::embed(points.position[at]));
         Budget {
             kinetic,
             elastic,
             springs: tally.springs,
-            gravitational: all.clone().map(height).sum(),
+            gravitational: points.gravitational_energy(gravity),
             work: sums.work,
             plastic: sums.plastic,
             friction: sums.friction,
@@ -310,7 +301,7 @@ impl<S: Space> Accounts<S> {
                 Contact::Penalty => sums.taken - tally.springs - sums.friction,
                 _ => sums.work - sums.carried - sums.contacts - sums.friction,
             },
-            momentum: all.map(|at| S::embed(points.velocity[at]) * points.mass[at]).sum(),
+            momentum: (0..points.len()).map(|at| S::embed(points.velocity[at]) * points.mass[at]).sum(),
             impulse: sums.impulse,
         }
     }

@@ -64,6 +64,11 @@ impl<S: Space> Points<S> {
         (mass, moment / mass)
     }
 
+    /// Returns the gravitational potential energy of all points (J), relative to the origin. `gravity` is in m/s².
+    pub(crate) fn gravitational_energy(&self, gravity: Vector3<f64>) -> f64 {
+        (0..self.len()).map(|at| -self.mass[at] * gravity.dot(&S::embed(self.position[at]))).sum()
+    }
+
     /// Returns the affine part of the velocity of a point (1/s); zero if there is none.
     pub(crate) fn affine_of(&self, at: usize) -> S::Matrix {
         self.affine.get(at).copied().unwrap_or(S::NO_GRADIENT)
