@@ -58,7 +58,8 @@ impl FixedBoundaries {
                 to.mass += from.mass;
                 to.velocity += side.mirrored::<S>(from.velocity);
                 to.change += side.mirrored::<S>(from.change) + pull * from.mass;
-                nodes[beyond].mass = to_mass(nodes[inside].mass, from.mass);
+                // If the node has mass, it gets the mass of its mirror image, so that points use its velocity.
+                nodes[beyond].mass = if from.mass > 0.0 { nodes[inside].mass } else { 0.0 };
             });
         }
     }
@@ -96,12 +97,6 @@ impl FixedBoundaries {
             side.each_beyond(window, |beyond, inside| projected[beyond] = side.mirrored::<S>(projected[inside]));
         }
     }
-}
-
-/// Returns the mass of a node beyond the side. If the node has mass, it gets the mass of its mirror image, so that
-/// points use its velocity.
-fn to_mass(inside: f64, beyond: f64) -> f64 {
-    if beyond > 0.0 { inside } else { 0.0 }
 }
 
 impl Side {

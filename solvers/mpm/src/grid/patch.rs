@@ -110,11 +110,6 @@ impl<'a, T: Copy> NodeRows<'a, T> {
         Self { first, nodes }
     }
 
-    /// Reborrows the view.
-    pub(crate) fn lent(&mut self) -> NodeRows<'_, T> {
-        NodeRows { first: self.first, nodes: self.nodes }
-    }
-
     /// Returns a row, if the view contains it.
     #[inline(always)]
     pub(crate) fn row(&mut self, row: Range<usize>) -> Option<&mut [T]> {

@@ -91,7 +91,7 @@ fn follow_piece<S: Space>(
     let Body { part, law, owner, .. } = &bodies[piece.body];
     let mut broken = None;
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
-        let (ground, next) = Ground::and_next(lattice, part, runs, points);
+        let (ground, next) = Ground::lent(lattice, part, runs, points);
         let next = scheme.moves_with_stress().then_some(next);
         with_basis!(setting.basis, B => {
             let basis = PhantomData::<B>;

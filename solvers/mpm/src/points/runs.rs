@@ -105,20 +105,9 @@ impl<'a, S: Space> Ground<'a, S> {
         Self { lattice, part, runs, first: 0, deformation: &points.deformation, position: &points.position }
     }
 
-    /// Creates the view from a mutable view of points.
-    #[inline(always)]
-    pub(crate) fn lent(
-        lattice: &'a Lattice,
-        part: &'a Part,
-        runs: &'a [ParticleBatch],
-        points: &'a PointsMut<'_, S>,
-    ) -> Self {
-        Self { lattice, part, runs, first: points.first, deformation: points.deformation, position: points.position }
-    }
-
     /// Creates the view from a mutable view of points, and also returns the next positions of the points (m).
     #[inline(always)]
-    pub(crate) fn and_next(
+    pub(crate) fn lent(
         lattice: &'a Lattice,
         part: &'a Part,
         runs: &'a [ParticleBatch],

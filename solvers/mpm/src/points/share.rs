@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) const FEWEST: usize = 2000;
 
 /// Points and nodes of one thread, with the batches of the points.
-#[derive(Clone, Debug)]
+#[derive(Clone, Debug, Default)]
 pub(crate) struct ThreadPartition<S: Space> {
     /// Range of points in the common point arrays.
     pub(crate) points: Range<usize>,
@@ -73,18 +73,7 @@ impl LargestDisplacement {
 
 impl<S: Space> ThreadPartition<S> {
     pub(crate) fn new() -> Self {
-        Self {
-            points: 0..0,
-            nodes: 0..0,
-            alone_from: 0,
-            reach: 0,
-            runs: Vec::new(),
-            before: Vec::new(),
-            pieces: Vec::new(),
-            gradients: vec![S::NO_GRADIENT; LONGEST],
-            flows: Vec::new(),
-            failure: None,
-        }
+        Self { gradients: vec![S::NO_GRADIENT; LONGEST], ..Self::default() }
     }
 
     /// Iterates over the batches of the partition, body by body.

@@ -111,12 +111,8 @@ impl<S: Space> Tracers<S> {
     /// Splits the tracers of the body that was added last into chunks, and returns the indices of the chunks.
     pub(crate) fn cut(&mut self, tracers: Range<usize>) -> Range<usize> {
         let first = self.chunks.len();
-        let mut start = tracers.start;
-        while start < tracers.end {
-            let end = (start + RUN).min(tracers.end);
-            self.chunks.push(Chunk { tracers: start..end, low: S::ORIGIN, high: S::ORIGIN });
-            start = end;
-        }
+        let ranges = tracers.clone().step_by(RUN).map(|start| start..(start + RUN).min(tracers.end));
+        self.chunks.extend(ranges.map(|tracers| Chunk { tracers, low: S::ORIGIN, high: S::ORIGIN }));
         first..self.chunks.len()
     }
 

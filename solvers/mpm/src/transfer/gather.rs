@@ -130,7 +130,8 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Gather<'_, '_, S, B, T> {
                 reached = projected.reached::<S, B>(&part.window, run.base, &mut projected_copies);
             }
             for batch in run.batches() {
-                let stencil = Ground::lent(lattice, part, runs, points).stencil::<B, L>(lanes, run, batch);
+                let (ground, _) = Ground::lent(lattice, part, runs, points);
+                let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let batch = batch.counted_from(points.first);
                 let [values, _] = stencil.along_x();
                 let affine = stencil.affine_along_x();

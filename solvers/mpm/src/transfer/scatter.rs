@@ -34,10 +34,9 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
         own.fill(Node::EMPTY);
         projected.fill(S::ORIGIN);
         let start = shares[number].nodes.start;
-        let mut nodes = NodeRows::new(start, own);
         for (_, body, runs) in state.reaching(&shares[number].nodes) {
             let ground = Ground::new(&lattice, &body.part, runs, points);
-            let nodes = nodes.lent();
+            let nodes = NodeRows::new(start, &mut *own);
             with_basis!(setting.basis, B => match setting.transfer {
                 options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
                 options::Transfer::Apic => processor.run_by_four(Scatter::<S, B, Apic>::new(ground, points, nodes)),
