@@ -1,8 +1,6 @@
 //! Tests that absent effects take no memory, and that effects with a neutral value change no bit.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{collision, column, incline, run, scene};
 use grainbench_mpm::options::Transfer;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::effect::Effect;
@@ -10,7 +8,6 @@ use grainbench_scene::scene::{Duration, Scene};
 use grainbench_solver::Solver;
 use grainbench_solver::record::{Cost, Record};
 use grainbench_solver::resolution::Resolution;
-use support::{collision, column, incline, run, scene};
 
 const AT: Resolution = Resolution::grid(4.0, 2);
 

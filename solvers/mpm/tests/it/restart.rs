@@ -1,8 +1,6 @@
 //! Tests that a run continued from a checkpoint ends in the same bits as an uninterrupted run.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{collision, incline, scene};
 use grainbench_mpm::solver::Mpm;
 use grainbench_solver::Solver;
 use grainbench_solver::checkpoint::{Checkpoint, CheckpointError};
@@ -10,7 +8,6 @@ use grainbench_solver::failure::RunError;
 use grainbench_solver::observer::{Observer, RunOptions};
 use grainbench_solver::record::{Cost, Record};
 use grainbench_solver::resolution::Resolution;
-use support::{collision, incline, scene};
 
 /// Observer that stores every checkpoint of a run, after conversion to and from bytes.
 struct Keeper {
@@ -40,7 +37,7 @@ fn checkpoints(solver: Mpm, text: &str, at: &Resolution, every: u64) -> (String,
 }
 
 /// A short run of a rolling sphere.
-const SPHERE: &str = include_str!("scenes/rolling-sphere.toml");
+const SPHERE: &str = include_str!("../scenes/rolling-sphere.toml");
 
 /// Returns a collision in which one disc is driven, with an energy budget.
 fn driven() -> String {

@@ -1,11 +1,8 @@
 //! Tests of a disc and a sphere on a rigid plane.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, incline, last, run};
 use grainbench_mpm::solver::Mpm;
 use grainbench_solver::record::Cost;
-use support::{column, incline, last, run};
 
 /// Returns the error of the displacement relative to a rigid disc (%), and the ratio of rolling to translation.
 fn error(solver: &str, (slope, friction, duration): (f64, f64, f64), cells: f64, settled: bool) -> (f64, f64) {

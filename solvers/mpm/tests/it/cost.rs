@@ -1,10 +1,7 @@
 //! Tests of the cost of runs, with counts that do not depend on the machine.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::run;
 use grainbench_solver::record::Cost;
-use support::run;
 
 const MATERIAL: &str = "materials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
     contacts.m = { between = ['m', 'm'], law = 'coulomb', friction = 0.5 }\n";

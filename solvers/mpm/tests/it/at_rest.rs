@@ -1,11 +1,8 @@
 //! Tests that bodies with the initial stress of their weight stay at rest.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, try_run};
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_solver::resolution::Resolution;
-use support::{column, try_run};
 
 /// Density (kg/m³).
 const DENSITY: f64 = 1800.0;

@@ -1,12 +1,9 @@
 //! Tests of contact spring forces against hand calculations: at a wall, between bodies, on a belt, in a moving frame.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, incline, last, run, try_run};
 use grainbench_mpm::options::Setting;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use support::{column, incline, last, run, try_run};
 
 /// Plane modulus E' = E/(1 − ν²) for E = 100 Pa and ν = .3: 100/.91 Pa.
 const PLANE_MODULUS: f64 = 109.890_109_890_109_89;

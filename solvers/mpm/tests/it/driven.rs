@@ -1,10 +1,7 @@
 //! Tests of driven grains and of the energy budget of their work.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{collision, column, last, run, scene, try_run};
 use grainbench_solver::resolution::Resolution;
-use support::{collision, column, last, run, scene, try_run};
 
 /// Returns a collision in which the left disc is driven, so fast that the right disc cannot escape. With `yields`, the
 /// discs yield.

@@ -1,13 +1,10 @@
 //! Tests of collisions of two and three deformable discs, of conserved quantities, and of dissipation by viscosity.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{SPEED, collision, column, energy, last, run, try_run};
 use grainbench_mpm::solver::Mpm;
 use grainbench_solver::Solver;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use support::{SPEED, collision, column, energy, last, run, try_run};
 
 fn momentum_drift(record: &Record) -> f64 {
     let pair = column(record, "all.momentum_x").iter().zip(column(record, "all.momentum_y"));
@@ -80,7 +77,7 @@ fn nodal_contacts_do_what_they_are_known_for() {
 /// Discs of materials without a contact law pass through each other.
 #[test]
 fn without_a_law_nothing_is_felt() {
-    let mut scene = support::scene(&collision(0.5, 0.0, 0.0));
+    let mut scene = crate::support::scene(&collision(0.5, 0.0, 0.0));
     scene.laws = vec![None];
     for solver in ["mpm", "mpm:gap", "mpm:2000", "mpm:2001"] {
         let solver = Mpm::named(solver).unwrap();

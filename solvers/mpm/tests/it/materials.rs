@@ -1,5 +1,4 @@
 //! Tests of constitutive laws at a point.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_mpm::material::{Hypoelastic, KelvinVoigt, Law, NeoHookean, PointStep, State, VolumeRatio, VonMises};
 use grainbench_solver::space::{Plane, Solid, Space};

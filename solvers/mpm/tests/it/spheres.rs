@@ -1,10 +1,7 @@
 //! Tests of collisions of two deformable spheres.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{SPEED, column, energy, last, run};
 use grainbench_solver::record::Record;
-use support::{SPEED, column, energy, last, run};
 
 /// Returns two equal spheres of radius 1 that approach at .01 c each from a gap (m), each with an offset of `offset`
 /// (m).

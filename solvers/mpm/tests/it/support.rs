@@ -1,5 +1,4 @@
 //! Scenes and helper functions of the tests.
-#![allow(dead_code, unreachable_pub, reason = "each test file takes what it needs")]
 
 use grainbench_mpm::options::Setting;
 use grainbench_mpm::solver::Mpm;
@@ -12,15 +11,15 @@ use grainbench_solver::resolution::Resolution;
 use std::path::Path;
 
 /// Speed of each of two bodies that collide: .01 of the speed of sound (m/s).
-pub const SPEED: f64 = 0.042_426_406_871_192_85;
+pub(crate) const SPEED: f64 = 0.042_426_406_871_192_85;
 
-pub fn scene(text: &str) -> Scene {
+pub(crate) fn scene(text: &str) -> Scene {
     SceneSource::from_text("test", Path::new(""), &format!("title = 'test'\n{text}"))
         .scene(&grainbench_scene::resolve::no_data_file)
         .unwrap()
 }
 
-pub fn try_run(
+pub(crate) fn try_run(
     solver: &str,
     change: impl FnOnce(&mut Setting),
     text: &str,
@@ -29,25 +28,25 @@ pub fn try_run(
     Mpm::named(solver).unwrap().with(change).run(&scene(text), &at, &mut ())
 }
 
-pub fn run(solver: &str, text: &str, cells: f64, points: u32) -> Record {
+pub(crate) fn run(solver: &str, text: &str, cells: f64, points: u32) -> Record {
     try_run(solver, |_| (), text, Resolution::grid(cells, points)).unwrap()
 }
 
-pub fn column<'a>(record: &'a Record, name: &str) -> &'a [f64] {
+pub(crate) fn column<'a>(record: &'a Record, name: &str) -> &'a [f64] {
     record.series.column(name).unwrap()
 }
 
-pub fn last(record: &Record, name: &str) -> f64 {
+pub(crate) fn last(record: &Record, name: &str) -> f64 {
     *column(record, name).last().unwrap()
 }
 
 /// Returns the total energy at the end of a run, divided by its initial value.
-pub fn energy(record: &Record) -> f64 {
+pub(crate) fn energy(record: &Record) -> f64 {
     last(record, "all.total_energy") / column(record, "all.total_energy")[0]
 }
 
 /// Returns the disc on an incline of Bardenhagen, Brackbill & Sulsky (2000), released at t = 0 or after relaxation.
-pub fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> String {
+pub(crate) fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> String {
     let start = if settled {
         let pull = -9.8 * slope_deg.to_radians().cos();
         format!("settle = {{ duration = 0.3, damping = 60.0, gravity = [0.0, {pull}] }}")
@@ -65,7 +64,7 @@ pub fn incline(slope_deg: f64, friction: f64, duration: f64, settled: bool) -> S
 }
 
 /// Returns two equal elastic discs of radius 1 that approach at .01 c each from a gap (m).
-pub fn collision(gap: f64, friction: f64, offset: f64) -> String {
+pub(crate) fn collision(gap: f64, friction: f64, offset: f64) -> String {
     let speed = 0.01 * 18.0_f64.sqrt();
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
     let duration = 0.5 * gap / speed + 40.0 / 18.0_f64.sqrt();

@@ -1,13 +1,10 @@
 //! Tests of freely spinning bodies. Incremental laws must keep their size, and the full inertia tensor must give their
 //! spin.
-#![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, last, run};
 use grainbench_solver::record::{Record, Snapshot};
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use support::{column, last, run};
 
 /// Density (kg/m³).
 const DENSITY: f64 = 1000.0;

@@ -1,13 +1,10 @@
 //! Tests of one body without contact: flight, rotation, vibration, manufactured motion and failures.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, last, run, scene, try_run};
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_scene::manufactured::Medium;
 use grainbench_solver::failure::{Cause, RunError};
 use grainbench_solver::resolution::Resolution;
-use support::{column, last, run, scene, try_run};
 
 /// A spinning disc or sphere falls freely. The fall is exact to rounding, and the spin is conserved.
 #[test]
@@ -132,7 +129,7 @@ fn manufactured_motion_converges_at_second_order() {
 fn hats_with_stress_last_break_typed() {
     let last = |setting: &mut Setting| setting.stress_update = StressUpdate::Last;
     let at = Resolution::grid(4.0, 3);
-    let error = try_run("mpm:penalty", last, &support::incline(60.0, 0.3, 1.0, false), at).unwrap_err();
+    let error = try_run("mpm:penalty", last, &crate::support::incline(60.0, 0.3, 1.0, false), at).unwrap_err();
     let RunError::Broken(broken) = error else { panic!("{error}") };
     let typed = matches!(
         broken.cause,
@@ -152,7 +149,7 @@ fn what_cannot_be_run_is_refused() {
         [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = [0.0, 0.0]\n";
     let refused = |text: &str, at| try_run("mpm", |_| (), text, at).unwrap_err();
     assert!(matches!(refused(bare, Resolution::grid(4.0, 2)), RunError::Unsupported { .. }));
-    let incline = support::incline(30.0, 0.5, 1.0, true);
+    let incline = crate::support::incline(30.0, 0.5, 1.0, true);
     assert!(matches!(refused(&incline, Resolution::TimeStep(1e-3)), RunError::Resolution { .. }));
     assert!(matches!(refused(&incline, Resolution::grid(f64::NAN, 2)), RunError::Resolution { .. }));
 }

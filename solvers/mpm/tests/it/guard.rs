@@ -1,13 +1,10 @@
 //! Tests of runs that stop because the time step became too long, energy was created, or bodies overlap at the start. A
 //! bar at rest under tension must not stop.
-#![allow(clippy::unwrap_used, clippy::panic, reason = "a test fails by panicking")]
 
-mod support;
-
+use crate::support::{column, try_run};
 use grainbench_mpm::options::{Basis, Setting, StressUpdate, Transfer};
 use grainbench_solver::failure::{Cause, RunError, SimulationFailure};
 use grainbench_solver::resolution::Resolution;
-use support::{column, try_run};
 
 const AT: Resolution = Resolution::grid(4.0, 3);
 
