@@ -1,6 +1,6 @@
 //! Tests of contact spring forces against hand calculations: at a wall, between bodies, on a belt, in a moving frame.
 
-use crate::support::{column, incline, last, run, try_run};
+use crate::support::{change, column, incline, last, run, try_run};
 use grainbench_mpm::options::Setting;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
@@ -146,7 +146,7 @@ fn an_incline_in_a_moving_frame_is_an_incline() {
     };
     let way = |text: &str| {
         let record = run("mpm", text, 8.0, 3);
-        (last(&record, "g.x") - column(&record, "g.x")[0], record.series.time[record.series.time.len() - 1])
+        (change(&record, "g.x"), record.series.time[record.series.time.len() - 1])
     };
     let (way_at_rest, _) = way(&at_rest);
     let (way_moving, end) = way(&moving(speed));
@@ -181,9 +181,7 @@ fn braked(solver: &str, wall: f64) -> f64 {
          motion = [{{ velocity = [{wall:?}, 0.0] }}]\n[output]\nevery = 0.1\n[probes]\nb.body = 'b'\n",
         wall + 1.0
     );
-    let record = run(solver, &text, 4.0, 2);
-    let velocity = column(&record, "b.vx");
-    velocity[velocity.len() - 1] - velocity[0]
+    change(&run(solver, &text, 4.0, 2), "b.vx")
 }
 
 /// Coulomb friction changes the velocity by μ g t = .49 m/s in .1 s in any frame. With a wall at −2 m/s the block moves

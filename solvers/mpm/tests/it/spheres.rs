@@ -3,14 +3,9 @@
 use crate::support::{SPEED, column, energy, last, run};
 use grainbench_solver::record::Record;
 
-/// Returns two equal spheres of radius 1 that approach at .01 c each from a gap (m), each with an offset of `offset`
-/// (m).
-fn collision(gap: f64, friction: f64, offset: f64) -> String {
-    impact(gap, friction, offset, SPEED, 5.0)
-}
-
-/// Returns two equal spheres that approach at `speed` (m/s) each. The run lasts gap/(2 speed) + `rest` (s).
-fn impact(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
+/// Returns two equal spheres of radius 1 that approach at `speed` (m/s) each from a gap (m), each with an offset of
+/// `offset` (m). The run lasts gap/(2 speed) + `rest` (s).
+fn collision(gap: f64, friction: f64, offset: f64, speed: f64, rest: f64) -> String {
     let half = 0.5 * ((2.0 + gap).powi(2) - (2.0 * offset).powi(2)).sqrt();
     let duration = 0.5 * gap / speed + rest;
     format!(
@@ -42,7 +37,7 @@ fn spheres_rebound() {
         ("mpm", 0.94..1.01, 0.87..1.005),
         ("mpm:gap", 0.96..1.005, 0.93..1.005),
     ] {
-        let record = run(solver, &collision(0.1, 0.0, 0.0), 4.0, 2);
+        let record = run(solver, &collision(0.1, 0.0, 0.0, SPEED, 5.0), 4.0, 2);
         assert!(energies.contains(&energy(&record)), "{solver}: {}", energy(&record));
         let restitution = -last(&record, "a.vx") / SPEED;
         assert!(restitutions.contains(&restitution), "{solver}: {restitution}");
@@ -54,16 +49,16 @@ fn spheres_rebound() {
 /// The 2001 criterion along each body's own normal does not conserve momentum.
 #[test]
 fn own_normals_do_not_keep_momentum_in_space() {
-    let record = run("mpm:2001", &collision(0.1, 0.0, 0.0), 4.0, 2);
+    let record = run("mpm:2001", &collision(0.1, 0.0, 0.0, SPEED, 5.0), 4.0, 2);
     assert!(momentum_drift(&record) > 1e-3, "{}", momentum_drift(&record));
 }
 
 /// In an off-centre collision, spheres hardly rotate without friction. With friction both rotate alike.
 #[test]
 fn friction_turns_spheres() {
-    let smooth = run("mpm", &collision(0.1, 0.0, 0.5), 4.0, 2);
+    let smooth = run("mpm", &collision(0.1, 0.0, 0.5, SPEED, 5.0), 4.0, 2);
     assert!(last(&smooth, "a.omega_z").abs() < 0.04 * SPEED, "{}", last(&smooth, "a.omega_z") / SPEED);
-    let rough = run("mpm", &collision(0.1, 0.2, 0.5), 4.0, 2);
+    let rough = run("mpm", &collision(0.1, 0.2, 0.5, SPEED, 5.0), 4.0, 2);
     let spins = [last(&rough, "a.omega_z"), last(&rough, "b.omega_z")].map(|spin| spin / SPEED);
     assert!((spins[0] - spins[1]).abs() < 1e-9 && (0.5..0.62).contains(&spins[0]), "{spins:?}");
     assert!(momentum_drift(&rough) < 1e-12 && energy(&rough) < energy(&smooth));
@@ -81,7 +76,7 @@ fn slow_spheres_touch_for_hertz_time() {
         let approached = (15.0 * mass * approach.powi(2) / (16.0 * modulus * radius.sqrt())).powf(0.4);
         let time = 2.94 * approached / approach;
         let moduli = format!("bulk_modulus = {}, shear_modulus = {}", 10.0 * softer, 6.0 * softer);
-        let text = impact(0.02 * approached, 0.0, 0.0, speed, 1.4 * time)
+        let text = collision(0.02 * approached, 0.0, 0.0, speed, 1.4 * time)
             .replace("bulk_modulus = 10.0, shear_modulus = 6.0", &moduli);
         let record = run("mpm", &text, 8.0, 2);
         let force = column(&record, "c.normal_force");

@@ -40,6 +40,11 @@ pub(crate) fn last(record: &Record, name: &str) -> f64 {
     *column(record, name).last().unwrap()
 }
 
+/// Returns the difference between the last and the first value of a column.
+pub(crate) fn change(record: &Record, name: &str) -> f64 {
+    last(record, name) - column(record, name)[0]
+}
+
 /// Returns the total energy at the end of a run, divided by its initial value.
 pub(crate) fn energy(record: &Record) -> f64 {
     last(record, "all.total_energy") / column(record, "all.total_energy")[0]
