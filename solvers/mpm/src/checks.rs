@@ -131,7 +131,7 @@ impl<S: Space> Simulation<S> {
         let points = &state.points;
         let mut least = (*critical, 0, 0);
         for (place, body) in state.bodies.iter().enumerate() {
-            with_law!(&body.law, law => for at in body.part.points.clone() {
+            with_law!(&body.law, law => for at in body.points.clone() {
                 let ratio = points.volume[at] / points.reference_volume[at];
                 let finger = S::embed_symmetric(S::finger(points.deformation[at]));
                 let viscosity = body.deformable.longitudinal_viscosity() * ratio;
@@ -164,7 +164,7 @@ impl<S: Space> Simulation<S> {
         let points = &self.state.points;
         let squared = |at: usize| S::dot(points.velocity[at], points.velocity[at]);
         let bodies = self.state.bodies.iter().enumerate();
-        let all = bodies.flat_map(|(place, body)| body.part.points.clone().map(move |at| (place, at)));
+        let all = bodies.flat_map(|(place, body)| body.points.clone().map(move |at| (place, at)));
         let fastest = all.max_by(|a, b| squared(a.1).total_cmp(&squared(b.1)));
         let (place, point) = fastest.unwrap_or_default();
         let cause = Cause::GainedEnergy { gained, allowed };

@@ -76,7 +76,7 @@ impl<S: Space> Simulation<S> {
             uneven_angular_momentum += whole.angular_momentum - whole.spin * inertia;
         }
         let points = if with_points {
-            self.state.bodies.iter().flat_map(|body| body.part.points.clone().map(|at| self.point(body, at))).collect()
+            self.state.bodies.iter().flat_map(|body| body.points.clone().map(|at| self.point(body, at))).collect()
         } else {
             Vec::new()
         };
@@ -130,7 +130,7 @@ impl<S: Space> Simulation<S> {
 
     fn whole(&mut self, body: usize) -> WholeBodyMotion {
         let points = &self.state.points;
-        let range = self.state.bodies[body].part.points.clone();
+        let range = self.state.bodies[body].points.clone();
         let (mass, position) = points.centre_of_mass(range.clone());
         let momentum: Vector3<f64> = range.clone().map(|at| self.velocity(at) * points.mass[at]).sum();
         let velocity = momentum / mass;
@@ -184,7 +184,7 @@ impl<S: Space> Simulation<S> {
     }
 
     pub(crate) fn elastic_energy(&self, body: &Body) -> f64 {
-        let range = body.part.points.clone();
+        let range = body.points.clone();
         with_law!(&body.law, law => range.map(|at| self.state.points.reference_volume[at] * law.energy(&self.state_of(at))).sum())
     }
 
@@ -217,10 +217,9 @@ impl<S: Space> Simulation<S> {
             };
             let Some(body) = self.state.bodies.iter().find(|body| body.owner == owner) else { continue };
             let away = |at: usize| (S::embed(self.state.points.start[at]) - spot.at).norm();
-            let nearest = body.part.points.clone().map(away).fold(f64::INFINITY, f64::min);
+            let nearest = body.points.clone().map(away).fold(f64::INFINITY, f64::min);
             let reach = nearest + 1e-6 * self.grid.lattice.shortest(S::DIMENSION);
             let mut found: Vec<(u32, PointState)> = body
-                .part
                 .points
                 .clone()
                 .filter(|&at| away(at) <= reach)

@@ -133,7 +133,7 @@ impl<S: Space> Simulation<S> {
     pub(crate) fn place_windows(&mut self) -> Result<(), Failure> {
         let Self { scheme, state, grid, .. } = self;
         let placed = grid.place_windows(&mut state.bodies, scheme.has_one_field());
-        placed.map_err(|(place, cause)| state.failure(place, state.bodies[place].part.points.start, cause))
+        placed.map_err(|(place, cause)| state.failure(place, state.bodies[place].points.start, cause))
     }
 
     /// Partitions the points among threads and scatters them to the nodes.
@@ -173,9 +173,9 @@ impl<S: Space> Simulation<S> {
         nodes[..*used].iter_mut().for_each(|node| node.change = S::ORIGIN);
         for body in &state.bodies {
             let points = &state.points;
-            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
+            with_basis!(scheme.setting.basis, B => body.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let (stress, volume) = (points.stress[at], -points.volume[at]);
-                stencil.each::<S, B>(&body.part.window, |node| {
+                stencil.each::<S, B>(&body.window, |node| {
                     nodes[node.slot].change += S::apply(stress, stencil.gradient::<S>(&node)) * volume;
                 });
             }));
@@ -197,9 +197,9 @@ impl<S: Space> Simulation<S> {
         let Self { scheme, state: State { bodies, points, .. }, grid: Grid { lattice, nodes, .. }, .. } = self;
         for body in bodies.iter() {
             let medium = body.medium();
-            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
+            with_basis!(scheme.setting.basis, B => body.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let force = S::restrict(motion.body_force(&medium, S::embed(points.start[at]), time)) * points.mass[at];
-                stencil.each::<S, B>(&body.part.window, |node| nodes[node.slot].change += force * node.weight);
+                stencil.each::<S, B>(&body.window, |node| nodes[node.slot].change += force * node.weight);
             }));
         }
     }

@@ -57,8 +57,8 @@ impl<S: Space> Simulation<S> {
             let medium = body.medium();
             // A relaxed grain has moved. It must rotate about its current centre of mass. Otherwise its rotation would
             // add to the velocity of its centre.
-            let (_, centre) = points.centre_of_mass(body.part.points.clone());
-            for at in body.part.points.clone() {
+            let (_, centre) = points.centre_of_mass(body.points.clone());
+            for at in body.points.clone() {
                 let position = S::embed(points.position[at]);
                 let (mut velocity, gradient) = match body.owner {
                     Owner::Grain(id) => {
@@ -122,9 +122,9 @@ impl<S: Space> Simulation<S> {
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         let Grid { lattice, nodes, .. } = grid;
         for body in &state.bodies {
-            with_basis!(scheme.setting.basis, B => body.part.each_stencil::<S, B>(lattice, &state.points, |at, stencil| {
+            with_basis!(scheme.setting.basis, B => body.each_stencil::<S, B>(lattice, &state.points, |at, stencil| {
                 accelerations[at] = S::ORIGIN;
-                stencil.each::<S, B>(&body.part.window, |node| {
+                stencil.each::<S, B>(&body.window, |node| {
                     accelerations[at] += nodes[node.slot].change * node.weight;
                 });
             }));

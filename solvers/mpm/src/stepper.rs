@@ -92,7 +92,7 @@ impl<S: Space> Stepper for Simulation<S> {
             friction: self.contacts.springs.clone(),
             angles: state.bodies.iter().map(|body| body.angle).collect(),
             looked: self.looked,
-            runs_in_order: state.bodies.iter().map(|body| body.part.runs_in_order).collect(),
+            runs_in_order: state.bodies.iter().map(|body| body.runs_in_order).collect(),
             step: self.step,
             cost: self.cost,
             accounts: self.accounts.as_ref().map(|accounts| (accounts.sums, accounts.tally)),
@@ -127,7 +127,7 @@ impl<S: Space> Stepper for Simulation<S> {
         (contacts.tracers.position, contacts.tracers.area) = kept.tracers.into_iter().unzip();
         contacts.springs = kept.friction;
         for ((body, angle), runs) in state.bodies.iter_mut().zip(kept.angles).zip(kept.runs_in_order) {
-            (body.angle, body.part.runs_in_order) = (angle, runs);
+            (body.angle, body.runs_in_order) = (angle, runs);
         }
         state.find_all_bounds(&mut contacts.tracers);
         self.looked = kept.looked;

@@ -71,7 +71,7 @@ impl<S: Space> DrivenGroups<S> {
         for body in bodies {
             let Some(group) = body.driven else { continue };
             let group = &mut self.groups[usize::from(group)];
-            for at in body.part.points.clone() {
+            for at in body.points.clone() {
                 let free = points.velocity[at] * damping.keep + gravity * damping.gain;
                 group.own += (free - group.velocity) * (points.mass[at] / time_step);
             }
@@ -91,9 +91,9 @@ impl<S: Space> DrivenGroups<S> {
         self.held.clear();
         for body in bodies {
             let Some(group) = body.driven else { continue };
-            let window = &body.part.window;
+            let window = &body.window;
             if one_field {
-                with_basis!(basis, B => body.part.each_stencil::<S, B>(lattice, points, |_, stencil| {
+                with_basis!(basis, B => body.each_stencil::<S, B>(lattice, points, |_, stencil| {
                     stencil.each::<S, B>(window, |node| self.held.push((node.slot, group)));
                 }));
             } else {
@@ -132,12 +132,12 @@ impl<S: Space> DrivenGroups<S> {
         for body in bodies {
             let Some(group) = body.driven else { continue };
             let group = &mut self.groups[usize::from(group)];
-            for at in body.part.points.clone() {
+            for at in body.points.clone() {
                 group.force += (points.velocity[at] - group.velocity) * (points.mass[at] / time_step);
                 points.velocity[at] = group.velocity;
             }
             if !points.affine.is_empty() {
-                points.affine[body.part.points.clone()].fill(S::NO_GRADIENT);
+                points.affine[body.points.clone()].fill(S::NO_GRADIENT);
             }
         }
     }

@@ -52,7 +52,7 @@ impl FixedBoundaries {
     pub(crate) fn fold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>], gravity: S::Vector) {
         for side in &self.sides {
             let pull = side.mirrored::<S>(gravity) - gravity;
-            side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
+            side.each_beyond(&bodies[side.body].window, |beyond, inside| {
                 let from = nodes[beyond];
                 let to = &mut nodes[inside];
                 to.mass += from.mass;
@@ -67,7 +67,7 @@ impl FixedBoundaries {
     /// Adds the contribution of the mirror image to projected momenta.
     pub(crate) fn fold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
         for side in &self.sides {
-            side.each_beyond(&bodies[side.body].part.window, |beyond, inside| {
+            side.each_beyond(&bodies[side.body].window, |beyond, inside| {
                 let from = side.mirrored::<S>(projected[beyond]);
                 projected[inside] += from;
             });
@@ -77,7 +77,7 @@ impl FixedBoundaries {
     /// Sets the velocities of nodes on the sides and beyond them.
     pub(crate) fn hold<S: Space>(&self, bodies: &[Body], nodes: &mut [Node<S>]) {
         for side in &self.sides {
-            let window = &bodies[side.body].part.window;
+            let window = &bodies[side.body].window;
             side.each_on(window, |slot| {
                 nodes[slot].velocity = side.kept::<S>(nodes[slot].velocity);
                 nodes[slot].change = side.kept::<S>(nodes[slot].change);
@@ -92,7 +92,7 @@ impl FixedBoundaries {
     /// Sets the projected velocities of nodes on the sides and beyond them.
     pub(crate) fn hold_projected<S: Space>(&self, bodies: &[Body], projected: &mut [S::Vector]) {
         for side in &self.sides {
-            let window = &bodies[side.body].part.window;
+            let window = &bodies[side.body].window;
             side.each_on(window, |slot| projected[slot] = side.kept::<S>(projected[slot]));
             side.each_beyond(window, |beyond, inside| projected[beyond] = side.mirrored::<S>(projected[inside]));
         }
@@ -196,7 +196,7 @@ mod tests {
         for (kind, along) in [("sliding", 5.0), ("fixed", 5.0 * (1.0 - 1.0 / 32.0))] {
             let mut simulation = held(kind, "[3.0, 5.0]");
             simulation.cycle(false).expect("it holds together");
-            let (lattice, window) = (simulation.grid.lattice, simulation.state.bodies[0].part.window);
+            let (lattice, window) = (simulation.grid.lattice, simulation.state.bodies[0].window);
             assert!(lattice.cell[0] == 1.0 && lattice.origin == [0.0; 3], "{lattice:?}");
             let node = |x: i32| simulation.grid.nodes[window.slot([x, 4, 0])];
             let on_side = if kind == "sliding" { Vector2::new(0.0, 5.0) } else { Vector2::zeros() };
@@ -222,7 +222,7 @@ mod tests {
             grid.project(state);
             boundary.held.fold(&state.bodies, &mut grid.nodes, Vector2::zeros());
             boundary.hold_projected(state, grid);
-            let window = state.bodies[0].part.window;
+            let window = state.bodies[0].window;
             for x in 1..6 {
                 let slot = window.slot([x, 4, 0]);
                 let expected = grid.nodes[slot].velocity / grid.nodes[slot].mass;
@@ -243,7 +243,7 @@ mod tests {
             let Simulation { state, grid, boundary, .. } = &mut simulation;
             let gravity = Vector2::new(3.0, 7.0);
             boundary.held.fold(&state.bodies, &mut grid.nodes, gravity);
-            let node = grid.nodes[state.bodies[0].part.window.slot([1, 4, 0])];
+            let node = grid.nodes[state.bodies[0].window.slot([1, 4, 0])];
             let found = node.change / node.mass + gravity;
             let expected = Vector2::new(3.0 * (1.0 - 1.0 / 32.0), along);
             assert!((found - expected).norm() < 1e-13, "{kind}: {found}");

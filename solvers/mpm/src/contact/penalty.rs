@@ -73,8 +73,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     if depth <= 0.0 {
                         continue;
                     }
-                    let Some(grip) =
-                        SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &body.part, position, nodes, most)
+                    let Some(grip) = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, body, position, nodes, most)
                     else {
                         continue;
                     };
@@ -86,7 +85,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                         friction: coefficient,
                     };
                     let force = springs.force(at, &overlap, place as u32, other, position);
-                    grip.push::<B>(&body.part, force, nodes, most);
+                    grip.push::<B>(body, force, nodes, most);
                     wall.force -= force;
                     if let Some(tally) = &mut springs.tally {
                         let worked = S::dot(force, wall.velocity(position)) * rules.time_step;
@@ -106,8 +105,8 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
         let Self { bodies, nodes, most, springs, .. } = self;
         let [first, second] = [&bodies[pair.first as usize], &bodies[pair.second as usize]];
         let force = springs.force(*tracer, overlap, pair.first, ContactPartner::Body(pair.second), *there);
-        one.push::<B>(&first.part, force, nodes, most);
-        two.push::<B>(&second.part, -force, nodes, most);
+        one.push::<B>(first, force, nodes, most);
+        two.push::<B>(second, -force, nodes, most);
         if let Some(tally) = &mut springs.tally {
             tally.taken -= 0.5 * S::dot(force, overlap.slip);
         }

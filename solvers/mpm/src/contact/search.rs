@@ -127,8 +127,8 @@ impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
         let normal = out * (1.0 / S::dot(out, out).sqrt());
         let middle = tracers.position[tracer] - pair.shift + near.normal * (0.5 * depth);
         let there = middle + pair.shift;
-        let one = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &first.part, there, nodes, most)?;
-        let two = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, &second.part, middle, nodes, most)?;
+        let one = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, first, there, nodes, most)?;
+        let two = SurfaceShapeFunction::<S>::new::<B>(rules.lattice, second, middle, nodes, most)?;
         let stiffness = per_area * S::dot(area, area).sqrt();
         let slip = (one.velocity - two.velocity) * rules.time_step;
         let overlap = Overlap { depth, normal, stiffness, slip, friction };

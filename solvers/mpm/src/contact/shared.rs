@@ -130,7 +130,7 @@ impl<S: Space> SharedNodes<S> {
         };
         if !walls.is_empty() {
             for (place, body) in bodies.iter().enumerate().take(fields) {
-                let window = &body.part.window;
+                let window = &body.window;
                 for at in 0..window.len() {
                     let (slot, node) = (window.start + at, window.node(at));
                     if nodes[slot].mass > 0.0 && behind(lattice.place::<S>(node)).is_some() {
@@ -140,7 +140,7 @@ impl<S: Space> SharedNodes<S> {
             }
         }
         for pair in pairs {
-            let [one, two] = [pair.first, pair.second].map(|body| bodies[body as usize].part.window);
+            let [one, two] = [pair.first, pair.second].map(|body| bodies[body as usize].window);
             let periods = [0, 1, 2].map(|axis| {
                 let shift = if axis < S::DIMENSION { S::component(pair.shift, axis) } else { 0.0 };
                 (shift / lattice.cell[axis]).round() as i32
@@ -158,7 +158,7 @@ impl<S: Space> SharedNodes<S> {
         let mut start = 0;
         for group in self.members.chunk_by(|a, b| a.key == b.key) {
             let first = &group[0];
-            let window = &bodies[first.body as usize].part.window;
+            let window = &bodies[first.body as usize].window;
             let position = lattice.place::<S>(window.node(first.slot - window.start));
             self.groups.push(Group { members: start..start + group.len(), wall: behind(position), position });
             start += group.len();
@@ -193,10 +193,10 @@ impl<S: Space> SharedNodes<S> {
             if !self.touching[place] {
                 continue;
             }
-            body.part.each_stencil::<S, B>(lattice, points, |at, stencil| {
+            body.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let (mass, volume) = (points.mass[at], points.volume[at]);
                 let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
-                stencil.each::<S, B>(&body.part.window, |node| {
+                stencil.each::<S, B>(&body.window, |node| {
                     let face = &mut self.faces[node.slot];
                     face.normal += stencil.gradient::<S>(&node) * mass;
                     face.stress += stress * node.weight;
@@ -216,10 +216,10 @@ impl<S: Space> SharedNodes<S> {
             if !self.touching[place] {
                 continue;
             }
-            for at in body.part.points.clone() {
-                let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], [body.part.half; 3]);
+            for at in body.points.clone() {
+                let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], [body.half; 3]);
                 let mass = points.mass[at];
-                stencil.each::<S, Quadratic>(&body.part.window, |node| {
+                stencil.each::<S, Quadratic>(&body.window, |node| {
                     self.densities[node.slot] += node.weight * mass;
                 });
             }
@@ -227,7 +227,7 @@ impl<S: Space> SharedNodes<S> {
         // Slot i contains the density at the centre of the cell above node i. The gradient at a node follows from
         // differences between the adjacent cells. Its length is arbitrary.
         for member in &self.members {
-            let window = &bodies[member.body as usize].part.window;
+            let window = &bodies[member.body as usize].window;
             let node = window.node(member.slot - window.start);
             let mut gradient = [0.0; 3];
             for corner in 0..1 << S::DIMENSION {
@@ -314,7 +314,7 @@ impl<S: Space> SharedNodes<S> {
     /// Adds a contact at every node around a contact point if both bodies have mass at the node.
     fn meet(&mut self, lattice: &Lattice, bodies: &[Body], met: &SurfaceContact<S>, nodes: &[Node<S>]) {
         let &SurfaceContact { body, other, position, normal, shift } = met;
-        let window = bodies[body].part.window;
+        let window = bodies[body].window;
         let stencil = Stencil::new::<S, Linear>(lattice, position, [0.0; 3]);
         if !window.holds(S::DIMENSION, stencil.base, Linear::WIDTH as i32) {
             return;
@@ -330,7 +330,7 @@ impl<S: Space> SharedNodes<S> {
             let (slots, masses) = match other {
                 ContactPartner::Wall(_) => ([node.slot; 2], [mass, f64::INFINITY]),
                 ContactPartner::Body(other) => {
-                    let window = bodies[other as usize].part.window;
+                    let window = bodies[other as usize].window;
                     let there = [0, 1, 2].map(|axis| {
                         let away = if axis < S::DIMENSION { S::component(shift, axis) } else { 0.0 };
                         place[axis] - (away / lattice.cell[axis]).round() as i32

@@ -213,10 +213,10 @@ impl<S: Space> Contacts<S> {
         });
         state.team.each(parts, |_, (bodies, mut tracers)| {
             for body in bodies {
-                let (part, view) = (&body.part, tracers.take_off(slice::from_ref(body)));
+                let view = tracers.take_off(slice::from_ref(body));
                 with_basis!(setting.basis, B => {
                     let basis = PhantomData::<B>;
-                    processor.run_by_four(TracerMotion { lattice, part, of: view, velocities, most, elapsed, basis });
+                    processor.run_by_four(TracerMotion { lattice, body, of: view, velocities, most, elapsed, basis });
                 });
             }
         });

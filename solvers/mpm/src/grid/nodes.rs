@@ -70,7 +70,7 @@ impl<S: Space> Grid<S> {
         }
         for place in 0..bodies.len() {
             if one_field && place > 0 {
-                bodies[place].part.window = bodies[0].part.window;
+                bodies[place].window = bodies[0].window;
                 continue;
             }
             let [low, high] = all.unwrap_or(bodies[place].bounds);
@@ -84,7 +84,7 @@ impl<S: Space> Grid<S> {
             let mut window: Window = self.lattice.window::<S>(S::restrict(low), S::restrict(high));
             window.start = start;
             start += window.len();
-            bodies[place].part.window = window;
+            bodies[place].window = window;
         }
         self.used = start;
         if self.nodes.len() < start {

@@ -88,17 +88,17 @@ fn follow_piece<S: Space>(
     let Scheme { setting, time_step, processor } = *scheme;
     let ThreadPartition { runs, pieces, gradients, flows, failure, .. } = share;
     let (spins, piece) = (setting.transfer == Transfer::Spin, &pieces[number]);
-    let Body { part, law, owner, .. } = &bodies[piece.body];
+    let body = &bodies[piece.body];
     let mut broken = None;
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
-        let (ground, next) = Ground::lent(lattice, part, runs, points);
+        let (ground, next) = Ground::lent(lattice, body, runs, points);
         let next = scheme.moves_with_stress().then_some(next);
         with_basis!(setting.basis, B => {
             let basis = PhantomData::<B>;
             processor.run_by_four(Gradients { ground, velocities, gradients, next, time_step, basis });
         });
         let (gradients, failure) = (&gradients[..], &mut broken);
-        with_law!(*law, law => {
+        with_law!(body.law, law => {
             processor.run_by_four(Update { law, runs, gradients, time_step, spins, counts, points, flows, failure });
         });
     }
@@ -106,7 +106,7 @@ fn follow_piece<S: Space>(
         && failure.is_none()
     {
         let position = S::embed(points.position[point - points.first]);
-        *failure = Some(Failure { owner: *owner, position, cause });
+        *failure = Some(Failure { owner: body.owner, position, cause });
     }
 }
 

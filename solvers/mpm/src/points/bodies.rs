@@ -4,7 +4,7 @@ use crate::grid::lattice::{Lattice, Window};
 use crate::material::Material;
 use crate::options::{Setting, Transfer};
 use crate::points::arrays::Points;
-use crate::points::body::{Body, Part};
+use crate::points::body::Body;
 use crate::points::seed::{self, Seed};
 use crate::surface::elements::{self, Patch};
 use crate::surface::tracers::Tracers;
@@ -44,13 +44,11 @@ pub(crate) fn seed<S: Space>(
         };
         bodies.push(Body {
             owner,
-            part: Part {
-                points: first.0..points.len(),
-                window: Window::default(),
-                runs_in_order: 0,
-                half,
-                cell_mass: density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
-            },
+            points: first.0..points.len(),
+            window: Window::default(),
+            runs_in_order: 0,
+            half,
+            cell_mass: density * lattice.cell[..S::DIMENSION].iter().product::<f64>(),
             tracers: first.1..tracers.len(),
             chunks: tracers.cut(first.1..tracers.len()),
             material,

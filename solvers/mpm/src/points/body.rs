@@ -16,8 +16,16 @@ use std::ops::Range;
 #[derive(Clone, Debug)]
 pub(crate) struct Body {
     pub(crate) owner: Owner,
-    /// Points of the body, and the window of nodes that they influence.
-    pub(crate) part: Part,
+    /// Range of the points in the point arrays.
+    pub(crate) points: Range<usize>,
+    /// Window of the nodes of the velocity field.
+    pub(crate) window: Window,
+    /// Number of batches when the points were last sorted.
+    pub(crate) runs_in_order: usize,
+    /// Half the extent of a point (cells), for GIMP.
+    pub(crate) half: f64,
+    /// Initial mass of a full cell (kg).
+    pub(crate) cell_mass: f64,
     /// Range of the tracers on the surface.
     pub(crate) tracers: Range<usize>,
     /// Range of the chunks of these tracers.
@@ -43,24 +51,7 @@ impl Body {
         let Self { density, deformable, .. } = self;
         Medium { density: *density, lame: deformable.lame(), shear_modulus: deformable.shear_modulus }
     }
-}
 
-/// Points of one body and the window of their nodes.
-#[derive(Clone, Debug)]
-pub(crate) struct Part {
-    /// Range of the points in the point arrays.
-    pub(crate) points: Range<usize>,
-    /// Window of the nodes of the velocity field.
-    pub(crate) window: Window,
-    /// Number of batches when the points were last sorted.
-    pub(crate) runs_in_order: usize,
-    /// Half the extent of a point (cells), for GIMP.
-    pub(crate) half: f64,
-    /// Initial mass of a full cell (kg).
-    pub(crate) cell_mass: f64,
-}
-
-impl Part {
     /// Calls `visit` with the index and the stencil of each point.
     #[inline(always)]
     pub(crate) fn each_stencil<S: Space, B: Basis>(
@@ -70,24 +61,24 @@ impl Part {
         mut visit: impl FnMut(usize, &Stencil<f64>),
     ) {
         for at in self.points.clone() {
-            let extent = self.extent::<S, B>(points.deformation[at]);
+            let extent = extent::<S, B>(self.half, points.deformation[at]);
             visit(at, &Stencil::new::<S, B>(lattice, points.position[at], extent));
         }
     }
+}
 
-    /// Returns the half extent of a point along each axis (cells).
-    ///
-    /// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if
-    /// the stretch is along the axes, and the extent does not change under rotation.
-    #[inline(always)]
-    pub(crate) fn extent<S: Space, B: Basis>(&self, deformation: S::Matrix) -> [f64; 3] {
-        if !B::EXTENDED {
-            return [self.half; 3];
-        }
-        let f = S::embed_gradient(deformation);
-        [0, 1, 2].map(|axis| {
-            let stretch = (f[(axis, 0)].powi(2) + f[(axis, 1)].powi(2) + f[(axis, 2)].powi(2)).sqrt();
-            (self.half * stretch).clamp(1e-3, 0.5)
-        })
+/// Returns the half extent of a point along each axis (cells), from the half extent of an undeformed point.
+///
+/// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if the
+/// stretch is along the axes, and the extent does not change under rotation.
+#[inline(always)]
+pub(crate) fn extent<S: Space, B: Basis>(half: f64, deformation: S::Matrix) -> [f64; 3] {
+    if !B::EXTENDED {
+        return [half; 3];
     }
+    let f = S::embed_gradient(deformation);
+    [0, 1, 2].map(|axis| {
+        let stretch = (f[(axis, 0)].powi(2) + f[(axis, 1)].powi(2) + f[(axis, 2)].powi(2)).sqrt();
+        (half * stretch).clamp(1e-3, 0.5)
+    })
 }

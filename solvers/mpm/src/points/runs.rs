@@ -4,7 +4,7 @@
 use crate::grid::basis::Basis;
 use crate::grid::lattice::{Lattice, Stencil};
 use crate::points::arrays::{Points, PointsMut};
-use crate::points::body::Part;
+use crate::points::body::{Body, extent};
 use grainbench_lanes::{FourLanes, LANES, Number, SimdPack};
 use grainbench_solver::space::Space;
 use nalgebra::{Matrix3, Vector3};
@@ -91,7 +91,7 @@ pub(crate) fn in_groups(mut runs: &[ParticleBatch]) -> impl Iterator<Item = &[Pa
 #[derive(Clone, Copy)]
 pub(crate) struct Ground<'a, S: Space> {
     pub(crate) lattice: &'a Lattice,
-    pub(crate) part: &'a Part,
+    pub(crate) body: &'a Body,
     pub(crate) runs: &'a [ParticleBatch],
     /// Index of the first point in the following arrays.
     pub(crate) first: usize,
@@ -101,20 +101,20 @@ pub(crate) struct Ground<'a, S: Space> {
 
 impl<'a, S: Space> Ground<'a, S> {
     #[inline(always)]
-    pub(crate) fn new(lattice: &'a Lattice, part: &'a Part, runs: &'a [ParticleBatch], points: &'a Points<S>) -> Self {
-        Self { lattice, part, runs, first: 0, deformation: &points.deformation, position: &points.position }
+    pub(crate) fn new(lattice: &'a Lattice, body: &'a Body, runs: &'a [ParticleBatch], points: &'a Points<S>) -> Self {
+        Self { lattice, body, runs, first: 0, deformation: &points.deformation, position: &points.position }
     }
 
     /// Creates the view from a mutable view of points, and also returns the next positions of the points (m).
     #[inline(always)]
     pub(crate) fn lent(
         lattice: &'a Lattice,
-        part: &'a Part,
+        body: &'a Body,
         runs: &'a [ParticleBatch],
         points: &'a mut PointsMut<'_, S>,
     ) -> (Self, &'a mut [S::Vector]) {
         let PointsMut { first, deformation, position, next, .. } = points;
-        (Self { lattice, part, runs, first: *first, deformation, position }, next)
+        (Self { lattice, body, runs, first: *first, deformation, position }, next)
     }
 
     /// Computes the stencil of up to four points with the same nodes, one point per lane of a SIMD register.
@@ -127,11 +127,11 @@ impl<'a, S: Space> Ground<'a, S> {
     ) -> Stencil<SimdPack<L>> {
         let batch = batch.counted_from(self.first);
         let position = batch.spread_vectors::<S, L>(lanes, self.position);
-        let mut half = [SimdPack::splat(lanes, self.part.half); 3];
+        let mut half = [SimdPack::splat(lanes, self.body.half); 3];
         if B::EXTENDED {
             let mut last = None;
             let four = batch.four(self.deformation, &mut last);
-            let extents = [0, 1, 2, 3].map(|lane: usize| self.part.extent::<S, B>(four[lane]));
+            let extents = [0, 1, 2, 3].map(|lane: usize| extent::<S, B>(self.body.half, four[lane]));
             for (axis, half) in half.iter_mut().enumerate().take(S::DIMENSION) {
                 let [a, b, c, d] = &extents;
                 *half = batch.spread(lanes, SimdPack::four(lanes, [a[axis], b[axis], c[axis], d[axis]]));

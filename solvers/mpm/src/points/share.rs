@@ -123,14 +123,14 @@ impl<S: Space> ThreadPartition<S> {
         self.pieces.clear();
         self.reach = 0;
         let mut before = &self.before[..];
-        for (body, part) in bodies.iter().enumerate() {
-            let all = &part.part.points;
+        for (place, body) in bodies.iter().enumerate() {
+            let all = &body.points;
             let range = all.start.max(self.points.start)..all.end.min(self.points.end);
             if !range.is_empty() {
                 let runs = runs::find::<S, B>(lattice, range, points, &mut before, &mut self.runs);
-                let ends = self.runs[runs.clone()].iter().map(|run| part.part.window.end_of::<S, B>(run.base));
+                let ends = self.runs[runs.clone()].iter().map(|run| body.window.end_of::<S, B>(run.base));
                 self.reach = ends.fold(self.reach, usize::max);
-                self.pieces.push(BodyBatches { body, runs, bounds: NO_BOX });
+                self.pieces.push(BodyBatches { body: place, runs, bounds: NO_BOX });
             }
         }
     }
@@ -151,7 +151,7 @@ pub(crate) fn cut_points<S: Space, B: Basis>(
     for (number, share) in shares.iter_mut().enumerate() {
         let mut end = start.max((number + 1) * total / count);
         if number + 1 < count {
-            let body = bodies.iter().map(|body| body.part.points.clone()).find(|points| points.contains(&end));
+            let body = bodies.iter().map(|body| body.points.clone()).find(|points| points.contains(&end));
             let cell = |at: usize| lattice.first::<S, B>(points.position[at]);
             while body.as_ref().is_some_and(|body| body.start < end && end < body.end) && cell(end - 1) == cell(end) {
                 end += 1;
@@ -170,11 +170,11 @@ pub(crate) fn cut_nodes<S: Space>(shares: &mut [ThreadPartition<S>], bodies: &[B
     let count = shares.len();
     let first_of = |(number, share): (usize, &ThreadPartition<S>)| {
         if one_field {
-            let row = bodies[0].part.window.size[0] as usize;
+            let row = bodies[0].window.size[0] as usize;
             return number * (used / row) / count * row;
         }
         let first = share.pieces.first().zip(share.runs.first());
-        first.map_or(used, |(piece, run)| row_of(&bodies[piece.body].part.window, run.base))
+        first.map_or(used, |(piece, run)| row_of(&bodies[piece.body].window, run.base))
     };
     let firsts: Vec<usize> = shares.iter().enumerate().map(first_of).collect();
     let mut end = used;

@@ -5,7 +5,7 @@ use crate::grid::basis::with_basis;
 use crate::grid::lattice::{Lattice, Stencil};
 use crate::options::Basis;
 use crate::points::arrays::Points;
-use crate::points::body::Body;
+use crate::points::body::{Body, extent};
 use crate::points::runs::ParticleBatch;
 use crate::points::share::{self, BodyBatches, LargestDisplacement, NO_BOX, ThreadPartition, enclose};
 use crate::surface::tracers::Tracers;
@@ -63,14 +63,14 @@ impl<S: Space> State<S> {
             }
             let Self { bodies, points, team, .. } = self;
             let is_out_of_order = |&place: &usize| {
-                let in_order = bodies[place].part.runs_in_order;
+                let in_order = bodies[place].runs_in_order;
                 found[place] > in_order + in_order / DISORDER
             };
             let out_of_order: Vec<usize> = (0..bodies.len()).filter(is_out_of_order).collect();
             if !out_of_order.is_empty() {
                 let order = |_, &place: &usize| {
-                    let part = &bodies[place].part;
-                    vec![points.order(part.points.clone(), |at| part.window.slot(lattice.first::<S, B>(at)))]
+                    let body = &bodies[place];
+                    vec![points.order(body.points.clone(), |at| body.window.slot(lattice.first::<S, B>(at)))]
                 };
                 let orders = team.fold(out_of_order.iter(), order, Vec::new(), |all, one| [all, one].concat());
                 points.put_in(&orders, team);
@@ -80,7 +80,7 @@ impl<S: Space> State<S> {
             for &place in &out_of_order {
                 let pieces = self.shares.iter().flat_map(|share| &share.pieces);
                 let runs = pieces.filter(|piece| piece.body == place).map(|piece| piece.runs.len()).sum();
-                self.bodies[place].part.runs_in_order = runs;
+                self.bodies[place].runs_in_order = runs;
             }
         });
     }
@@ -107,7 +107,7 @@ impl<S: Space> State<S> {
         let all = shares.iter().enumerate();
         let all = all.flat_map(|(number, share)| share.parts(bodies).map(move |(body, runs)| (number, body, runs)));
         all.filter(|(_, body, _)| {
-            let slots = body.part.window.slots();
+            let slots = body.window.slots();
             slots.start < nodes.end && nodes.start < slots.end
         })
     }
@@ -141,7 +141,7 @@ impl<S: Space> State<S> {
     pub(crate) fn find_all_bounds(&mut self, tracers: &mut Tracers<S>) {
         tracers.find_boxes();
         for body in &mut self.bodies {
-            let around = enclose::<S>(NO_BOX, &self.points.position[body.part.points.clone()]);
+            let around = enclose::<S>(NO_BOX, &self.points.position[body.points.clone()]);
             body.bounds = in_space::<S>(tracers.enclose_runs(body.chunks.clone(), around));
         }
     }
@@ -154,12 +154,12 @@ impl<S: Space> State<S> {
         let Self { points, bodies, .. } = self;
         let mut sum = 0.0;
         for body in bodies {
-            with_basis!(basis, B => for at in body.part.points.clone() {
+            with_basis!(basis, B => for at in body.points.clone() {
                 let velocity = points.velocity[at];
                 let affine = S::embed_gradient(points.affine_of(at));
                 let mut squared = S::dot(velocity, velocity);
                 if affine.norm_squared() > 0.0 {
-                    let extent = body.part.extent::<S, B>(points.deformation[at]);
+                    let extent = extent::<S, B>(body.half, points.deformation[at]);
                     let stencil = Stencil::new::<S, B>(lattice, points.position[at], extent);
                     for axis in 0..S::DIMENSION {
                         squared += affine.column(axis).norm_squared() * stencil.spread(axis);
@@ -180,7 +180,7 @@ impl<S: Space> State<S> {
     /// with a position that is not finite, otherwise the fastest point.
     pub(crate) fn ran_away(&self, time_step: f64, cell: f64) -> Failure {
         let points = &self.points;
-        let all = |body: &Body| -> Range<usize> { body.part.points.clone() };
+        let all = |body: &Body| -> Range<usize> { body.points.clone() };
         for (place, body) in self.bodies.iter().enumerate() {
             for at in all(body) {
                 if !S::dot(points.position[at], points.position[at]).is_finite() {

@@ -78,7 +78,7 @@ pub(crate) fn give<S: Space>(scene: &Scene, gravity: Vector3<f64>, state: &mut S
 
 /// Applies to every point of a body the stress (Pa) at the point's position.
 fn press<S: Space>(body: &Body, points: &mut Points<S>, stress: impl Fn(S::Vector) -> Matrix3<f64>) {
-    for at in body.part.points.clone() {
+    for at in body.points.clone() {
         // Stresses that the material cannot have were rejected before. A NaN state would fail at the first step and be
         // reported.
         let broken = || Material3 { deformation: Matrix3::from_element(f64::NAN), ..Material3::default() };

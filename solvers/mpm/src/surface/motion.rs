@@ -3,7 +3,7 @@
 use crate::grid::basis::Basis;
 use crate::grid::lattice::{Lattice, Stencil};
 use crate::grid::patch::{Copies, StencilBlock};
-use crate::points::body::Part;
+use crate::points::body::Body;
 use crate::points::runs;
 use crate::surface::tracers::TracersMut;
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack};
@@ -17,7 +17,7 @@ use std::ops::Range;
 /// The velocity is interpolated over nodes with mass.
 pub(crate) struct TracerMotion<'a, S: Space, B> {
     pub(crate) lattice: &'a Lattice,
-    pub(crate) part: &'a Part,
+    pub(crate) body: &'a Body,
     /// Tracers to move.
     pub(crate) of: TracersMut<'a, S>,
     /// Velocities of the nodes (m/s).
@@ -31,7 +31,7 @@ pub(crate) struct TracerMotion<'a, S: Space, B> {
 impl<S: Space, B: Basis> FourKernel for TracerMotion<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, of: tracers, velocities, most, elapsed, .. } = self;
+        let Self { lattice, body, of: tracers, velocities, most, elapsed, .. } = self;
         let TracersMut { first, position, area, neighbours, chunks } = tracers;
         let zero = SimdPack::splat(lanes, 0.0);
         let (mut copies, mut most_copies): (Copies<S::Vector>, Copies<f64>) = ([S::ORIGIN; _], [0.0; _]);
@@ -39,13 +39,13 @@ impl<S: Space, B: Basis> FourKernel for TracerMotion<'_, S, B> {
         while !range.is_empty() {
             let (batch, base) = runs::first_batch::<S, B>(lattice, range.clone(), position);
             range.start += batch.count;
-            if !part.window.holds(S::DIMENSION, base, B::WIDTH as i32) {
+            if !body.window.holds(S::DIMENSION, base, B::WIDTH as i32) {
                 continue;
             }
-            let (seen, patch) = part.window.seen::<S, B, _>(base, velocities, &mut copies);
-            let (bounds, _) = part.window.seen::<S, B, _>(base, most, &mut most_copies);
+            let (seen, patch) = body.window.seen::<S, B, _>(base, velocities, &mut copies);
+            let (bounds, _) = body.window.seen::<S, B, _>(base, most, &mut most_copies);
             let at = batch.spread_vectors::<S, L>(lanes, position);
-            let stencil = Stencil::around::<S, B>(lattice, base, at, [SimdPack::splat(lanes, part.half); 3]);
+            let stencil = Stencil::around::<S, B>(lattice, base, at, [SimdPack::splat(lanes, body.half); 3]);
             let [values, slopes] = stencil.along_x();
             let (mut total, mut way) = (zero, [zero; 3]);
             let (mut gradient, mut slope) = ([[zero; 3]; 3], [zero; 3]);

@@ -8,7 +8,7 @@
 
 use crate::grid::basis::Basis;
 use crate::grid::lattice::{Lattice, Node, Stencil};
-use crate::points::body::Part;
+use crate::points::body::Body;
 use grainbench_solver::space::Space;
 
 /// Upper limit of w² m_cell/m for a node, with weight w, mass m and the mass m_cell of a full cell.
@@ -44,17 +44,17 @@ impl<S: Space> SurfaceShapeFunction<S> {
     #[inline(always)]
     pub(crate) fn new<B: Basis>(
         lattice: &Lattice,
-        part: &Part,
+        body: &Body,
         position: S::Vector,
         nodes: &[Node<S>],
         most: &[f64],
     ) -> Option<Self> {
-        let stencil = Stencil::new::<S, B>(lattice, position, [part.half; 3]);
-        if !part.window.holds(S::DIMENSION, stencil.base, B::WIDTH as i32) {
+        let stencil = Stencil::new::<S, B>(lattice, position, [body.half; 3]);
+        if !body.window.holds(S::DIMENSION, stencil.base, B::WIDTH as i32) {
             return None;
         }
         let (mut total, mut velocity) = (0.0, S::ORIGIN);
-        stencil.each::<S, B>(&part.window, |node| {
+        stencil.each::<S, B>(&body.window, |node| {
             let weight = node.weight.min(most[node.slot]);
             if weight > 0.0 {
                 total += weight;
@@ -67,9 +67,9 @@ impl<S: Space> SurfaceShapeFunction<S> {
 
     /// Applies a force (N) to the body at this point.
     #[inline(always)]
-    pub(crate) fn push<B: Basis>(&self, part: &Part, force: S::Vector, nodes: &mut [Node<S>], most: &[f64]) {
+    pub(crate) fn push<B: Basis>(&self, body: &Body, force: S::Vector, nodes: &mut [Node<S>], most: &[f64]) {
         let share = force * (1.0 / self.total);
-        self.stencil.each::<S, B>(&part.window, |node| {
+        self.stencil.each::<S, B>(&body.window, |node| {
             nodes[node.slot].change += share * node.weight.min(most[node.slot]);
         });
     }

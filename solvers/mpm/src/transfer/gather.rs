@@ -19,7 +19,7 @@ use crate::grid::nodes::{Grid, NodePartition};
 use crate::grid::patch::{Copies, NodeRows, StencilBlock};
 use crate::options;
 use crate::points::arrays::{Points, PointsMut};
-use crate::points::body::Part;
+use crate::points::body::Body;
 use crate::points::runs::{Ground, ParticleBatch};
 use crate::points::share::ThreadPartition;
 use crate::points::state::State;
@@ -51,18 +51,18 @@ pub(crate) fn gather<S: Space>(
     });
     team.each(parts, |number, (mut points, projected)| {
         macro_rules! gather {
-            ($B:ty, $transfer:expr, $part:expr, $runs:expr) => {{
-                let (transfer, part, runs, basis) = ($transfer, $part, $runs, PhantomData::<$B>);
+            ($B:ty, $transfer:expr, $body:expr, $runs:expr) => {{
+                let (transfer, body, runs, basis) = ($transfer, $body, $runs, PhantomData::<$B>);
                 let (points, projected) = (&mut points, NodeRows::new(shares[number].alone_from, projected));
-                let gather = Gather { lattice, part, runs, transfer, scheme, keep, points, nodes, projected, basis };
+                let gather = Gather { lattice, body, runs, transfer, scheme, keep, points, nodes, projected, basis };
                 processor.run_by_four(gather);
             }};
         }
         for (body, runs) in shares[number].parts(bodies) {
             with_basis!(setting.basis, B => match setting.transfer {
-                options::Transfer::Flip { pic } => gather!(B, Flip { pic }, &body.part, runs),
-                options::Transfer::Apic => gather!(B, Apic, &body.part, runs),
-                options::Transfer::Spin => gather!(B, Spin, &body.part, runs),
+                options::Transfer::Flip { pic } => gather!(B, Flip { pic }, body, runs),
+                options::Transfer::Apic => gather!(B, Apic, body, runs),
+                options::Transfer::Spin => gather!(B, Spin, body, runs),
             });
         }
     });
@@ -80,7 +80,7 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
     team.each(grid.parts(shares), |number, NodePartition { projected, .. }| {
         let ThreadPartition { nodes, alone_from, .. } = &shares[number];
         for (other, body, runs) in state.reaching(nodes) {
-            let ground = Ground::new(&lattice, &body.part, runs, points);
+            let ground = Ground::new(&lattice, body, runs, points);
             let end = if other > number { projected.len() } else { alone_from - nodes.start };
             let projected = NodeRows::new(nodes.start, &mut projected[..end]);
             macro_rules! project {
@@ -103,7 +103,7 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
 /// the new velocities.
 struct Gather<'a, 'b, S: Space, B, T> {
     lattice: &'a Lattice,
-    part: &'a Part,
+    body: &'a Body,
     runs: &'a [ParticleBatch],
     transfer: T,
     scheme: &'a Scheme,
@@ -118,19 +118,19 @@ struct Gather<'a, 'b, S: Space, B, T> {
 impl<S: Space, B: Basis, T: Transfer> FourKernel for Gather<'_, '_, S, B, T> {
     #[inline(always)]
     fn run<L: FourLanes>(self, lanes: L) {
-        let Self { lattice, part, runs, transfer, scheme, keep, points, nodes, mut projected, .. } = self;
+        let Self { lattice, body, runs, transfer, scheme, keep, points, nodes, mut projected, .. } = self;
         let (moves, projects, time_step) = (!scheme.moves_with_stress(), scheme.is_projected(), scheme.time_step);
         let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         let mut projected_copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in runs {
-            let (seen, patch) = part.window.seen::<S, B, _>(run.base, nodes, &mut copies);
+            let (seen, patch) = body.window.seen::<S, B, _>(run.base, nodes, &mut copies);
             let mut reached = None;
             if projects {
-                reached = projected.reached::<S, B>(&part.window, run.base, &mut projected_copies);
+                reached = projected.reached::<S, B>(&body.window, run.base, &mut projected_copies);
             }
             for batch in run.batches() {
-                let (ground, _) = Ground::lent(lattice, part, runs, points);
+                let (ground, _) = Ground::lent(lattice, body, runs, points);
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let batch = batch.counted_from(points.first);
                 let [values, _] = stencil.along_x();
@@ -195,7 +195,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Gather<'_, '_, S, B, T> {
                 }
             }
             if projects {
-                projected.put_back::<S, B>(&part.window, run.base, &projected_copies);
+                projected.put_back::<S, B>(&body.window, run.base, &projected_copies);
             }
         }
     }
@@ -216,7 +216,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Project<'_, S, B, T> {
         let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in ground.runs {
-            let window = &ground.part.window;
+            let window = &ground.body.window;
             let Some((mut reached, patch)) = projected.reached::<S, B>(window, run.base, &mut copies) else { continue };
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);

@@ -30,7 +30,7 @@ impl<S: Space, B: Basis> FourKernel for Gradients<'_, S, B> {
         let first = ground.runs.first().map_or(0, |run| run.start);
         let mut copies: Copies<S::Vector> = [S::ORIGIN; _];
         for run in ground.runs {
-            let (seen, patch) = ground.part.window.seen::<S, B, _>(run.base, velocities, &mut copies);
+            let (seen, patch) = ground.body.window.seen::<S, B, _>(run.base, velocities, &mut copies);
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);
                 let [values, slopes] = stencil.along_x();

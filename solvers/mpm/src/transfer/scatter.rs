@@ -35,7 +35,7 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
         projected.fill(S::ORIGIN);
         let start = shares[number].nodes.start;
         for (_, body, runs) in state.reaching(&shares[number].nodes) {
-            let ground = Ground::new(&lattice, &body.part, runs, points);
+            let ground = Ground::new(&lattice, body, runs, points);
             let nodes = NodeRows::new(start, &mut *own);
             with_basis!(setting.basis, B => match setting.transfer {
                 options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
@@ -45,10 +45,10 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
         }
         if grips {
             for body in bodies {
-                let window = body.part.window.slots();
+                let window = body.window.slots();
                 let here = window.start.max(start) - start..window.end.clamp(start, start + own.len()) - start;
                 if !here.is_empty() {
-                    shape_function::bear(&own[here.clone()], body.part.cell_mass, &mut most[here]);
+                    shape_function::bear(&own[here.clone()], body.cell_mass, &mut most[here]);
                 }
             }
         }
@@ -127,7 +127,7 @@ impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
         let zero = SimdPack::splat(lanes, 0.0);
         let mut copies: Copies<Node<S>> = [Node::EMPTY; _];
         for run in ground.runs {
-            let window = &ground.part.window;
+            let window = &ground.body.window;
             let Some((mut reached, patch)) = nodes.reached::<S, B>(window, run.base, &mut copies) else { continue };
             for batch in run.batches() {
                 let stencil = ground.stencil::<B, L>(lanes, run, batch);

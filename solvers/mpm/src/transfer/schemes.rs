@@ -116,8 +116,8 @@ impl Transfer for Spin {
 mod tests {
     use super::*;
     use crate::grid::basis::{Gimp, Quadratic};
-    use crate::grid::lattice::{Lattice, Window};
-    use crate::points::body::Part;
+    use crate::grid::lattice::Lattice;
+    use crate::points::body::extent;
     use grainbench_solver::space::Plane;
     use nalgebra::{Matrix2, Vector2};
 
@@ -125,11 +125,9 @@ mod tests {
     /// y. A rotation before the shear changes neither.
     #[test]
     fn a_point_reaches_as_far_as_its_material_lines() {
-        let window = Window::default();
-        let part = Part { points: 0..1, window, runs_in_order: 0, half: 0.24, cell_mass: 1.0 };
         let shear = Matrix2::new(1.0, 0.75, 0.0, 1.0);
         for turn in [Matrix2::identity(), Matrix2::new(0.6, -0.8, 0.8, 0.6)] {
-            let [x, y, _] = part.extent::<Plane, Gimp>(shear * turn);
+            let [x, y, _] = extent::<Plane, Gimp>(0.24, shear * turn);
             assert!((x - 0.3).abs() < 1e-15 && (y - 0.24).abs() < 1e-15, "{x} {y}");
         }
     }
