@@ -8,6 +8,8 @@ pub(crate) mod search;
 pub(crate) mod shared;
 pub(crate) mod stages;
 
+use crate::grid::lattice::Lattice;
+use crate::options::Setting;
 use grainbench_solver::space::Space;
 use serde::{Deserialize, Serialize};
 
@@ -34,6 +36,15 @@ pub(crate) struct ContactPoint<S: Space> {
     pub(crate) slipping: bool,
     /// Energy in the springs at the end of the step (J).
     pub(crate) energy: f64,
+}
+
+/// Parameters of contact.
+#[derive(Clone, Copy)]
+pub(crate) struct Rules<'a> {
+    pub(crate) lattice: &'a Lattice,
+    pub(crate) friction: &'a FrictionTable,
+    pub(crate) setting: &'a Setting,
+    pub(crate) time_step: f64,
 }
 
 /// Friction coefficients between materials. Materials without a contact law do not interact.

@@ -16,11 +16,10 @@
 //! conserved only if they are opposite.
 
 use super::shared::{Field, Member, SharedNodes};
-use super::{ContactPartner, FrictionTable};
+use super::{ContactPartner, Rules};
 use crate::boundary::driven::Group;
 use crate::boundary::walls::RigidPlane;
 use crate::energy::ledger::Tally;
-use crate::grid::lattice::Lattice;
 use crate::options::Contact;
 use crate::points::body::Body;
 use grainbench_solver::space::Space;
@@ -30,14 +29,6 @@ const COLLAPSE: f64 = 0.5;
 
 /// Traction divided by the modulus, below which a surface counts as traction-free.
 const UNSTRESSED: f64 = 1e-9;
-
-/// Parameters of nodal contact.
-pub(crate) struct Rules<'a> {
-    pub(crate) lattice: &'a Lattice,
-    pub(crate) friction: &'a FrictionTable,
-    pub(crate) contact: Contact,
-    pub(crate) time_step: f64,
-}
 
 /// Walls and driven bodies. The reactions of contact are added to them as forces over the step.
 pub(crate) struct ReactionReceivers<'a, S: Space> {
@@ -55,7 +46,7 @@ pub(crate) fn meet<S: Space>(
     felt: &mut ReactionReceivers<'_, S>,
     field: &mut Field<'_, S>,
 ) {
-    match rules.contact {
+    match rules.setting.contact {
         Contact::Gap => apply_pairs(rules, bodies, shared, felt, field),
         Contact::NoSlip => apply(&NoSlip, rules, bodies, shared, felt, field),
         Contact::Traction => apply(&Compression, rules, bodies, shared, felt, field),
@@ -349,6 +340,7 @@ const SWEEPS: usize = 12;
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::contact::FrictionTable;
     use crate::contact::shared::{Face, NodalContact};
     use crate::grid::lattice::Node;
     use crate::options::Setting;
@@ -366,7 +358,8 @@ mod tests {
              {}[0.0, 0.0] }}\n{}[3.0, 0.0] }}\n{}[6.0, 0.0] }}\n",
             discs[0], discs[1], discs[2]
         );
-        let (simulation, _) = prepared::<Plane>(Setting::classic(Contact::Gap), &text, 2.0, 2);
+        let setting = Setting::classic(Contact::Gap);
+        let (simulation, _) = prepared::<Plane>(setting, &text, 2.0, 2);
         let mut shared = SharedNodes::<Plane>::default();
         shared.faces = vec![Face { normal: Vector2::zeros(), stress: nalgebra::Matrix2::zeros() }; 3];
         let masses = [1.0, 2.0, 3.0];
@@ -386,7 +379,7 @@ mod tests {
             (0..3).map(|at| Node { mass: masses[at], velocity: velocities[at], change: velocities[at] }).collect();
         let friction = FrictionTable::from_scene(&simulation.scene);
         let lattice = &simulation.grid.lattice;
-        let rules = Rules { lattice, friction: &friction, contact: Contact::Gap, time_step: 1.0 };
+        let rules = Rules { lattice, friction: &friction, setting: &setting, time_step: 1.0 };
         let mut felt = ReactionReceivers { walls: &mut [], driven: &mut [], tally: None };
         meet(&rules, &simulation.state.bodies, &mut shared, &mut felt, &mut Field::Stepped(&mut nodes));
         [0, 1, 2].map(|at| nodes[at].velocity)

@@ -4,8 +4,8 @@
 //! so linear momentum is conserved to rounding and torques are consistent.
 
 use super::friction::{Coulomb, Overlap, Shear};
-use super::search::{PenetratingPoint, Rules, SearchResults};
-use super::{ContactPartner, ContactPoint};
+use super::search::{PenetratingPoint, SearchResults};
+use super::{ContactPartner, ContactPoint, Rules};
 use crate::boundary::walls::RigidPlane;
 use crate::energy::ledger::Tally;
 use crate::grid::basis::Basis;
@@ -66,7 +66,7 @@ impl<S: Space, B: Basis> Push<'_, S, B> {
                     continue;
                 }
                 let Some(coefficient) = rules.friction.between(body.material, wall.material) else { continue };
-                let per_area = rules.penalty * body.deformable.plane_modulus() / cell;
+                let per_area = rules.setting.penalty * body.deformable.plane_modulus() / cell;
                 for at in body.tracers.clone() {
                     let position = tracers.position[at];
                     let depth = -wall.height(position);

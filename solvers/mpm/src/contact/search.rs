@@ -1,27 +1,17 @@
 //! Search for tracers that penetrate the surface of another body, with the surface shape functions of both bodies
 //! there.
 
+use super::Rules;
 use super::friction::Overlap;
 use super::pairs::Pair;
-use crate::contact::FrictionTable;
 use crate::grid::basis::Basis;
-use crate::grid::lattice::{Lattice, Node};
+use crate::grid::lattice::Node;
 use crate::points::body::Body;
 use crate::surface::shape_function::SurfaceShapeFunction;
 use crate::surface::tracers::{NearSurface, Tracers};
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::space::Space;
 use std::marker::PhantomData;
-
-/// Parameters of all springs.
-#[derive(Clone, Copy)]
-pub(crate) struct Rules<'a> {
-    pub(crate) lattice: &'a Lattice,
-    pub(crate) friction: &'a FrictionTable,
-    /// Stiffness per area in units of E'/h, with E' = E/(1 − ν²) and the cell length h.
-    pub(crate) penalty: f64,
-    pub(crate) time_step: f64,
-}
 
 /// Largest bulge of a surface beyond the bounding box of its tracers (cells).
 const BULGE: f64 = 0.25;
@@ -118,7 +108,7 @@ impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
         let friction = rules.friction.between(first.material, second.material)?;
         let moduli = [first, second].map(|body| body.deformable.plane_modulus());
         let harmonic = 2.0 * moduli[0] * moduli[1] / (moduli[0] + moduli[1]);
-        let per_area = 0.5 * rules.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
+        let per_area = 0.5 * rules.setting.penalty * harmonic / rules.lattice.shortest(S::DIMENSION);
         let area = tracers.area[tracer];
         let depth = -near.gap;
         // Outward normal of the second body. It is the mean of this body's normal and the reversed normal of the first

@@ -5,9 +5,9 @@ use crate::contact::friction::Coulomb;
 use crate::contact::nodal::{self, ReactionReceivers};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{Push, Springs};
-use crate::contact::search::{Rules, Search, SearchResults, TracerSurroundings};
+use crate::contact::search::{Search, SearchResults, TracerSurroundings};
 use crate::contact::shared::{Field, SharedNodes};
-use crate::contact::{ContactPoint, FrictionTable};
+use crate::contact::{ContactPoint, FrictionTable, Rules};
 use crate::energy::accounts::Accounts;
 use crate::grid::basis::with_basis;
 use crate::grid::lattice::Lattice;
@@ -142,7 +142,7 @@ impl<S: Space> Contacts<S> {
         ContactRequest { accounts, touches: record }: ContactRequest<'_, S>,
         cost: &mut Counts,
     ) {
-        let Scheme { setting, time_step, processor } = *scheme;
+        let &Scheme { ref setting, time_step, processor } = scheme;
         if setting.contact != Contact::Penalty || !Self::can_touch(state, boundary) {
             return;
         }
@@ -152,7 +152,7 @@ impl<S: Space> Contacts<S> {
         touches.clear();
         springs.iter_mut().for_each(Coulomb::begin);
         pairs.find(bodies, lattice, 0.0);
-        let rules = Rules { lattice, friction, penalty: setting.penalty, time_step };
+        let rules = Rules { lattice, friction, setting, time_step };
         let shares = if state.team.members() > 1 { SHARES * state.team.members() } else { 1 };
         found.resize(shares, SearchResults::default());
         let (all, tracers) = (&pairs.found[..], &*tracers);
@@ -187,12 +187,12 @@ impl<S: Space> Contacts<S> {
         accounts: Option<&mut Accounts<S>>,
         field: &mut Field<'_, S>,
     ) {
-        let contact = scheme.setting.contact;
-        if !Self::is_nodal(contact, state, boundary) {
+        let setting = &scheme.setting;
+        if !Self::is_nodal(setting.contact, state, boundary) {
             return;
         }
         let Self { friction, shared, .. } = self;
-        let rules = nodal::Rules { lattice, friction, contact, time_step: scheme.time_step };
+        let rules = Rules { lattice, friction, setting, time_step: scheme.time_step };
         let (walls, driven, bodies) = (&mut *boundary.walls, &mut *boundary.driven.groups, &state.bodies);
         let tally = accounts.map(|accounts| &mut accounts.tally);
         nodal::meet(&rules, bodies, shared, &mut ReactionReceivers { walls, driven, tally }, field);
