@@ -11,7 +11,6 @@ use crate::energy::accounts::{Accounts, work_of};
 use crate::energy::ledger::{EnergyGuard, Tally};
 use crate::failure::Failure;
 use crate::grid::basis::{Basis, with_basis};
-use crate::grid::damping::Damping;
 use crate::grid::lattice::Lattice;
 use crate::grid::nodes::Grid;
 use crate::material::stress;
@@ -66,7 +65,7 @@ impl<S: Space> Simulation<S> {
         let team = Team::new(threads.min(points.len() / FEWEST));
         Self {
             scheme: Scheme { setting, time_step, processor: Processor::new() },
-            surroundings: Surroundings { gravity: S::restrict(scene.gravity), damping: scene.global_damping },
+            surroundings: Surroundings::new(scene.gravity, scene.global_damping, time_step),
             boundary: Boundary::new(scene, &bodies, &lattice),
             contacts: Contacts::new(scene, setting.contact, tracers),
             state: State::new(bodies, points, team),
@@ -153,8 +152,7 @@ impl<S: Space> Simulation<S> {
         boundary.driven.begin(*settling, *step as f64 * scheme.time_step, scheme.time_step);
         if !boundary.driven.groups.is_empty() {
             let State { bodies, points, .. } = state;
-            let own = (surroundings.gravity, Damping::over(surroundings.damping, scheme.time_step));
-            boundary.driven.note_own_forces(bodies, points, own, scheme.time_step);
+            boundary.driven.note_own_forces(bodies, points, surroundings, scheme.time_step);
             boundary.driven.find_held(&grid.lattice, bodies, points, scheme.setting.basis, scheme.has_one_field());
         }
         contacts.find_shared(scheme, state, grid, boundary, cost);
@@ -215,7 +213,7 @@ impl<S: Space> Simulation<S> {
         boundary.held.fold(&state.bodies, &mut grid.nodes, surroundings.gravity);
         if let Some(accounts) = accounts {
             accounts.note_forces(&state.team, grid);
-            if surroundings.damping > 0.0 {
+            if surroundings.keep < 1.0 {
                 accounts.brought = state.kinetic_energy(scheme.setting.basis, &grid.lattice);
             }
         }
@@ -224,20 +222,19 @@ impl<S: Space> Simulation<S> {
     /// Computes node velocities after the step under boundary and contact conditions, and their changes.
     fn step_nodes(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, contacts, accounts, cost, .. } = self;
-        let damping = Damping::over(surroundings.damping, scheme.time_step);
-        cost.node_updates += grid.step(state, surroundings.gravity, damping);
+        cost.node_updates += grid.step(state, surroundings);
         boundary.held.hold(&state.bodies, &mut grid.nodes);
         boundary.driven.hold(&mut grid.nodes, scheme.time_step);
         let Grid { lattice, nodes, .. } = grid;
         contacts.meet(scheme, state, lattice, boundary, accounts.as_mut(), &mut Field::Stepped(nodes));
-        grid.find_changes(state, damping);
+        grid.find_changes(state, surroundings.keep);
     }
 
     /// Gathers velocities and displacements of points from nodes. Driven points get their prescribed velocity. With MUSL,
     /// boundary and contact conditions are applied to the projected velocities.
     fn gather(&mut self) {
         let Self { scheme, surroundings, state, grid, boundary, accounts, .. } = self;
-        gather(scheme, Damping::over(surroundings.damping, scheme.time_step), state, grid);
+        gather(scheme, surroundings.keep, state, grid);
         if let Some(accounts) = accounts {
             accounts.held = work_of(&boundary.driven, scheme.time_step);
         }
@@ -252,7 +249,7 @@ impl<S: Space> Simulation<S> {
         }
         let Self { scheme, surroundings, state, grid, accounts, .. } = self;
         if let Some(accounts) = accounts {
-            accounts.add_contacts(&state.team, scheme.time_step, surroundings.damping, grid);
+            accounts.add_contacts(&state.team, scheme.time_step, surroundings.keep, grid);
         }
     }
 

@@ -20,13 +20,13 @@ impl<S: Space> Simulation<S> {
         stress_at_start::give(&self.scene, gravity, &mut self.state, &self.contacts.tracers);
         self.cover();
         if let Some(settle) = start.settle {
-            self.surroundings = Surroundings { gravity: S::restrict(gravity), damping: settle.damping };
+            self.surroundings = Surroundings::new(gravity, settle.damping, self.scheme.time_step);
             self.settling = true;
             for _ in 0..(settle.duration / self.scheme.time_step).ceil() as u64 {
                 self.cycle(false)?;
             }
-            let (gravity, damping) = (S::restrict(self.scene.gravity), self.scene.global_damping);
-            self.surroundings = Surroundings { gravity, damping };
+            let (gravity, damping) = (self.scene.gravity, self.scene.global_damping);
+            self.surroundings = Surroundings::new(gravity, damping, self.scheme.time_step);
             // The steps of relaxation do not count as simulated time, but they count as cost.
             (self.settling, self.step) = (false, 0);
             self.contacts.touches.clear();

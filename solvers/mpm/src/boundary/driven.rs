@@ -4,11 +4,11 @@
 //! these nodes also move the points of other bodies that they influence.
 
 use crate::grid::basis::with_basis;
-use crate::grid::damping::Damping;
 use crate::grid::lattice::{Lattice, Node};
 use crate::options::Basis;
 use crate::points::arrays::Points;
 use crate::points::body::Body;
+use crate::scheme::Surroundings;
 use grainbench_scene::scene::{Driven as DrivenGrains, Scene};
 use grainbench_solver::space::Space;
 
@@ -65,14 +65,14 @@ impl<S: Space> DrivenGroups<S> {
         &mut self,
         bodies: &[Body],
         points: &Points<S>,
-        (gravity, damping): (S::Vector, Damping),
+        &Surroundings { gravity, keep, gain }: &Surroundings<S>,
         time_step: f64,
     ) {
         for body in bodies {
             let Some(group) = body.driven else { continue };
             let group = &mut self.groups[usize::from(group)];
             for at in body.points.clone() {
-                let free = points.velocity[at] * damping.keep + gravity * damping.gain;
+                let free = points.velocity[at] * keep + gravity * gain;
                 group.own += (free - group.velocity) * (points.mass[at] / time_step);
             }
         }

@@ -28,7 +28,6 @@
 use crate::boundary::Boundary;
 use crate::boundary::driven::DrivenGroups;
 use crate::energy::ledger::{Flow, Tally};
-use crate::grid::damping::Damping;
 use crate::grid::lattice::{Lattice, Node};
 use crate::grid::nodes::Grid;
 use crate::options::{Basis, Contact, Setting};
@@ -130,8 +129,7 @@ fn node_sums<S: Space>(
     nodes: &[Node<S>],
     forces: &mut [S::Vector],
     impulses: &mut [S::Vector],
-    gravity: S::Vector,
-    Damping { keep, gain }: Damping,
+    &Surroundings { gravity, keep, gain }: &Surroundings<S>,
     time_step: f64,
 ) -> [f64; 6] {
     let [mut mass, mut given, mut seen, mut stepped, mut pulled, mut dragged] = [0.0; 6];
@@ -203,17 +201,17 @@ impl<S: Space> Accounts<S> {
         &mut self,
         team: &Team,
         scheme: &Scheme,
-        &Surroundings { gravity, damping }: &Surroundings<S>,
+        surroundings: &Surroundings<S>,
         grid: &Grid<S>,
         Boundary { walls, driven, .. }: &Boundary<S>,
     ) {
         let time_step = scheme.time_step;
         let driven_work = work_of(driven, time_step);
         let Self { sums, tally, impulses, forces, held, brought, .. } = self;
-        let damped = Damping::over(damping, time_step);
+        let &Surroundings { gravity, keep, .. } = surroundings;
         let nodes = &grid.nodes[..grid.used];
         let blocks = forces.chunks_mut(BLOCK).zip(impulses.chunks_mut(BLOCK)).zip(nodes.chunks(BLOCK));
-        let add = |_, ((forces, impulses), nodes)| node_sums(nodes, forces, impulses, gravity, damped, time_step);
+        let add = |_, ((forces, impulses), nodes)| node_sums(nodes, forces, impulses, surroundings, time_step);
         let [mass, given, seen, stepped, pulled, dragged] = team.fold(blocks, add, [0.0; 6], added);
         sums.stepped += stepped;
         sums.gravity += pulled;
@@ -221,8 +219,8 @@ impl<S: Space> Accounts<S> {
         if !scheme.has_stress_first() {
             sums.crossed += 0.5 * (sums.stressed + given);
         }
-        if damping > 0.0 {
-            sums.unseen += (1.0 - damped.keep * damped.keep) * (*brought - seen);
+        if keep < 1.0 {
+            sums.unseen += (1.0 - keep * keep) * (*brought - seen);
         }
         sums.impulse += S::embed(gravity) * (mass * time_step);
         for group in &driven.groups {
@@ -239,10 +237,9 @@ impl<S: Space> Accounts<S> {
     }
 
     /// Adds the sums over contacts. It must be called after points have transferred their new velocities to the nodes.
-    pub(crate) fn add_contacts(&mut self, team: &Team, time_step: f64, damping: f64, grid: &Grid<S>) {
+    pub(crate) fn add_contacts(&mut self, team: &Team, time_step: f64, keep: f64, grid: &Grid<S>) {
         let Grid { nodes, projected, .. } = grid;
         let Self { sums, impulses, forces, springs, .. } = self;
-        let Damping { keep, .. } = Damping::over(damping, time_step);
         let used = grid.used;
         let blocks = (0..used).step_by(BLOCK).map(|start| start..used.min(start + BLOCK));
         let add = |_, block: Range<usize>| {

@@ -1,10 +1,10 @@
 //! Lattice, windows and node values of the grid.
 
-use crate::grid::damping::Damping;
 use crate::grid::lattice::{Lattice, Node, Window};
 use crate::points::body::Body;
 use crate::points::share::ThreadPartition;
 use crate::points::state::State;
+use crate::scheme::Surroundings;
 use grainbench_lanes::take_off;
 use grainbench_solver::failure::Cause;
 use grainbench_solver::space::Space;
@@ -96,9 +96,9 @@ impl<S: Space> Grid<S> {
     }
 
     /// Computes node velocities after the step, v ← keep v + gain (f/m + g), from momenta and forces. Stores the
-    /// velocities before the step in `change`. Returns the number of nodes with mass. See [`Damping`] for keep and
-    /// gain.
-    pub(crate) fn step(&mut self, state: &State<S>, gravity: S::Vector, Damping { keep, gain }: Damping) -> u64 {
+    /// velocities before the step in `change`. Returns the number of nodes with mass. See [`Surroundings`] for keep
+    /// and gain.
+    pub(crate) fn step(&mut self, state: &State<S>, &Surroundings { gravity, keep, gain }: &Surroundings<S>) -> u64 {
         let step = |_, own: NodePartition<'_, S>| {
             let mut stepped = 0;
             for node in own.nodes {
@@ -118,7 +118,7 @@ impl<S: Space> Grid<S> {
     }
 
     /// Computes the velocity changes in the step without damping, v − keep v_before. Node velocities must be final.
-    pub(crate) fn find_changes(&mut self, state: &State<S>, Damping { keep, .. }: Damping) {
+    pub(crate) fn find_changes(&mut self, state: &State<S>, keep: f64) {
         state.team.each(self.parts(&state.shares), |_, own| {
             own.nodes.iter_mut().for_each(|node| node.change = node.velocity - node.change * keep);
         });

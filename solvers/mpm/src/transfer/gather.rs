@@ -4,7 +4,7 @@
 //! velocities after the step and Δv_i the changes of velocity in the step (m/s):
 //!
 //! - v_p ← keep v_p + Σ N_i(x_p) Δv_i if points keep their velocity (Brackbill & Ruppel 1986), otherwise Σ N_i(x_p)
-//!   v_i; keep is the damping factor ([`Damping`]);
+//!   v_i; keep is the damping factor ([`Surroundings`](crate::scheme::Surroundings));
 //! - x_p ← x_p + Δt Σ N_i(x_p) v_i, positions (m). If points move with the velocities of the stress update, this is
 //!   done later with those velocities ([`crate::transfer::gradients`]);
 //! - A_p ← Σ v_i ⊗ N_i (x_i − x_p) D⁻¹, D = Σ N_i (x_i − x_p) ⊗ (x_i − x_p), if points have an affine part of the
@@ -13,7 +13,6 @@
 //!   values (Sulsky, Zhou & Schreyer 1995).
 
 use crate::grid::basis::{Basis, with_basis};
-use crate::grid::damping::Damping;
 use crate::grid::lattice::{Lattice, Node, Stencil};
 use crate::grid::nodes::{Grid, NodePartition};
 use crate::grid::patch::{Copies, NodeRows, StencilBlock};
@@ -35,12 +34,7 @@ use std::marker::PhantomData;
 ///
 /// For MUSL it also scatters the momentum of the new velocities to the nodes. The same loop does this for nodes that no
 /// earlier thread partition influences. A second loop does it for the remaining nodes.
-pub(crate) fn gather<S: Space>(
-    scheme: &Scheme,
-    Damping { keep, .. }: Damping,
-    state: &mut State<S>,
-    grid: &mut Grid<S>,
-) {
+pub(crate) fn gather<S: Space>(scheme: &Scheme, keep: f64, state: &mut State<S>, grid: &mut Grid<S>) {
     let Grid { lattice, nodes, projected, .. } = grid;
     let State { bodies, points, shares, team, .. } = state;
     let Scheme { setting, processor, .. } = *scheme;
