@@ -16,16 +16,10 @@ use crate::transfer::gradients::Gradients;
 use grainbench_lanes::logarithm::ln;
 use grainbench_lanes::{FourKernel, FourLanes};
 use grainbench_solver::failure::Cause;
+use grainbench_solver::record::Owner;
 use grainbench_solver::space::Space;
 use nalgebra::Matrix3;
 use std::marker::PhantomData;
-
-/// Material point with an invalid state, by its index.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct BrokenPoint {
-    point: usize,
-    cause: Cause,
-}
 
 /// Returns the deformation gradient in three dimensions; in plane strain the out-of-plane stretch is one.
 #[inline(always)]
@@ -89,7 +83,6 @@ fn follow_piece<S: Space>(
     let ThreadPartition { runs, pieces, gradients, flows, failure, .. } = share;
     let (spins, piece) = (setting.transfer == Transfer::Spin, &pieces[number]);
     let body = &bodies[piece.body];
-    let mut broken = None;
     for runs in runs::in_groups(&runs[piece.runs.clone()]) {
         let (ground, next) = Ground::lent(lattice, body, runs, points);
         let next = scheme.moves_with_stress().then_some(next);
@@ -97,16 +90,11 @@ fn follow_piece<S: Space>(
             let basis = PhantomData::<B>;
             processor.run_by_four(Gradients { ground, velocities, gradients, next, time_step, basis });
         });
-        let (gradients, failure) = (&gradients[..], &mut broken);
+        let (gradients, owner) = (&gradients[..], body.owner);
         with_law!(body.law, law => {
-            processor.run_by_four(Update { law, runs, gradients, time_step, spins, counts, points, flows, failure });
+            let update = Update { law, owner, runs, gradients, time_step, spins, counts, points, flows, failure };
+            processor.run_by_four(update);
         });
-    }
-    if let Some(BrokenPoint { point, cause }) = broken
-        && failure.is_none()
-    {
-        let position = S::embed(points.position[point - points.first]);
-        *failure = Some(Failure { owner: body.owner, position, cause });
     }
 }
 
@@ -123,6 +111,7 @@ fn follow_piece<S: Space>(
 /// cells breaks apart.
 struct Update<'a, 'b, S: Space, L> {
     law: L,
+    owner: Owner,
     /// Consecutive batches with at most [`LONGEST`] points in all.
     runs: &'a [ParticleBatch],
     gradients: &'a [S::Matrix],
@@ -132,14 +121,14 @@ struct Update<'a, 'b, S: Space, L> {
     points: &'a mut PointsMut<'b, S>,
     /// Energies of each batch. Batches do not depend on the thread partitions.
     flows: &'a mut Vec<Flow>,
-    /// First point with an invalid state.
-    failure: &'a mut Option<BrokenPoint>,
+    /// Failure of the first point with an invalid state.
+    failure: &'a mut Option<Failure>,
 }
 
 impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
     #[inline(always)]
     fn run<R: FourLanes>(self, _: R) {
-        let Self { law, runs, gradients, time_step, spins, counts, points, flows, failure } = self;
+        let Self { law, owner, runs, gradients, time_step, spins, counts, points, flows, failure } = self;
         let (first, start, end) = (points.first, runs[0].start, runs[runs.len() - 1].end);
         let range = start - first..end - first;
         let affines = &mut points.affine;
@@ -179,7 +168,8 @@ impl<S: Space, L: Law> FourKernel for Update<'_, '_, S, L> {
                 let (deformation, stress, volume) = (deformations[place], &mut stresses[place], &mut volumes[place]);
                 let ratio = ratios[place];
                 if (ratio <= 0.0 || ratio.is_nan()) && failure.is_none() {
-                    *failure = Some(BrokenPoint { point: start + place, cause: cause::<S>(increment, ratio) });
+                    let position = S::embed(points.position[range.start + place]);
+                    *failure = Some(Failure { owner, position, cause: cause::<S>(increment, ratio) });
                 }
                 let mut plastic_strain = if L::YIELDS { plastic_strains[place] } else { 0.0 };
                 let before = (*volume, plastic_strain);
