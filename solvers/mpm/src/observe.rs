@@ -40,40 +40,34 @@ impl<S: Space> Simulation<S> {
         let (mut uneven_rotational_energy, mut uneven_angular_momentum) = (0.0, Vector3::zeros());
         let (mut grains, mut bodies) = (Vec::new(), Vec::new());
         let forces = self.forces(&wholes);
-        for (body_at, (body, whole)) in self.state.bodies.iter().zip(&wholes).enumerate() {
+        for ((body, whole), (force, torque)) in self.state.bodies.iter().zip(wholes).zip(forces) {
             elastic_energy += self.elastic_energy(body);
-            let mut inertia = whole.inertia;
+            let WholeBodyMotion { mass, position, velocity, spin, mut inertia, angle, plastic_strain, .. } = whole;
             match body.owner {
                 Owner::Grain(id) => {
                     let grain = &self.scene.grains[id as usize - 1];
                     inertia = grain.inertia;
                     grains.push(GrainState {
-                        position: self.inside(whole.position),
-                        velocity: whole.velocity,
-                        spin: whole.spin,
-                        angle: (S::DIMENSION == 2).then_some(whole.angle),
-                        force: Some(forces[body_at].0),
-                        torque: Some(forces[body_at].1),
-                        plastic_strain: whole.plastic_strain,
+                        position: self.inside(position),
+                        velocity,
+                        spin,
+                        angle: (S::DIMENSION == 2).then_some(angle),
+                        force: Some(force),
+                        torque: Some(torque),
+                        plastic_strain,
                         ..GrainState::start(id, grain)
                     });
                 }
-                Owner::Body(at) => bodies.push(BodyState {
-                    name: self.scene.bodies[at as usize].name.clone(),
-                    mass: whole.mass,
-                    inertia,
-                    position: whole.position,
-                    velocity: whole.velocity,
-                    spin: whole.spin,
-                    angle: whole.angle,
-                    force: forces[body_at].0,
-                }),
+                Owner::Body(at) => {
+                    let name = self.scene.bodies[at as usize].name.clone();
+                    bodies.push(BodyState { name, mass, inertia, position, velocity, spin, angle, force });
+                }
             }
-            let turning = whole.spin.dot(&whole.angular_momentum);
-            let rigid = whole.mass * whole.velocity.norm_squared() + turning;
+            let turning = spin.dot(&whole.angular_momentum);
+            let rigid = mass * velocity.norm_squared() + turning;
             inner_kinetic_energy += whole.kinetic - 0.5 * rigid;
-            uneven_rotational_energy += 0.5 * (turning - inertia * whole.spin.norm_squared());
-            uneven_angular_momentum += whole.angular_momentum - whole.spin * inertia;
+            uneven_rotational_energy += 0.5 * (turning - inertia * spin.norm_squared());
+            uneven_angular_momentum += whole.angular_momentum - spin * inertia;
         }
         let points = if with_points {
             self.state.bodies.iter().flat_map(|body| body.points.clone().map(|at| self.point(body, at))).collect()

@@ -72,7 +72,22 @@ pub(crate) fn seed<S: Space>(
         add(Owner::Grain(at as u32 + 1), grain.material, grain.mass / volume, &seeds, &[surface]);
     }
     for (at, block) in scene.bodies.iter().enumerate() {
-        let (seeds, surfaces) = block_seeds::<S>(block, lattice, spacing, per_cell, between);
+        let (seeds, surfaces) = match block.shape {
+            BlockShape::Box { low, high } => {
+                let spacing = lattice.cell.map(|cell| cell / f64::from(per_cell));
+                let surface = if S::DIMENSION == 2 {
+                    elements::rectangle(low, high, between)
+                } else {
+                    elements::faces(low, high, between)
+                };
+                (seed::lattice(low, high, spacing, S::DIMENSION), vec![surface])
+            }
+            BlockShape::Annulus { centre, inner, outer } => {
+                let surfaces = [(outer, 1.0), (inner, -1.0)]
+                    .map(|(radius, outward)| elements::circle(centre, radius, between, outward));
+                (seed::rings(centre, inner, outer, spacing), surfaces.into())
+            }
+        };
         add(Owner::Body(at as u32), block.material, block.density, &seeds, &surfaces);
     }
     if !matches!(setting.transfer, Transfer::Flip { .. }) {
@@ -88,29 +103,4 @@ pub(crate) fn seed<S: Space>(
 fn held(block: &Block) -> Option<(Sides, [Vector3<f64>; 2])> {
     let BlockShape::Box { low, high } = block.shape else { return None };
     (block.sides != Sides::default()).then_some((block.sides, [low, high]))
-}
-
-fn block_seeds<S: Space>(
-    block: &Block,
-    lattice: &Lattice,
-    spacing: f64,
-    per_cell: u32,
-    between: f64,
-) -> (Vec<Seed>, Vec<Vec<Patch>>) {
-    match block.shape {
-        BlockShape::Box { low, high } => {
-            let spacing = lattice.cell.map(|cell| cell / f64::from(per_cell));
-            let surface = if S::DIMENSION == 2 {
-                elements::rectangle(low, high, between)
-            } else {
-                elements::faces(low, high, between)
-            };
-            (seed::lattice(low, high, spacing, S::DIMENSION), vec![surface])
-        }
-        BlockShape::Annulus { centre, inner, outer } => {
-            let surfaces =
-                vec![elements::circle(centre, outer, between, 1.0), elements::circle(centre, inner, between, -1.0)];
-            (seed::rings(centre, inner, outer, spacing), surfaces)
-        }
-    }
 }

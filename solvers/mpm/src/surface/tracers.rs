@@ -45,15 +45,9 @@ impl<S: Space> Chunk<S> {
         })
     }
 
-    /// Returns the squared distance from a position to the box of the chunk (m²).
-    #[inline(always)]
-    fn away(&self, position: S::Vector) -> f64 {
-        self.away_from(position, position)
-    }
-
     /// Returns the squared distance between the box of the chunk and another box (m²).
     #[inline(always)]
-    fn away_from(&self, low: S::Vector, high: S::Vector) -> f64 {
+    fn away(&self, [low, high]: [S::Vector; 2]) -> f64 {
         let mut squared = 0.0;
         for axis in 0..S::DIMENSION {
             let at = |vector: S::Vector| S::component(vector, axis);
@@ -143,9 +137,8 @@ impl<S: Space> Tracers<S> {
         reach: f64,
         near: &mut Vec<usize>,
     ) {
-        let [low, high] = [searched.low + shift, searched.high + shift];
-        let is_near =
-            |chunk: &usize| S::DIMENSION == 3 || self.chunks[*chunk].away_from(low, high) < 2.0 * reach * reach;
+        let moved = [searched.low + shift, searched.high + shift];
+        let is_near = |chunk: &usize| S::DIMENSION == 3 || self.chunks[*chunk].away(moved) < 2.0 * reach * reach;
         near.clear();
         // In three dimensions the mean over tracers extends farther than the nearest tracer.
         near.extend(chunks.clone().filter(is_near));
@@ -178,7 +171,7 @@ impl<S: Space> Tracers<S> {
             squared = squared.min(distance_to(before).next_up());
         }
         for chunk in chunks.clone().map(|chunk| &self.chunks[chunk]) {
-            if chunk.away(position) >= squared {
+            if chunk.away([position; 2]) >= squared {
                 continue;
             }
             for at in chunk.tracers.clone() {
@@ -195,7 +188,7 @@ impl<S: Space> Tracers<S> {
         let near = if S::DIMENSION == 2 {
             let [before, after] = self.neighbours[closest].map(|neighbour| neighbour as usize);
             let [one, two] = [self.chord(before, closest, position), self.chord(closest, after, position)];
-            if one.away() <= two.away() { self.on(&one) } else { self.on(&two) }
+            if S::dot(one.off, one.off) <= S::dot(two.off, two.off) { self.on(&one) } else { self.on(&two) }
         } else {
             self.around(chunks, closest, position, facing)?
         };
@@ -238,7 +231,7 @@ impl<S: Space> Tracers<S> {
         }
         let (mut total, mut mean, mut way, mut along) = (0.0, S::ORIGIN, S::ORIGIN, 0.0);
         for chunk in chunks.map(|chunk| &self.chunks[chunk]) {
-            if chunk.away(foot) >= squared {
+            if chunk.away([foot; 2]) >= squared {
                 continue;
             }
             for at in chunk.tracers.clone() {
@@ -297,14 +290,6 @@ struct Chord<S: Space> {
     part: f64,
     /// Vector from the nearest point to the position (m).
     off: S::Vector,
-}
-
-impl<S: Space> Chord<S> {
-    /// Returns the squared distance from the chord to the position (m²).
-    #[inline(always)]
-    fn away(&self) -> f64 {
-        S::dot(self.off, self.off)
-    }
 }
 
 /// Mutable view of consecutive tracers of whole bodies, for one thread.
