@@ -77,15 +77,10 @@ fn project_others<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Grid<S
             let ground = Ground::new(&lattice, body, runs, points);
             let end = if other > number { projected.len() } else { alone_from - nodes.start };
             let projected = NodeRows::new(nodes.start, &mut projected[..end]);
-            macro_rules! project {
-                ($B:ty, $T:ty) => {
-                    processor.run_by_four(Project::<S, $B, $T> { ground, points, projected, how: PhantomData })
-                };
-            }
-            with_basis!(setting.basis, B => match setting.transfer {
-                options::Transfer::Flip { .. } => project!(B, Flip),
-                options::Transfer::Apic => project!(B, Apic),
-                options::Transfer::Spin => project!(B, Spin),
+            with_basis!(setting.basis, B => if points.affine.is_empty() {
+                processor.run_by_four(Project::<S, B, Flip> { ground, points, projected, how: PhantomData });
+            } else {
+                processor.run_by_four(Project::<S, B, Apic> { ground, points, projected, how: PhantomData });
             });
         }
     });

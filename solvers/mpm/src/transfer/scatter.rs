@@ -12,13 +12,12 @@ use crate::grid::basis::{Basis, with_basis};
 use crate::grid::lattice::{Node, Stencil};
 use crate::grid::nodes::{Grid, NodePartition};
 use crate::grid::patch::{Copies, NodeRows, StencilBlock};
-use crate::options;
 use crate::points::arrays::Points;
 use crate::points::runs::Ground;
 use crate::points::state::State;
 use crate::scheme::Scheme;
 use crate::surface::shape_function;
-use crate::transfer::schemes::{Apic, Flip, Spin, Transfer};
+use crate::transfer::schemes::{Apic, Flip, Transfer};
 use grainbench_lanes::{FourKernel, FourLanes, LANES, Number, SimdPack};
 use grainbench_solver::space::Space;
 use nalgebra::Vector3;
@@ -37,10 +36,11 @@ pub(crate) fn scatter<S: Space>(scheme: &Scheme, state: &State<S>, grid: &mut Gr
         for (_, body, runs) in state.reaching(&shares[number].nodes) {
             let ground = Ground::new(&lattice, body, runs, points);
             let nodes = NodeRows::new(start, &mut *own);
-            with_basis!(setting.basis, B => match setting.transfer {
-                options::Transfer::Flip { .. } => processor.run_by_four(Scatter::<S, B, Flip>::new(ground, points, nodes)),
-                options::Transfer::Apic => processor.run_by_four(Scatter::<S, B, Apic>::new(ground, points, nodes)),
-                options::Transfer::Spin => processor.run_by_four(Scatter::<S, B, Spin>::new(ground, points, nodes)),
+            // Points with a spin scatter it as an affine part, so one kernel serves both transfers.
+            with_basis!(setting.basis, B => if points.affine.is_empty() {
+                processor.run_by_four(Scatter::<S, B, Flip> { ground, points, nodes, how: PhantomData });
+            } else {
+                processor.run_by_four(Scatter::<S, B, Apic> { ground, points, nodes, how: PhantomData });
             });
         }
         if grips {
@@ -112,12 +112,6 @@ struct Scatter<'a, S: Space, B, T> {
     points: &'a Points<S>,
     nodes: NodeRows<'a, Node<S>>,
     how: PhantomData<(B, T)>,
-}
-
-impl<'a, S: Space, B: Basis, T: Transfer> Scatter<'a, S, B, T> {
-    const fn new(ground: Ground<'a, S>, points: &'a Points<S>, nodes: NodeRows<'a, Node<S>>) -> Self {
-        Self { ground, points, nodes, how: PhantomData }
-    }
 }
 
 impl<S: Space, B: Basis, T: Transfer> FourKernel for Scatter<'_, S, B, T> {
