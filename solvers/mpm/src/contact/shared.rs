@@ -189,10 +189,7 @@ impl<S: Space> SharedNodes<S> {
     pub(crate) fn find_faces<B: Basis>(&mut self, lattice: &Lattice, bodies: &[Body], used: usize, points: &Points<S>) {
         self.faces.clear();
         self.faces.resize(used, Face { normal: S::ORIGIN, stress: S::NO_GRADIENT });
-        for (place, body) in bodies.iter().enumerate() {
-            if !self.touching[place] {
-                continue;
-            }
+        for (body, _) in bodies.iter().zip(&self.touching).filter(|(_, touching)| **touching) {
             body.each_stencil::<S, B>(lattice, points, |at, stencil| {
                 let (mass, volume) = (points.mass[at], points.volume[at]);
                 let stress = S::restrict_gradient(S::embed_symmetric(points.stress[at])) * volume;
@@ -212,10 +209,7 @@ impl<S: Space> SharedNodes<S> {
         self.densities.resize(used, 0.0);
         let mut middles = *lattice;
         (0..S::DIMENSION).for_each(|axis| middles.origin[axis] += 0.5 * lattice.cell[axis]);
-        for (place, body) in bodies.iter().enumerate() {
-            if !self.touching[place] {
-                continue;
-            }
+        for (body, _) in bodies.iter().zip(&self.touching).filter(|(_, touching)| **touching) {
             for at in body.points.clone() {
                 let stencil = Stencil::new::<S, Quadratic>(&middles, points.position[at], [body.half; 3]);
                 let mass = points.mass[at];

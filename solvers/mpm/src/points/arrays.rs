@@ -149,6 +149,23 @@ impl<S: Space> Points<S> {
         ];
         team.each(tasks.into_iter(), |_, task| task());
     }
+
+    /// Returns a mutable view of all points.
+    pub(crate) fn lent(&mut self) -> PointsMut<'_, S> {
+        PointsMut {
+            first: 0,
+            position: &mut self.position,
+            next: &mut self.next,
+            velocity: &mut self.velocity,
+            affine: &mut self.affine,
+            mass: &self.mass,
+            reference_volume: &self.reference_volume,
+            volume: &mut self.volume,
+            deformation: &mut self.deformation,
+            stress: &mut self.stress,
+            plastic_strain: &mut self.plastic_strain,
+        }
+    }
 }
 
 /// Permutation of consecutive points.
@@ -211,25 +228,6 @@ impl<S: Space> PointsMut<'_, S> {
             deformation: take_off(&mut self.deformation, count),
             stress: take_off(&mut self.stress, count),
             plastic_strain: take_off(&mut self.plastic_strain, count),
-        }
-    }
-}
-
-impl<S: Space> Points<S> {
-    /// Returns a mutable view of all points.
-    pub(crate) fn lent(&mut self) -> PointsMut<'_, S> {
-        PointsMut {
-            first: 0,
-            position: &mut self.position,
-            next: &mut self.next,
-            velocity: &mut self.velocity,
-            affine: &mut self.affine,
-            mass: &self.mass,
-            reference_volume: &self.reference_volume,
-            volume: &mut self.volume,
-            deformation: &mut self.deformation,
-            stress: &mut self.stress,
-            plastic_strain: &mut self.plastic_strain,
         }
     }
 }

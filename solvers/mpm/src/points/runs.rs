@@ -38,6 +38,13 @@ impl ParticleBatch {
         let beyond = |axis: usize| lattice.cells::<S>(position, axis) - (f64::from(self.base[axis]) + start);
         (0..S::DIMENSION).all(|axis| (0.0..1.0).contains(&beyond(axis)))
     }
+
+    /// Iterates over the points of the batch, four at a time.
+    #[inline(always)]
+    pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
+        let Self { start, end, .. } = *self;
+        (start..end).step_by(LANES).map(move |at| Batch { start: at, count: (end - at).min(LANES) })
+    }
 }
 
 /// Finds the batches of a range of points, appends them to `runs`, and returns their index range in `runs`.
@@ -168,15 +175,6 @@ pub(crate) fn first_batch<S: Space, B: Basis>(
 /// Lane masks by the number of points: one in lanes with a point, zero in the other lanes.
 const OWN: [[f64; LANES]; LANES + 1] =
     [[0.0; 4], [1.0, 0.0, 0.0, 0.0], [1.0, 1.0, 0.0, 0.0], [1.0, 1.0, 1.0, 0.0], [1.0; 4]];
-
-impl ParticleBatch {
-    /// Iterates over the points of the batch, four at a time.
-    #[inline(always)]
-    pub(crate) fn batches(&self) -> impl Iterator<Item = Batch> + use<> {
-        let Self { start, end, .. } = *self;
-        (start..end).step_by(LANES).map(move |at| Batch { start: at, count: (end - at).min(LANES) })
-    }
-}
 
 impl Batch {
     /// Returns the same points with indices relative to `first`.
