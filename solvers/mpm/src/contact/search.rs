@@ -43,31 +43,25 @@ pub(crate) struct SearchResults<S: Space> {
     near: Vec<usize>,
 }
 
-/// Read-only data for the contact search of tracers.
-#[derive(Clone, Copy)]
-pub(crate) struct TracerSurroundings<'a, S: Space, B> {
+/// Kernel of the search in some pairs of bodies. It tests the tracers of each body against the surface of its contact
+/// partner.
+pub(crate) struct Search<'a, S: Space, B> {
     pub(crate) rules: Rules<'a>,
     pub(crate) bodies: &'a [Body],
     pub(crate) tracers: &'a Tracers<S>,
     pub(crate) nodes: &'a [Node<S>],
     /// Weight limit of each node at a surface.
     pub(crate) most: &'a [f64],
-    pub(crate) basis: PhantomData<B>,
-}
-
-/// Kernel of the search in some pairs of bodies. It tests the tracers of each body against the surface of its contact
-/// partner.
-pub(crate) struct Search<'a, S: Space, B> {
-    pub(crate) around: TracerSurroundings<'a, S, B>,
     pub(crate) pairs: &'a [Pair<S>],
     pub(crate) found: &'a mut SearchResults<S>,
+    pub(crate) basis: PhantomData<B>,
 }
 
 impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
     #[inline(always)]
     fn run<L: FourLanes>(self, _: L) {
-        let Self { around, pairs, found: SearchResults { gone, near } } = self;
-        let TracerSurroundings { rules, bodies, tracers, .. } = around;
+        let Self { rules, bodies, tracers, pairs, .. } = self;
+        let SearchResults { mut gone, mut near } = std::mem::take(&mut *self.found);
         let cell = rules.lattice.shortest(S::DIMENSION);
         gone.clear();
         let reach = DEEPEST * cell;
@@ -78,7 +72,7 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
                 if !chunk.meets(low, high) {
                     continue;
                 }
-                tracers.find_near(chunk, -pair.shift, &second.chunks, reach, near);
+                tracers.find_near(chunk, -pair.shift, &second.chunks, reach, &mut near);
                 if near.is_empty() {
                     continue;
                 }
@@ -91,14 +85,15 @@ impl<S: Space, B: Basis> FourKernel for Search<'_, S, B> {
                     let (facing, runs) = (tracers.area[tracer], near.iter().copied());
                     let there = tracers.gone_through(runs, position, facing, reach, &mut closest);
                     let there = there.filter(|near| near.gap < 0.0);
-                    gone.extend(there.and_then(|near| around.gone(pair, tracer, near)));
+                    gone.extend(there.and_then(|near| self.gone(pair, tracer, near)));
                 }
             }
         }
+        *self.found = SearchResults { gone, near };
     }
 }
 
-impl<S: Space, B: Basis> TracerSurroundings<'_, S, B> {
+impl<S: Space, B: Basis> Search<'_, S, B> {
     /// Returns the contact of a tracer of the first body that penetrates the surface `near` of the second, or `None` if
     /// no force acts there.
     #[inline(always)]

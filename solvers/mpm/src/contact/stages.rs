@@ -5,7 +5,7 @@ use crate::contact::friction::Coulomb;
 use crate::contact::nodal::{self, ReactionReceivers};
 use crate::contact::pairs::Pairs;
 use crate::contact::penalty::{Push, Springs};
-use crate::contact::search::{Search, SearchResults, TracerSurroundings};
+use crate::contact::search::{Search, SearchResults};
 use crate::contact::shared::{Field, SharedNodes};
 use crate::contact::{ContactPoint, FrictionTable, Rules};
 use crate::energy::accounts::Accounts;
@@ -159,8 +159,8 @@ impl<S: Space> Contacts<S> {
         state.team.each(found.iter_mut(), |number, found| {
             let pairs = &all[number * all.len() / shares..(number + 1) * all.len() / shares];
             with_basis!(setting.basis, B => {
-                let around = TracerSurroundings { rules, bodies, tracers, nodes, most, basis: PhantomData::<B> };
-                processor.run_by_four(Search { around, pairs, found });
+                let basis = PhantomData::<B>;
+                processor.run_by_four(Search { rules, bodies, tracers, nodes, most, pairs, found, basis });
             });
         });
         let springs = Springs {
