@@ -240,23 +240,20 @@ impl<S: Space> Simulation<S> {
     /// Returns one contact for each pair of a grain and another body or a wall. Its force is the sum of the forces on all
     /// tracers. It acts at the mean of their contact points, weighted by the normal forces.
     fn contacts(&self) -> Vec<ContactState> {
-        let mut touches: Vec<(u32, ContactPartner, ContactPoint<S>)> = Vec::new();
-        for touch in &self.contacts.touches {
-            let swap = matches!(touch.other, ContactPartner::Body(other) if other < touch.body);
-            match touch.other {
-                ContactPartner::Body(other) if swap => touches.push((
-                    other,
-                    ContactPartner::Body(touch.body),
-                    ContactPoint { push: -touch.push, shear: -touch.shear, ..*touch },
-                )),
-                other => touches.push((touch.body, other, *touch)),
+        let mut touches = self.contacts.touches.clone();
+        for touch in &mut touches {
+            if let ContactPartner::Body(other) = touch.other
+                && other < touch.body
+            {
+                (touch.body, touch.other) = (other, ContactPartner::Body(touch.body));
+                (touch.push, touch.shear) = (-touch.push, -touch.shear);
             }
         }
-        touches.sort_by_key(|&(body, other, _)| (body, other));
+        touches.sort_by_key(|touch| (touch.body, touch.other));
         touches
-            .chunk_by(|a, b| (a.0, a.1) == (b.0, b.1))
+            .chunk_by(|a, b| (a.body, a.other) == (b.body, b.other))
             .filter_map(|group| {
-                let (body, other) = (group[0].0, group[0].1);
+                let ContactPoint { body, other, .. } = group[0];
                 let Owner::Grain(grain) = self.state.bodies[body as usize].owner else { return None };
                 let partner = match other {
                     ContactPartner::Wall(wall) => Partner::Wall(wall),
@@ -266,19 +263,18 @@ impl<S: Space> Simulation<S> {
                     },
                 };
                 let size = |touch: &ContactPoint<S>| S::dot(touch.push, touch.push).sqrt();
-                let total: f64 = group.iter().map(|(_, _, touch)| size(touch)).sum();
-                let push: Vector3<f64> = group.iter().map(|(_, _, touch)| S::embed(touch.push)).sum();
-                let shear = group.iter().map(|(_, _, touch)| S::embed(touch.shear)).sum();
-                let point = group.iter().map(|(_, _, touch)| S::embed(touch.point) * size(touch)).sum::<Vector3<f64>>();
-                let sliding: f64 =
-                    group.iter().filter(|(_, _, touch)| touch.slipping).map(|(_, _, touch)| size(touch)).sum();
+                let total: f64 = group.iter().map(size).sum();
+                let push: Vector3<f64> = group.iter().map(|touch| S::embed(touch.push)).sum();
+                let shear = group.iter().map(|touch| S::embed(touch.shear)).sum();
+                let point: Vector3<f64> = group.iter().map(|touch| S::embed(touch.point) * size(touch)).sum();
+                let sliding: f64 = group.iter().filter(|touch| touch.slipping).map(size).sum();
                 let normal_force = push.norm();
                 (total > 0.0 && normal_force > 0.0).then(|| ContactState {
                     grain,
                     partner,
                     point: point / total,
                     normal: -push / normal_force,
-                    overlap: group.iter().map(|(_, _, touch)| touch.depth).fold(0.0, f64::max),
+                    overlap: group.iter().map(|touch| touch.depth).fold(0.0, f64::max),
                     normal_force,
                     shear_force: shear,
                     slipping: sliding > 0.5 * total,
