@@ -5,12 +5,12 @@ use std::path::Path;
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Scene;
 
-use crate::grain_columns::GrainColumns;
+use crate::names::GrainColumns;
 use crate::observer::Names;
 use crate::outputs::OutputError;
+use crate::read::format::{Snapshots, in_order, shown};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpKind, DumpSnapshot};
-use crate::run_files::{Snapshots, in_order, shown};
 
 /// Reads the first sample of a dump into a scene: radii, masses, positions, velocities and spins of the grains, and the
 /// bounds of periodic axes. Quantities that the file lacks stay as in the scene. Returns the names of the quantities read.

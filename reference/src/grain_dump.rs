@@ -1,17 +1,15 @@
 //! Snapshots from dumps of grains without a scene. Options supply the data that the columns lack.
 
-use std::collections::{BTreeMap, BTreeSet};
 use std::path::Path;
 
 use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::scene::Grain;
-use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
+use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
-use crate::grain_columns::GrainColumns;
-use crate::names::Names;
-use crate::pair_forces::PairColumns;
-use crate::read::dump::DumpReader;
+use crate::contacts::contacts_of;
+use crate::names::{GrainColumns, Names};
+use crate::read::format::dump::DumpReader;
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
@@ -187,80 +185,5 @@ impl GrainDump {
             spin: Vector3::repeat(f64::NAN),
         };
         Ok(GrainState::start(id as u32, &grain))
-    }
-}
-
-/// Returns the contacts between the grains of a snapshot from a dump of contacts. `entries` holds the last step that
-/// has been read from this dump.
-pub(crate) fn contacts_of(
-    snapshot: &Snapshot,
-    reader: &mut DumpReader,
-    entries: &mut DumpSnapshot,
-    file: &str,
-    names: &Names,
-) -> Result<Vec<ContactState>, ReadError> {
-    let step = snapshot.step;
-    // The dump of contacts may have more steps than the dump of grains.
-    while entries.columns.is_empty() || entries.step < step {
-        if !reader.read(entries)? {
-            let expected = format!("the contacts of step {step}");
-            return Err(ReadError::at(file, entries.first_line, expected, "the end of the file"));
-        }
-    }
-    if entries.step != step {
-        let expected = format!("the contacts of step {step}");
-        return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
-    }
-    let PairColumns { ids: [first, second], parts } = PairColumns::find(file, entries, names)?;
-    let place: BTreeMap<u32, usize> = snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
-    let (mut contacts, mut seen) = (Vec::new(), BTreeSet::new());
-    for row in 0..entries.rows() {
-        let numbers = entries.row(row);
-        let find = |at: usize| {
-            let known = place.get(&(numbers[at] as u32)).copied();
-            known.ok_or_else(|| {
-                let (line, found) = (entries.first_line + row as u64, numbers[at].to_string());
-                ReadError::at(file, line, format!("the id of a grain of step {step}"), found)
-            })
-        };
-        let (one, other) = (find(first)?, find(second)?);
-        // A dump may contain a contact twice, once from each grain.
-        if one == other || !seen.insert((one.min(other), one.max(other))) {
-            continue;
-        }
-        let mut force = Vector3::zeros();
-        for part in &parts {
-            for (axis, column) in part.iter().enumerate() {
-                force[axis] += column.map_or(0.0, |column| numbers[column]);
-            }
-        }
-        contacts.push(contact(snapshot, one, other, force));
-    }
-    contacts.sort_by_key(|contact: &ContactState| contact.grain);
-    Ok(contacts)
-}
-
-/// Returns the contact of two grains of given indices. `force` is the force on the first grain (N).
-fn contact(snapshot: &Snapshot, one: usize, other: usize, force: Vector3<f64>) -> ContactState {
-    let (first, second) = (&snapshot.grains[one], &snapshot.grains[other]);
-    let length = snapshot.bounds.1 - snapshot.bounds.0;
-    let mut between = second.position - first.position;
-    for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
-        between[axis] -= (between[axis] / length[axis]).round() * length[axis];
-    }
-    let distance = between.norm();
-    let normal = between.try_normalize(0.0).unwrap_or_else(Vector3::x);
-    let overlap = first.radius + second.radius - distance;
-    let normal_force = -force.dot(&normal);
-    ContactState {
-        grain: first.id,
-        partner: Partner::Grain(second.id),
-        point: first.position + normal * (first.radius - 0.5 * overlap),
-        normal,
-        overlap,
-        normal_force,
-        shear_force: force + normal * normal_force,
-        // Dumps do not state if a contact slips.
-        slipping: false,
     }
 }

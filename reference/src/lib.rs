@@ -5,31 +5,28 @@
 
 mod clock;
 pub mod comparison;
+mod contacts;
 pub mod data;
 pub mod deck;
 mod execution;
 mod first_sample;
-mod grain_columns;
 pub mod grain_dump;
 pub mod live;
 pub mod names;
 pub mod observer;
 pub mod outputs;
 pub mod outside;
-mod pair_forces;
 mod read;
 pub mod round_robin;
-mod run_files;
 pub mod stored;
 
 pub use execution::process::{end_programs_at, has_ended_programs};
 pub use first_sample::read_start;
 pub use read::data_file::{Atom, DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
-pub use read::dump::DumpReader;
+pub use read::format::dump::DumpReader;
 pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};
-pub use read::number_table::NumberColumn;
-pub use read::numbers::NonFiniteNumbers;
+pub use read::number_table::{NonFiniteNumbers, NumberColumn};
 pub use read::read_error::ReadError;
 pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot, Numbering};
 pub use read::table::{Table, parse_table, read_table};

@@ -7,11 +7,10 @@ use grainbench_solver::recorder::Recorder;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
+use crate::contacts::{PairForce, PairForces, contacts};
 use crate::deck::Stepping;
-use crate::grain_columns::GrainColumns;
+use crate::names::GrainColumns;
 pub use crate::names::Names;
-use crate::pair_forces::{PairForce, PairForces};
-use crate::read::contacts::contacts;
 use crate::read::digits::Digits;
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;

@@ -8,19 +8,19 @@ use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 
 use crate::clock::Clock;
+use crate::contacts::PairForces;
 use crate::deck::{Deck, Program, logged, write_deck};
 use crate::names::Names;
 use crate::observer::{DumpObserver, DumpRecord};
-use crate::pair_forces::PairForces;
 use crate::read::digits::Digits;
+use crate::read::format::{RunFile, Snapshots, format_of, in_order, shown};
 use crate::read::log::{Log, read_log};
 use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
-use crate::run_files::{RunFile, Snapshots, format_of, in_order, shown};
 
-pub use crate::run_files::is_of_a_run;
+pub use crate::read::format::is_of_a_run;
 
 /// Maximum number of files that are all named in reports. For more files, only the first and the last are named.
 const MOST_NAMED: usize = 3;

@@ -4,13 +4,12 @@ use std::ops::Range;
 use std::path::Path;
 use std::vec;
 
-use super::Options;
-use super::column::PrintedDigits;
+use super::{Options, PrintedDigits};
 use crate::names::Names;
+use crate::read::format::{RunFile, Snapshots, in_order};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
-use crate::run_files::{RunFile, Snapshots, in_order};
 
 const AXES: [&str; 3] = ["x", "y", "z"];
 
@@ -156,11 +155,24 @@ impl Frames {
             return Ok(None);
         }
         let FrameSource::Grains { snapshot, .. } = &self.from else { return Ok(None) };
-        if let Some(id) = snapshot.column(self.names.in_file("id")) {
-            snapshot.check_ids(&self.file, id)?;
-        }
+        let id = snapshot.column(self.names.in_file("id"));
+        id.map_or(Ok(()), |id| snapshot.check_ids(&self.file, id))?;
+        let order = snapshot.rows_by(id);
+        let values = self.wanted.iter().map(|name| {
+            let axis = AXES.iter().position(|axis| axis == name);
+            if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
+                return order.iter().map(|&row| coordinate.value(snapshot.row(row))).collect();
+            }
+            let at = snapshot.column(self.names.in_file(name));
+            order.iter().map(|&row| at.map_or(f64::NAN, |at| snapshot.row(row)[at])).collect()
+        });
+        let of_step =
+            || Some(snapshot.step as f64 * self.time_step.filter(|_| snapshot.numbering != Numbering::Frames)?);
+        let time = snapshot.time.or_else(of_step);
+        let place = Place { step: Some(snapshot.step), time, number, line: snapshot.first_line };
+        let ids = id.map(|id| order.iter().map(|&row| snapshot.row(row)[id]).collect());
         // A snapshot that repeats a step has already been compared with the previous one by its reader.
-        Ok(Some((self.of_snapshot(snapshot, number), Vec::new())))
+        Ok(Some((Frame { place, ids, values: values.collect() }, Vec::new())))
     }
 
     /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if truncation is
@@ -195,27 +207,6 @@ impl Frames {
         match &self.from {
             FrameSource::Grains { snapshot, .. } => snapshot.units.as_deref(),
             FrameSource::Table { .. } => None,
-        }
-    }
-
-    fn of_snapshot(&self, snapshot: &DumpSnapshot, number: u64) -> Frame {
-        let id = snapshot.column(self.names.in_file("id"));
-        let order = snapshot.rows_by(id);
-        let values = self.wanted.iter().map(|name| {
-            let axis = AXES.iter().position(|axis| axis == name);
-            if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
-                return order.iter().map(|&row| coordinate.value(snapshot.row(row))).collect();
-            }
-            let at = snapshot.column(self.names.in_file(name));
-            order.iter().map(|&row| at.map_or(f64::NAN, |at| snapshot.row(row)[at])).collect()
-        });
-        let of_step =
-            || Some(snapshot.step as f64 * self.time_step.filter(|_| snapshot.numbering != Numbering::Frames)?);
-        let time = snapshot.time.or_else(of_step);
-        Frame {
-            place: Place { step: Some(snapshot.step), time, number, line: snapshot.first_line },
-            ids: id.map(|id| order.iter().map(|&row| snapshot.row(row)[id]).collect()),
-            values: values.collect(),
         }
     }
 

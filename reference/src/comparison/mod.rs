@@ -3,18 +3,15 @@
 //! Samples are matched by step or row number. If the steps differ, samples are matched by time, and the second output
 //! is interpolated between its samples.
 
-mod column;
 mod frames;
 
 use std::path::Path;
 
 use crate::names::Names;
+use crate::read::digits::Digits;
+use crate::read::format::format_of;
 use crate::read::read_error::{ReadError, quoted};
-use crate::run_files::format_of;
-use column::{Column, PrintedDigits};
 use frames::{Frame, Frames, Place};
-
-pub use column::{Difference, Sample};
 
 /// Options of a comparison.
 #[derive(Debug, Clone, Default)]
@@ -85,6 +82,123 @@ pub struct Comparison {
     pub interval: f64,
 }
 
+/// Difference of one column between two outputs.
+#[derive(Debug, Clone, PartialEq)]
+pub struct Difference {
+    /// Name of the column.
+    pub name: String,
+    /// Value of the first output at the largest difference. The largest difference is found after subtraction of the
+    /// uncertainty of printed digits.
+    pub first: f64,
+    /// Value of the second output at the largest difference.
+    pub second: f64,
+    /// Reference magnitude of the column in the first output. For a coordinate that changes, it is the largest change
+    /// since the first sample. Otherwise it is the largest magnitude of the column.
+    ///
+    /// If this magnitude is zero, the second output is used; if both are zero, the scale is 1.
+    pub scale: f64,
+    /// Uncertainty of the largest difference. It contains half a unit of the last printed digit in each output, and the
+    /// interpolation error of the second output.
+    pub open: f64,
+    /// Difference at each sample.
+    pub course: Vec<Sample>,
+}
+
+/// Difference of a column at one sample.
+#[derive(Debug, Clone, Copy, PartialEq)]
+pub struct Sample {
+    /// Step, time (s) or row number of the sample.
+    pub at: f64,
+    /// Largest absolute difference of all rows of the sample.
+    pub off: f64,
+    /// Largest absolute difference after subtraction of the uncertainty of printed digits.
+    pub beyond_digits: f64,
+}
+
+/// Printed digits of a column in a file.
+#[derive(Debug, Clone, Copy, Default)]
+struct PrintedDigits {
+    digits: Digits,
+    of_file: Digits,
+    /// Box length by which a scaled coordinate is multiplied; `None` for other columns.
+    scale: Option<f64>,
+}
+
+impl PrintedDigits {
+    /// Returns half a unit of the last printed digit of `value`, in the unit of the column.
+    fn half_unit(&self, value: f64) -> f64 {
+        match self.scale {
+            Some(scale) => scale * self.digits.half_unit(1.0, &self.of_file),
+            None => self.digits.half_unit(value, &self.of_file),
+        }
+    }
+}
+
+/// Column whose difference is accumulated.
+struct Column {
+    difference: Difference,
+    printed: [PrintedDigits; 2],
+    is_coordinate: bool,
+    starts: [Vec<f64>; 2],
+    /// Largest magnitude of the column in each output.
+    magnitudes: [f64; 2],
+    changes: [f64; 2],
+    worst: f64,
+}
+
+impl Column {
+    fn new(name: &str, printed: [PrintedDigits; 2]) -> Self {
+        let (first, second, name) = (f64::NAN, f64::NAN, name.to_owned());
+        let is_coordinate = ["x", "y", "z"].contains(&name.as_str());
+        let difference = Difference { name, first, second, scale: 0.0, open: 0.0, course: Vec::new() };
+        let (magnitudes, changes, worst) = ([0.0; 2], [0.0; 2], f64::NEG_INFINITY);
+        Self { difference, printed, is_coordinate, starts: Default::default(), magnitudes, changes, worst }
+    }
+
+    /// Adds the values of all rows of both outputs at one step, time (s) or row number.
+    fn take(&mut self, at: f64, values: [&[f64]; 2]) {
+        for (which, values) in values.into_iter().enumerate() {
+            if self.starts[which].is_empty() {
+                self.starts[which] = values.to_vec();
+            }
+            for (value, start) in values.iter().zip(&self.starts[which]) {
+                self.magnitudes[which] = self.magnitudes[which].max(value.abs());
+                self.changes[which] = self.changes[which].max((value - start).abs());
+            }
+        }
+        let mut sample = Sample { at, off: 0.0, beyond_digits: 0.0 };
+        for (a, b) in values[0].iter().zip(values[1]) {
+            let open = self.printed[0].half_unit(*a) + self.printed[1].half_unit(*b);
+            let off = (b - a).abs();
+            let off = if off.is_nan() { f64::INFINITY } else { off };
+            sample.off = sample.off.max(off);
+            sample.beyond_digits = sample.beyond_digits.max(off - open);
+            if off - open > self.worst {
+                self.worst = off - open;
+                (self.difference.first, self.difference.second, self.difference.open) = (*a, *b, open);
+            }
+        }
+        self.difference.course.push(sample);
+    }
+
+    /// Returns the difference. The interpolation error `interpolated` is added to the uncertainty of the difference.
+    fn finish(mut self, interpolated: f64) -> Difference {
+        let column_extent = |which: usize| {
+            let change = self.changes[which];
+            if self.is_coordinate && change > 0.0 { change } else { self.magnitudes[which] }
+        };
+        let extents = [column_extent(0), column_extent(1)];
+        let extent = extents.into_iter().find(|extent| *extent > 0.0);
+        self.difference.scale = extent.unwrap_or(1.0);
+        // If all printed numbers and formats are equal, the uncertainty is zero even if few digits are printed.
+        let [a, b] = self.printed;
+        let is_alike = a.digits == b.digits && a.scale == b.scale && interpolated == 0.0;
+        let is_equal = extent.is_none() || is_alike && self.difference.course.iter().all(|sample| sample.off == 0.0);
+        self.difference.open = if is_equal { 0.0 } else { self.difference.open + interpolated };
+        self.difference
+    }
+}
+
 /// Relative difference below which two times are equal.
 const ONE_TIME: f64 = 1e-6;
 
@@ -102,15 +216,14 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
         return Err(ReadError::at(&name, 1, format!("{first}, like the other file"), second));
     }
     let open = |which: usize| Frames::open([first, second][which], is_grains, which, options);
-    let Survey { columns, printed, lonely, places, cuts } = survey([open(0)?, open(1)?], options)?;
+    let Survey { mut columns, lonely, places, cuts } = survey([open(0)?, open(1)?], options)?;
     let key = key(&places).ok_or_else(|| {
         let expected = format!("{} rows, as in the other file, or a column `step` or `time`", places[0].len());
         ReadError::at(&name, 1, expected, places[1].len().to_string())
     })?;
     let mut files = [open(0)?, open(1)?];
-    files.iter_mut().for_each(|frames| frames.wanted.clone_from(&columns));
-    let columns = columns.iter().zip(printed).map(|(name, printed)| Column::new(name, printed));
-    let mut columns: Vec<Column> = columns.collect();
+    let wanted: Vec<String> = columns.iter().map(|column| column.difference.name.clone()).collect();
+    files.iter_mut().for_each(|frames| frames.wanted.clone_from(&wanted));
     let ends = [0, 1].map(|which: usize| {
         [places[which].first(), places[which].last()].map(|place| place.map_or(f64::NAN, |place| key.value(place)))
     });
@@ -138,9 +251,7 @@ pub fn compare(first: &Path, second: &Path, options: &Options) -> Result<Compari
 }
 
 struct Survey {
-    columns: Vec<String>,
-    /// Printed digits of these columns in each file.
-    printed: Vec<[PrintedDigits; 2]>,
+    columns: Vec<Column>,
     /// Columns that only one of the files has.
     lonely: [Vec<String>; 2],
     /// Positions of the samples in each file.
@@ -173,16 +284,19 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
         }
     }
     let is_asked = |name: &String| options.columns.is_empty() || options.columns.contains(name);
-    let columns: Vec<String> = a.iter().filter(|name| b.contains(name) && is_asked(name)).cloned().collect();
+    let columns: Vec<Column> = a
+        .iter()
+        .filter(|name| b.contains(name) && is_asked(name))
+        .map(|name| Column::new(name, [files[0].printed(name), files[1].printed(name)]))
+        .collect();
     if columns.is_empty() {
         return Err(missing(1, format!("one of the columns {}", quoted(&a.join(" ")))));
     }
-    let printed = columns.iter().map(|name| [files[0].printed(name), files[1].printed(name)]).collect();
     let alone = |own_columns: &[String], other: &[String]| -> Vec<String> {
         own_columns.iter().filter(|name| is_asked(name) && !other.contains(name)).cloned().collect()
     };
     let (lonely, cuts) = ([alone(&a, &b), alone(&b, &a)], files.map(|file| file.cut));
-    Ok(Survey { columns, printed, lonely, places, cuts })
+    Ok(Survey { columns, lonely, places, cuts })
 }
 
 /// Returns the quantity by which samples are matched.

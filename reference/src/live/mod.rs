@@ -16,15 +16,14 @@ use grainbench_solver::record::Record;
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 
+use crate::contacts::{PairForces, contacts_of};
 use crate::deck::{CONTACTS, Deck, DeckError, END, END_CONTACTS, Program, SAMPLES, logged, write_deck};
 use crate::execution::process::{Deadline, Limits, on_path};
 use crate::execution::{self, Launch, Protocol, most_bytes, output, plain_file};
-use crate::grain_dump::contacts_of;
 use crate::observer::{DumpObserver, DumpRecord};
-use crate::pair_forces::PairForces;
-use crate::read::dump::DumpReader;
+use crate::read::format::dump::DumpReader;
 use crate::read::log::read_log;
-use crate::read::numbers::NonFiniteNumbers;
+use crate::read::number_table::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 

@@ -6,8 +6,7 @@ use std::io::BufRead;
 use std::mem;
 use std::path::Path;
 
-use crate::read::fields::Fields;
-use crate::read::lines::{Line, Lines, opened};
+use crate::read::lines::{Fields, Line, Lines, opened};
 use crate::read::read_error::{ReadError, quoted};
 
 /// LAMMPS data file with `atom_style sphere`, or LIGGGHTS data file with `atom_style granular`.

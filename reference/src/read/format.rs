@@ -1,8 +1,16 @@
-//! Interface of file formats with snapshots of grains. Each format is a file in the folder `formats`.
+//! File formats with snapshots of grains, and the output files of a run, read snapshot by snapshot. Each format is a file
+//! in the folder `formats`.
 
-use super::read_error::ReadError;
+use super::decoding::decoded;
+use super::lines::{Lines, opened};
+use super::parquet;
+use super::read_error::{ReadError, quoted};
 use super::snapshot::{DumpSnapshot, Numbering};
+use super::table::read_table;
+use std::io::Read;
 use std::path::{Path, PathBuf};
+
+include!(concat!(env!("OUT_DIR"), "/formats.rs"));
 
 /// Reader of the snapshots of an open file, one after the other. It replaces its argument by the next snapshot and returns
 /// false at the end of the file.
@@ -72,4 +80,198 @@ pub(crate) fn check_grains(name: &str, grains: usize, most_rows: u64) -> Result<
     Err(ReadError::at(name, 1, expected, grains.to_string()))
 }
 
-include!(concat!(env!("OUT_DIR"), "/formats.rs"));
+/// Number of bytes at the beginning of a file that identify its kind.
+const HEAD: u64 = 512;
+
+/// Returns the format of a file of grains from its beginning, or `None` for a table. An empty file counts as a dump, whose
+/// reader reports the error.
+pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadError> {
+    let name = shown(path);
+    let reading = |error| ReadError::reading(&name, 1, error);
+    let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
+    opened(path)?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
+    if bytes.starts_with(parquet::MARK) {
+        return Ok(None);
+    }
+    let find = |unpacked: &[u8], line: &str| {
+        let beginning = Beginning { path, bytes: &bytes, unpacked, line };
+        FORMATS.iter().copied().find(|format| (format.is_it)(&beginning))
+    };
+    // `unpacked` is empty at first, so that archives and containers are identified before decompression.
+    if let Some(format) = find(&[], "") {
+        return Ok(Some(format));
+    }
+    if let Ok(reader) = decoded(opened(path)?).map_err(reading)? {
+        reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;
+    }
+    if let Some(format) = find(&unpacked, "") {
+        return Ok(Some(format));
+    }
+    let mut lines = Lines::open(path)?;
+    let mut has_comments = false;
+    while let Some(line) = lines.next_text()? {
+        let text = line.text.trim();
+        if text.starts_with('#') {
+            has_comments = true;
+        } else if text.parse::<u64>().is_ok() {
+            // A number alone is the first line of an .xyz file. The reader of dumps reports that this format is not
+            // supported.
+            return Ok(Some(&dump::FORMAT));
+        } else if !text.is_empty() {
+            return Ok(find(&unpacked, line.text));
+        }
+    }
+    Ok((!has_comments).then_some(&dump::FORMAT))
+}
+
+/// Checks that a file contains output of a run: snapshots of grains, contacts of a dump, or a table of numbers. The
+/// name of the file does not matter.
+///
+/// # Errors
+/// If the file has other content or cannot be read.
+pub fn is_of_a_run(path: &Path) -> Result<(), ReadError> {
+    let length = std::fs::metadata(path).map_err(|error| ReadError::opening(&shown(path), error))?.len();
+    if length == 0 {
+        return Err(ReadError::at(&shown(path), 1, "grains or a table of numbers", "an empty file"));
+    }
+    if format_of(path)?.is_none() {
+        read_table(path)?;
+    }
+    Ok(())
+}
+
+/// Output file of a run.
+#[derive(Clone, Debug)]
+pub(crate) struct RunFile {
+    pub(crate) path: PathBuf,
+    format: &'static Format,
+    /// True if the file contains one snapshot, whose step is `first_step`.
+    pub(crate) is_moment: bool,
+    /// First step, if it is known.
+    first_step: Option<u64>,
+    /// Time of a file with one snapshot (s), if a collection of files contains it.
+    time: Option<f64>,
+}
+
+/// Returns files sorted by step, which is often not the order of their names. A collection is replaced by the files
+/// that it lists.
+pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
+    let mut files = Vec::new();
+    for path in named.iter().filter(|path| !is_box(path)) {
+        // A table is opened as a dump, so that the reader of dumps reports the error.
+        let format = format_of(path)?.unwrap_or(&dump::FORMAT);
+        match (format.holds)(path)? {
+            FileContent::Course(first_step) => {
+                files.push(RunFile { path: path.clone(), format, is_moment: false, first_step, time: None });
+            }
+            FileContent::Moment => files.push(of_moment(path, None)?),
+            FileContent::List(listed) => {
+                for (time, path) in listed {
+                    files.push(of_moment(&path, Some(time))?);
+                }
+            }
+        }
+    }
+    files.sort_by_key(|file| file.first_step);
+    Ok(files)
+}
+
+/// Returns true for a file with the simulation box, which LIGGGHTS writes for each file of grains. Patterns for files of
+/// grains match its name too.
+fn is_box(path: &Path) -> bool {
+    path.file_stem().is_some_and(|stem| stem.to_string_lossy().contains("boundingBox"))
+}
+
+/// Returns a file with one snapshot. The last whole number in its name is the step.
+fn of_moment(path: &Path, time: Option<f64>) -> Result<RunFile, ReadError> {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let last = stem.trim_end_matches(|letter: char| !letter.is_ascii_digit());
+    let digits = last.len() - last.bytes().rev().take_while(u8::is_ascii_digit).count();
+    let step = last[digits..].parse().map_err(|_| {
+        ReadError::at(&shown(path), 1, "the step in the file's name, as in `dump_5000.vtk`", quoted(&stem))
+    })?;
+    let format = format_of(path)?.unwrap_or(&dump::FORMAT);
+    Ok(RunFile { path: path.to_owned(), format, is_moment: true, first_step: Some(step), time })
+}
+
+/// Reader of the snapshots of a file.
+pub(crate) struct Snapshots {
+    file: RunFile,
+    reader: SnapshotReader,
+    /// True after the snapshot of a file with one snapshot has been read.
+    is_read: bool,
+    /// True if the complete frames of a truncated file are read.
+    partial: bool,
+    /// Error at the position where the file is truncated, if this is allowed.
+    pub(crate) cut: Option<String>,
+}
+
+impl Snapshots {
+    /// Opens a file whose snapshots must have at most `most_rows` rows. If `partial` is true, a truncated file ends after
+    /// its last complete frame.
+    pub(crate) fn open(file: &RunFile, most_rows: u64, partial: bool) -> Result<Self, ReadError> {
+        let reader = (file.format.open)(&file.path, most_rows)?;
+        Ok(Self { file: file.clone(), reader, is_read: false, partial, cut: None })
+    }
+
+    /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
+    pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        match self.next(snapshot) {
+            Err(error) if error.is_cut() && self.partial => {
+                self.cut = Some(error.to_string());
+                Ok(false)
+            }
+            read => read,
+        }
+    }
+
+    fn next(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
+        let numbering = self.file.format.numbering;
+        if !self.file.is_moment {
+            let is_there = (self.reader)(snapshot)?;
+            if is_there && numbering == Numbering::Files {
+                snapshot.numbering = numbering;
+            }
+            return Ok(is_there);
+        }
+        let mut next = DumpSnapshot::default();
+        let is_there = (self.reader)(&mut next)?;
+        if is_there == self.is_read {
+            let found = if is_there { "several" } else { "none" };
+            let expected = "one time per file, from a list or the file name";
+            return Err(ReadError::at(&shown(&self.file.path), 1, expected, found));
+        }
+        self.is_read = true;
+        if is_there {
+            let RunFile { first_step, time, .. } = self.file;
+            *snapshot =
+                DumpSnapshot { step: first_step.unwrap_or_default(), numbering, time: next.time.or(time), ..next };
+        }
+        Ok(is_there)
+    }
+}
+
+pub(crate) fn shown(path: &Path) -> String {
+    path.to_string_lossy().into_owned()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A file pattern yields names in alphabetical order, so that `dump.end` is before `dump.grains`.
+    #[test]
+    fn dumps_are_in_the_order_of_their_steps() {
+        let folder = tempfile::tempdir().unwrap();
+        let paths = ["dump.end", "dump.grains", "dump.later"].map(|name| folder.path().join(name));
+        for (path, head) in paths.iter().zip([
+            "ITEM: UNITS\nsi\nITEM: TIMESTEP\n900\n",
+            "ITEM: TIMESTEP\n0\n",
+            "ITEM: TIMESTEP\n1000\n",
+        ]) {
+            std::fs::write(path, head).unwrap();
+        }
+        let found: Vec<PathBuf> = in_order(&paths).unwrap().into_iter().map(|file| file.path).collect();
+        assert_eq!(found, [&paths[1], &paths[0], &paths[2]].map(PathBuf::clone));
+    }
+}

@@ -5,8 +5,7 @@ use std::mem;
 use std::path::Path;
 
 use crate::read::lines::{Line, Lines, opened};
-use crate::read::number_table::{NumberColumn, Table};
-use crate::read::numbers::{NonFiniteNumbers, RowForm};
+use crate::read::number_table::{NonFiniteNumbers, NumberColumn, RowForm, Table};
 use crate::read::read_error::{ReadError, quoted};
 
 /// Output of one `run` command in a log.

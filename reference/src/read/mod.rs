@@ -2,18 +2,13 @@
 //! the position, and states the expected and the actual content.
 
 mod binary;
-pub(crate) mod contacts;
 pub(crate) mod data_file;
 pub(crate) mod decoding;
 pub(crate) mod digits;
-pub(crate) mod dump;
-mod dump_header;
-mod fields;
 pub(crate) mod format;
 pub(crate) mod lines;
 pub(crate) mod log;
 pub(crate) mod number_table;
-pub(crate) mod numbers;
 pub(crate) mod parquet;
 pub(crate) mod read_error;
 pub(crate) mod snapshot;

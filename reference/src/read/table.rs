@@ -5,8 +5,7 @@ use std::path::Path;
 
 use crate::read::lines::{Lines, opened};
 pub use crate::read::number_table::Table;
-use crate::read::number_table::{MOST_NUMBERS, NumberColumn};
-use crate::read::numbers::{NonFiniteNumbers, RowForm};
+use crate::read::number_table::{MOST_NUMBERS, NonFiniteNumbers, NumberColumn, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
