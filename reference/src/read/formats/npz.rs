@@ -9,6 +9,7 @@ use crate::read::lines::opened;
 use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
+use crate::read::vtk::points::{self, Moment, Moments};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -25,8 +26,8 @@ pub(crate) static FORMAT: Format = Format {
     holds: |_| Ok(FileContent::Course(None)),
     open: |path, most_rows| {
         let course = read_course(path)?;
-        check_grains(&path.to_string_lossy(), course.grains, most_rows)?;
-        Ok(indexed(path, move |place| Ok(course.snapshot(place))))
+        check_grains(&course.grains.name, course.grains.grains(), most_rows)?;
+        Ok(indexed(path, move |place| course.snapshot(place)))
     },
 };
 
@@ -53,27 +54,17 @@ struct Course {
     /// Numbering of the moments. If the file has both steps and times, the steps are those of the run. Otherwise the
     /// numbers may count frames.
     numbering: Numbering,
-    /// Times (s), if the file contains them.
-    times: Option<Vec<f64>>,
-    grains: usize,
-    columns: Vec<NumberColumn>,
-    /// Numbers of each column, and true if the column has different numbers for each moment.
-    numbers: Vec<(Vec<f64>, bool)>,
-    /// Contacts of all moments, and first row and number of rows of each moment, if the file contains them.
-    contacts: Option<(Table, Vec<[usize; 2]>)>,
+    grains: Moments,
+    contacts: Option<Contacts>,
 }
 
-/// Known arrays of grains: name, columns, and true if the array is required.
+/// Array of the positions of the grains, which is required.
+const POSITION: &str = "position";
+/// Known arrays of grains: name, and number of components.
 ///
 /// An array of vectors has the shape (moments, grains, 3). An array of numbers has the shape (moments, grains) or
 /// (grains).
-const KNOWN: [(&str, &[&str], bool); 5] = [
-    ("position", &["x", "y", "z"], true),
-    ("velocity", &["vx", "vy", "vz"], false),
-    ("spin", &["omegax", "omegay", "omegaz"], false),
-    ("id", &["id"], false),
-    ("radius", &["radius"], false),
-];
+const KNOWN: [(&str, usize); 5] = [(POSITION, 3), ("velocity", 3), ("spin", 3), ("id", 1), ("radius", 1)];
 
 /// Ending of the name of an array with the forces of a wall on the grains, as in `floor.force`.
 const OF_WALL: &str = ".force";
@@ -120,22 +111,17 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
         return Err(fault(format!("a step after {}", steps[at]), steps[at + 1].to_string()));
     }
     let contacts = contacts(&arrays, &steps).map_err(|(expected, found)| fault(expected, found))?;
-    let (columns, numbers) = (Vec::new(), Vec::new());
-    let mut course = Course { steps, numbering, times, grains: 0, columns, numbers, contacts };
-    let known =
-        KNOWN.map(|(key, columns, must)| (key, columns.iter().map(|&column| column.to_owned()).collect(), must));
-    let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| {
-        let columns: Vec<String> = ["x", "y", "z"].iter().map(|axis| format!("{key}_{axis}")).collect();
-        (key.as_str(), columns, false)
-    });
-    for (key, columns, must) in known.into_iter().chain(of_walls) {
+    // Number of grains, and arrays of grains with their number of rows per moment, which is 0 for a constant array.
+    let (mut count, mut found) = (0, Vec::new());
+    let of_walls = arrays.keys().filter(|key| key.ends_with(OF_WALL)).map(|key| (key.as_str(), 3));
+    for (key, width) in KNOWN.into_iter().chain(of_walls) {
+        let must = key == POSITION;
         let Some(array) = arrays.get(key) else {
             if must {
                 return Err(fault(format!("an array `{key}`"), have()));
             }
             continue;
         };
-        let width = columns.len();
         let inner: &[usize] =
             if width == 1 { &array.shape } else { array.shape.split_last().map_or(&[], |(_, rest)| rest) };
         let is_wide = width == 1 || array.shape.last() == Some(&width);
@@ -144,10 +130,10 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
             [grains] if width == 1 => (grains, false),
             _ => (0, true),
         };
-        let expected = if must { grains } else { course.grains };
+        let expected = if must { grains } else { count };
         if !is_wide || grains != expected || (must && inner.len() != 2) {
             let words = if width == 1 { "grains" } else { "grains, 3" };
-            let grains = if must { "grains".to_owned() } else { course.grains.to_string() };
+            let grains = if must { "grains".to_owned() } else { count.to_string() };
             let words = words.replace("grains", &grains);
             let expected = format!("the shape ({moments}, {words}) of the array `{key}`");
             return Err(fault(expected, format!("{:?}", array.shape)));
@@ -155,36 +141,40 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
         if let Some(wrong) = array.numbers.iter().find(|number| !number.is_finite()) {
             return Err(fault(format!("finite numbers in the array `{key}`"), wrong.to_string()));
         }
-        course.grains = expected;
-        for (component, column) in columns.iter().enumerate() {
-            course.columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(column) });
-            course.numbers.push((array.numbers.iter().skip(component).step_by(width).copied().collect(), of_moments));
-        }
+        count = expected;
+        let (name, numbers, digits) = (key.to_owned(), array.numbers.clone(), array.digits);
+        found.push((points::Array { name, components: width, numbers, digits }, if of_moments { grains } else { 0 }));
     }
-    Ok(course)
+    let positions = found.remove(0).0;
+    let (arrays, rows): (Vec<_>, Vec<usize>) = found.into_iter().unzip();
+    let moment = |at: usize| Moment {
+        time: times.as_ref().map(|times| times[at]),
+        points: count,
+        position: at * count,
+        of: rows.iter().map(|rows| at * rows).collect(),
+    };
+    let grains = Moments { name: name.to_string(), positions, arrays, moments: (0..moments).map(moment).collect() };
+    Ok(Course { steps, numbering, grains, contacts })
 }
 
 impl Course {
     /// Returns the contacts of each moment, if the file contains them, then the grains of each moment, or `None` after
     /// the last.
-    fn snapshot(&self, place: usize) -> Option<DumpSnapshot> {
-        let (contacts, moment) = match &self.contacts {
+    fn snapshot(&self, place: usize) -> Result<Option<DumpSnapshot>, ReadError> {
+        let (contacts, at) = match &self.contacts {
             Some(contacts) if place < self.steps.len() => (Some(contacts), place),
             Some(_) => (None, place - self.steps.len()),
             None => (None, place),
         };
-        let (grains, step) = (self.grains, *self.steps.get(moment)?);
-        let (kind, table) = if let Some((contacts, rows)) = contacts {
-            let [first, count] = rows[moment];
-            (DumpKind::Entries, contacts.part(first, count))
+        let Some(Moment { time, .. }) = self.grains.moments.get(at) else { return Ok(None) };
+        let snapshot = if let Some((contacts, rows)) = contacts {
+            let [first, count] = rows[at];
+            let (kind, table) = (DumpKind::Entries, contacts.part(first, count));
+            Some(DumpSnapshot { kind, time: *time, table, first_line: 1, ..DumpSnapshot::default() })
         } else {
-            let number =
-                |grain: usize, array: &(Vec<f64>, bool)| array.0[if array.1 { moment * grains + grain } else { grain }];
-            let row = |grain: usize| self.numbers.iter().map(move |array| number(grain, array));
-            (DumpKind::Atoms, Table::new(self.columns.clone(), (0..grains).flat_map(row).collect()))
+            self.grains.snapshot(at)?
         };
-        let (time, numbering) = (self.times.as_ref().map(|times| times[moment]), self.numbering);
-        Some(DumpSnapshot { kind, step, numbering, time, table, first_line: 1, ..DumpSnapshot::default() })
+        Ok(snapshot.map(|next| DumpSnapshot { step: self.steps[at], numbering: self.numbering, ..next }))
     }
 }
 
@@ -301,12 +291,12 @@ mod tests {
     fn arrays_of_numpy_are_read() {
         for name in ["grains.npz", "grains-compressed.npz"] {
             let course = read(name).unwrap();
-            assert_eq!(course.grains, 2);
-            let last = course.snapshot(2).unwrap();
+            assert_eq!(course.grains.grains(), 2);
+            let last = course.snapshot(2).unwrap().unwrap();
             assert_eq!((last.step, last.time), (25, Some(0.25)));
             // A file with steps and times has steps of the run.
             assert_eq!(last.numbering, Numbering::Steps);
-            assert!(course.snapshot(3).is_none());
+            assert!(course.snapshot(3).unwrap().is_none());
             let value = |column: &str, row: usize| last.row(row)[last.column(column).unwrap()];
             assert_eq!([value("id", 0), value("id", 1)], [2.0, 1.0]);
             assert_eq!([value("x", 0), value("z", 1)], [12.0 / 7.0, 17.0 / 7.0]);
@@ -323,8 +313,8 @@ mod tests {
         let course = read("contacts.npz").unwrap();
         let value =
             |snapshot: &DumpSnapshot, row: usize, column: &str| snapshot.row(row)[snapshot.column(column).unwrap()];
-        let [first, second, third, fourth] = [0, 1, 2, 3].map(|place| course.snapshot(place).unwrap());
-        assert!(course.snapshot(4).is_none());
+        let [first, second, third, fourth] = [0, 1, 2, 3].map(|place| course.snapshot(place).unwrap().unwrap());
+        assert!(course.snapshot(4).unwrap().is_none());
         assert_eq!([&first, &second, &third, &fourth].map(|snapshot| snapshot.step), [0, 10, 0, 10]);
         assert_eq!((first.kind, first.rows(), second.rows()), (DumpKind::Entries, 1, 2));
         assert_eq!([value(&second, 0, "id1"), value(&second, 0, "id2")], [2.0, 1.0]);

@@ -8,8 +8,8 @@ use crate::read::binary::{Number, NumberKind};
 use crate::read::digits::Digits;
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::read_error::{ReadError, one_line, quoted};
-use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::vtk::points::{Array, Points};
+use crate::read::snapshot::Numbering;
+use crate::read::vtk::points::{Array, Moment, Moments};
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
@@ -60,24 +60,6 @@ pub(crate) fn has_steps(path: &Path) -> Result<bool, ReadError> {
     Ok(file.group(&file.root, "Steps")?.is_some())
 }
 
-/// Grains at one or several moments.
-#[derive(Debug)]
-pub(crate) struct Moments {
-    name: String,
-    positions: Array,
-    arrays: Vec<Array>,
-    moments: Vec<Moment>,
-}
-
-/// Time of a moment, number of its points, and their first row in the positions and in each array.
-#[derive(Debug)]
-struct Moment {
-    time: Option<f64>,
-    points: usize,
-    position: usize,
-    of: Vec<usize>,
-}
-
 /// Reads the grains of a file at all moments. Arrays are kept whole, because moments may share them.
 ///
 /// # Errors
@@ -109,35 +91,6 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
         }
     };
     Ok(Moments { name: file.name, positions, arrays, moments })
-}
-
-impl Moments {
-    /// Returns the largest number of grains at any moment.
-    pub(crate) fn grains(&self) -> usize {
-        self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
-    }
-
-    /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
-    ///
-    /// # Errors
-    /// If an array is too short or has a number that is not finite.
-    pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
-        let Some(moment) = self.moments.get(at) else { return Ok(None) };
-        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
-            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
-            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
-            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
-                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
-                ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / array.components))
-            })?;
-            Ok(Array { numbers, name: array.name.clone(), ..*array })
-        };
-        let cut_arrays: Result<Vec<Array>, ReadError> =
-            self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
-        let points =
-            Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: cut_arrays? };
-        Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
-    }
 }
 
 impl File {

@@ -1,4 +1,4 @@
-//! Points with their data from VTK files, and their conversion to a snapshot of grains.
+//! Points with their data from files of VTK and NumPy, and their conversion to snapshots of grains.
 
 use crate::read::digits::Digits;
 use crate::read::number_table::{NumberColumn, Table};
@@ -98,5 +98,53 @@ impl Points {
         let values = (0..points).flat_map(row).collect();
         let table = Table::new(columns, values);
         Ok(DumpSnapshot { time: self.time, table, first_line: 1, ..DumpSnapshot::default() })
+    }
+}
+
+/// Points with their data at one or several moments, which may share arrays.
+#[derive(Debug)]
+pub(crate) struct Moments {
+    /// Name of the file for error messages.
+    pub(crate) name: String,
+    pub(crate) positions: Array,
+    pub(crate) arrays: Vec<Array>,
+    pub(crate) moments: Vec<Moment>,
+}
+
+/// Time of a moment, number of its points, and their first row in the positions and in each array.
+#[derive(Debug)]
+pub(crate) struct Moment {
+    pub(crate) time: Option<f64>,
+    pub(crate) points: usize,
+    pub(crate) position: usize,
+    pub(crate) of: Vec<usize>,
+}
+
+impl Moments {
+    /// Returns the largest number of grains at any moment.
+    pub(crate) fn grains(&self) -> usize {
+        self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
+    }
+
+    /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
+    ///
+    /// # Errors
+    /// If an array is too short or has a number that is not finite.
+    pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
+        let Some(moment) = self.moments.get(at) else { return Ok(None) };
+        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
+            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
+            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
+            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
+                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
+                ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / array.components))
+            })?;
+            Ok(Array { numbers, name: array.name.clone(), ..*array })
+        };
+        let cut_arrays: Result<Vec<Array>, ReadError> =
+            self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
+        let points =
+            Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: cut_arrays? };
+        Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
     }
 }
