@@ -5,7 +5,6 @@
 //! only in [`Launch`] and in the readers of their output.
 
 pub(crate) mod process;
-mod report;
 mod worker;
 
 pub(crate) use worker::Worker;
@@ -20,13 +19,13 @@ use grainbench_solver::record::{Cost, Provenance, Record, Series};
 use grainbench_solver::reduction::reduce;
 use grainbench_solver::resolution::Resolution;
 use process::{Deadline, Limits, ProcessEnd, ProcessStart, SCREEN};
-use report::is_a_time;
+use serde::Deserialize;
+use serde_json::Value;
 use std::fs;
 use std::path::{Path, PathBuf};
 use std::sync::{Mutex, PoisonError};
 use std::time::Instant;
 use tempfile::TempDir;
-use worker::{Answer, Times};
 
 /// Exit code of a program that cannot express a scene.
 pub const CANNOT: i32 = 64;
@@ -55,19 +54,32 @@ pub(crate) enum Protocol<'p> {
     Worker(&'p Mutex<Vec<Worker>>),
 }
 
-/// Message of a program about its run.
-enum ProgramMessage {
-    /// The run succeeded. The solution time (s) is present if the program reports it.
-    Ran(Option<f64>),
+/// Answer of a program after its run. Workers print it as JSON.
+#[derive(Deserialize)]
+#[serde(rename_all = "kebab-case", deny_unknown_fields)]
+enum Answer {
+    /// The run succeeded.
+    Ran(Times),
     /// The program cannot express the scene, for this reason.
     Cannot(String),
-    Failed(Failure),
+    /// The run failed.
+    Failed(FailureReport),
+    /// The run failed with this exit code.
+    #[serde(skip)]
+    Ended(i32),
+}
+
+/// Times in an answer.
+#[derive(Deserialize)]
+struct Times {
+    /// Solution time (s); `None` if the program does not report it.
+    seconds: Option<f64>,
 }
 
 /// Result of a program that ended without a signal and within its limits.
 pub(crate) struct Execution {
     folder: TempDir,
-    message: ProgramMessage,
+    answer: Answer,
     last_lines: Vec<String>,
     /// Wall-clock time of the execution (s).
     pub(crate) seconds: f64,
@@ -88,12 +100,18 @@ pub(crate) fn run<T>(
     let Launch { solver, stepping, .. } = launch;
     let particles = scene.grains.len() as u64;
     observer.begin(RunOutline { time_step: stepping.time_step, steps: stepping.steps, particles });
-    let Execution { folder, message, last_lines, seconds } = execute(launch)?;
+    let Execution { folder, answer, last_lines, seconds } = execute(launch)?;
     let fail = |failure| RunError::Program { solver: solver.clone(), failure, last_lines: last_lines.clone() };
-    let reported = match message {
-        ProgramMessage::Ran(seconds) => seconds,
-        ProgramMessage::Cannot(reason) => return Err(RunError::Unsupported { solver: solver.clone(), reason }),
-        ProgramMessage::Failed(failure) => return Err(fail(failure)),
+    let reported = match answer {
+        Answer::Ran(Times { seconds: Some(seconds) }) if !is_a_time(seconds) => {
+            return Err(fail(Failure::Output(format!("expected seconds of zero or more, found {seconds}"))));
+        }
+        Answer::Ran(Times { seconds }) => seconds,
+        Answer::Cannot(reason) => {
+            return Err(RunError::Unsupported { solver: solver.clone(), reason: one_line(&reason) });
+        }
+        Answer::Failed(failed) => return Err(fail(Failure::Crash(failed.words()))),
+        Answer::Ended(code) => return Err(fail(Failure::Crash(format!("exit status: {code}")))),
     };
     let (mut observed, further) = read(folder.path(), launch.limits.deadline).map_err(fail)?;
     observed.snapshots.iter_mut().for_each(|snapshot| reduce(snapshot, &scene.columns));
@@ -120,7 +138,7 @@ pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
         |word: &String| word.replace("{scene}", &scene.to_string_lossy()).replace("{out}", &out.to_string_lossy());
     let arguments: Vec<String> = launch.arguments.iter().map(replaced).collect();
     let mut start = Instant::now();
-    let (message, last_lines) = if let Protocol::Worker(idle) = protocol {
+    let (answer, last_lines) = if let Protocol::Worker(idle) = protocol {
         let idle = || idle.lock().unwrap_or_else(PoisonError::into_inner);
         let waiting = idle().pop();
         let worker = waiting.map_or_else(|| Worker::start(executable, &arguments, *limits), Ok);
@@ -130,49 +148,97 @@ pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
         let answer = worker.ask(&scene, out, *limits).map_err(fail)?;
         let last_lines = worker.last_lines();
         idle().push(worker);
-        (ProgramMessage::from_answer(answer), last_lines)
+        (answer, last_lines)
     } else {
         let errors_apart = matches!(protocol, Protocol::Report(_));
         let started = ProcessStart { executable, arguments: &arguments, folder: out, at: None, errors_apart };
         let ended = process::run(&started, *limits).map_err(fail)?;
-        let message = ProgramMessage::from_process(&ended, protocol, out);
-        (message.map_err(|failure| fail((failure, ended.last_lines.clone())))?, ended.last_lines)
+        let answer = answer_of(&ended, protocol, out);
+        (answer.map_err(|failure| fail((failure, ended.last_lines.clone())))?, ended.last_lines)
     };
-    Ok(Execution { folder, message, last_lines, seconds: start.elapsed().as_secs_f64() })
+    Ok(Execution { folder, answer, last_lines, seconds: start.elapsed().as_secs_f64() })
 }
 
-impl ProgramMessage {
-    /// Returns the message of a process from its exit code, its report and its standard output in the folder.
-    fn from_process(ended: &ProcessEnd, protocol: &Protocol<'_>, folder: &Path) -> Result<Self, Failure> {
-        let report = match protocol {
-            Protocol::Report(Some(name)) => report::read(&folder.join(name), name)?,
-            _ => report::ProgramReport::default(),
-        };
-        if ended.code == CANNOT && matches!(protocol, Protocol::Report(_)) {
-            let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
-            let screen = String::from_utf8_lossy(&screen).into_owned();
-            let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(one_line);
-            return Ok(Self::Cannot(
-                reason.unwrap_or_else(|| format!("it ended with exit code {CANNOT} and gave no reason")),
-            ));
-        }
-        Ok(match report.failed {
-            Some(failed) => Self::Failed(Failure::Crash(failed.words())),
-            None if ended.code != 0 => Self::Failed(Failure::Crash(format!("exit status: {}", ended.code))),
-            None => Self::Ran(report.seconds.map(|seconds| seconds.solve)),
-        })
+/// Returns the answer of a process from its exit code, its report and its standard output in the folder.
+fn answer_of(ended: &ProcessEnd, protocol: &Protocol<'_>, folder: &Path) -> Result<Answer, Failure> {
+    let report = match protocol {
+        Protocol::Report(Some(name)) => read_report(&folder.join(name), name)?,
+        _ => ProgramReport::default(),
+    };
+    if ended.code == CANNOT && matches!(protocol, Protocol::Report(_)) {
+        let screen = fs::read(folder.join(SCREEN)).unwrap_or_default();
+        let screen = String::from_utf8_lossy(&screen).into_owned();
+        let reason = screen.lines().map(str::trim).find(|line| !line.is_empty()).map(str::to_owned);
+        let none = || format!("it ended with exit code {CANNOT} and gave no reason");
+        return Ok(Answer::Cannot(reason.unwrap_or_else(none)));
     }
+    Ok(match report.failed {
+        Some(failed) => Answer::Failed(failed),
+        None if ended.code != 0 => Answer::Ended(ended.code),
+        None => Answer::Ran(Times { seconds: report.seconds.map(|seconds| seconds.solve) }),
+    })
+}
 
-    /// Returns the message of a worker from its answer.
-    fn from_answer(answer: Answer) -> Self {
-        match answer {
-            Answer::Ran(Times { seconds: Some(seconds) }) if !is_a_time(seconds) => {
-                Self::Failed(Failure::Output(format!("expected seconds of zero or more, found {seconds}")))
-            }
-            Answer::Ran(Times { seconds }) => Self::Ran(seconds),
-            Answer::Cannot(reason) => Self::Cannot(one_line(&reason)),
-            Answer::Failed(failed) => Self::Failed(Failure::Crash(failed.words())),
+/// Maximum size of a report (B).
+const MOST_REPORTED: u64 = 1 << 20;
+
+/// Report of a program. Unknown keys are ignored.
+#[derive(Clone, Debug, Default, Deserialize)]
+struct ProgramReport {
+    /// Times that the program measured (s).
+    seconds: Option<Seconds>,
+    /// Description of a failure.
+    failed: Option<FailureReport>,
+}
+
+/// Times in a report (s).
+#[derive(Clone, Copy, Debug, Deserialize)]
+struct Seconds {
+    /// Solution time without start-up (s).
+    solve: f64,
+}
+
+/// Returns true if a time (s) is finite and not negative.
+fn is_a_time(seconds: f64) -> bool {
+    seconds.is_finite() && seconds >= 0.0
+}
+
+/// Time, position and reason of a failure. Each value can be any JSON value.
+#[derive(Clone, Debug, Deserialize)]
+struct FailureReport {
+    when: Option<Value>,
+    #[serde(rename = "where")]
+    place: Option<Value>,
+    why: Option<Value>,
+}
+
+impl FailureReport {
+    /// Returns the failure as text.
+    fn words(&self) -> String {
+        let text = |value: &Option<Value>| {
+            value.as_ref().map_or_else(|| "unknown".to_owned(), |value| one_line(&value.to_string()))
+        };
+        let [when, place, why] = [&self.when, &self.place, &self.why].map(text);
+        format!("the program reports: time {when}, place {place}, cause {why}")
+    }
+}
+
+/// Reads a report. Returns an empty report if the file does not exist.
+fn read_report(path: &Path, name: &str) -> Result<ProgramReport, Failure> {
+    let wrong = |expected: &str, found: String| Failure::Output(format!("{name}: expected {expected}, found {found}"));
+    match fs::symlink_metadata(path) {
+        Err(_) => return Ok(ProgramReport::default()),
+        Ok(found) if !found.is_file() || found.len() > MOST_REPORTED => {
+            return Err(wrong("a plain file of at most a megabyte", "something else".to_owned()));
         }
+        Ok(_) => {}
+    }
+    let text = fs::read(path).map_err(|error| wrong("a file that can be read", error.to_string()))?;
+    let report: ProgramReport =
+        serde_json::from_slice(&text).map_err(|error| wrong("a report", one_line(&error.to_string())))?;
+    match report.seconds.filter(|seconds| !is_a_time(seconds.solve)) {
+        Some(Seconds { solve }) => Err(wrong("seconds.solve of zero or more", solve.to_string())),
+        None => Ok(report),
     }
 }
 

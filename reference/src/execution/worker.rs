@@ -5,11 +5,11 @@
 //! time (s), `{"cannot": REASON}`, or `{"failed": {"when": …, "where": …, "why": …}}`. The worker writes arrays to
 //! files in the folder.
 
+use super::Answer;
 use super::process::{self, ERRORS, Limits};
-use super::report::FailureReport;
 use crate::read::read_error::{one_line, quoted};
 use grainbench_solver::failure::Failure;
-use serde::{Deserialize, Serialize};
+use serde::Serialize;
 use std::fs::{self, File};
 use std::io::{self, BufRead, BufReader, Read, Write};
 use std::path::Path;
@@ -42,25 +42,6 @@ wait";
 struct Request<'r> {
     scene: &'r Path,
     out: &'r Path,
-}
-
-/// Answer of a worker.
-#[derive(Deserialize)]
-#[serde(rename_all = "kebab-case", deny_unknown_fields)]
-pub(super) enum Answer {
-    /// The run succeeded.
-    Ran(Times),
-    /// The program cannot express the scene.
-    Cannot(String),
-    /// The run failed.
-    Failed(FailureReport),
-}
-
-/// Times in an answer.
-#[derive(Deserialize)]
-pub(super) struct Times {
-    /// Solution time (s); `None` if the worker does not report it.
-    pub(super) seconds: Option<f64>,
 }
 
 #[derive(Debug)]
