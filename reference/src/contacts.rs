@@ -11,7 +11,6 @@ use nalgebra::Vector3;
 use crate::names::Names;
 use crate::read::digits::Digits;
 use crate::read::format::dump::DumpReader;
-use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::DumpSnapshot;
 
@@ -60,15 +59,15 @@ impl PairColumns {
         }
         let column = |name: &str| snapshot.column(names.in_file(name));
         let missing = |what: &str| {
-            let expected = format!("columns {what} of contacts (`--map id1=…,id2=…,force_x=…` names them)");
-            ReadError::at(file, snapshot.first_line.saturating_sub(1), expected, quoted_names(&snapshot.columns))
+            let help = "(`--map id1=…,id2=…,force_x=…` names them)";
+            Err(snapshot.missing(file, format!("columns {what} of contacts {help}")))
         };
         let (Some(first), Some(second)) = (column("id1"), column("id2")) else {
-            return Err(missing("`id1` and `id2`"));
+            return missing("`id1` and `id2`");
         };
         let force = FORCE.map(column);
         if force[0].is_none() || force[1].is_none() {
-            return Err(missing("`force_x` and `force_y`"));
+            return missing("`force_x` and `force_y`");
         }
         Ok(Self { ids: [first, second], parts: [force, TANGENTIAL.map(column)] })
     }
@@ -168,13 +167,12 @@ pub(crate) fn contacts_of(
     // The dump of contacts may have more steps than the dump of grains.
     while entries.columns.is_empty() || entries.step < step {
         if !reader.read(entries)? {
-            let expected = format!("the contacts of step {step}");
-            return Err(ReadError::at(file, entries.first_line, expected, "the end of the file"));
+            return Err(entries.error(file, 0, format!("the contacts of step {step}"), "the end of the file"));
         }
     }
     if entries.step != step {
-        let expected = format!("the contacts of step {step}");
-        return Err(ReadError::at(file, entries.first_line, expected, format!("those of step {}", entries.step)));
+        let found = format!("those of step {}", entries.step);
+        return Err(entries.error(file, 0, format!("the contacts of step {step}"), found));
     }
     let PairColumns { ids: [first, second], parts } = PairColumns::find(file, entries, names)?;
     let place: BTreeMap<u32, usize> = snapshot.grains.iter().enumerate().map(|(at, grain)| (grain.id, at)).collect();
@@ -183,10 +181,8 @@ pub(crate) fn contacts_of(
         let numbers = entries.row(row);
         let find = |at: usize| {
             let known = place.get(&(numbers[at] as u32)).copied();
-            known.ok_or_else(|| {
-                let (line, found) = (entries.first_line + row as u64, numbers[at].to_string());
-                ReadError::at(file, line, format!("the id of a grain of step {step}"), found)
-            })
+            let expected = || format!("the id of a grain of step {step}");
+            known.ok_or_else(|| entries.error(file, row, expected(), numbers[at].to_string()))
         };
         let (one, other) = (find(first)?, find(second)?);
         // A dump may contain a contact twice, once from each grain.

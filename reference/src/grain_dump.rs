@@ -10,7 +10,6 @@ use nalgebra::Vector3;
 use crate::contacts::contacts_of;
 use crate::names::{GrainColumns, Names};
 use crate::read::format::dump::DumpReader;
-use crate::read::number_table::quoted_names;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
 
@@ -41,13 +40,6 @@ pub struct GrainDump {
     pub cut: Option<String>,
     rows: DumpSnapshot,
     entries: DumpSnapshot,
-}
-
-/// Indices of columns in a dump, with the required ones.
-struct Columns {
-    id: usize,
-    position: [Coordinate; 3],
-    found: GrainColumns,
 }
 
 impl GrainDump {
@@ -85,13 +77,12 @@ impl GrainDump {
         }
         if self.rows.kind != DumpKind::Atoms {
             let expected = "a dump of grains with `ITEM: ATOMS` (a dump of contacts is a separate file)";
-            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "entries"));
+            return Err(self.rows.error(&self.file, 0, expected, "entries"));
         }
         if let Some(other) = self.rows.units.as_deref().filter(|units| !["si", "lj"].contains(units)) {
             return Err(ReadError::at(&self.file, 1, "the units `si` or `lj`", quoted(other)));
         }
         let columns = self.columns()?;
-        self.rows.check_ids(&self.file, columns.id)?;
         let mut grains: Vec<GrainState> =
             (0..self.rows.rows()).map(|row| self.grain(row, &columns)).collect::<Result<_, _>>()?;
         grains.sort_by_key(|grain| grain.id);
@@ -127,38 +118,35 @@ impl GrainDump {
         let is_crossed = [x, y, z].into_iter().zip(tilted).any(|(periodic, tilted)| periodic && tilted);
         if is_crossed && self.contacts.is_some() {
             let expected = "a box with right angles, because contacts cross periodic boundaries";
-            return Err(ReadError::at(&self.file, self.rows.first_line, expected, "a tilted box"));
+            return Err(self.rows.error(&self.file, 0, expected, "a tilted box"));
         }
         Ok([x && !tilted[0], y && !tilted[1], z && !tilted[2]])
     }
 
-    fn columns(&self) -> Result<Columns, ReadError> {
+    /// Returns the columns. The ids and the positions are present.
+    fn columns(&self) -> Result<GrainColumns, ReadError> {
         let Self { rows, beside, file, .. } = self;
         let found = GrainColumns::find(rows, &beside.names);
-        let missing =
-            |what: &str| ReadError::at(file, rows.first_line.saturating_sub(1), what, quoted_names(&rows.columns));
-        let coordinate = |axis: usize| {
-            let name = ["x", "y", "z"][axis];
-            found.position[axis]
-                .ok_or_else(|| missing(&format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")))
-        };
         if found.radius.is_none() && beside.radius.is_none() {
-            return Err(missing("a column `radius` or `diameter`, or the option `--radius`"));
+            return Err(rows.missing(file, "a column `radius` or `diameter`, or the option `--radius`"));
         }
-        let id = found.id.ok_or_else(|| missing("a column `id`"))?;
-        Ok(Columns { id, position: [coordinate(0)?, coordinate(1)?, coordinate(2)?], found })
+        let id = found.id.ok_or_else(|| rows.missing(file, "a column `id`"))?;
+        if let Some(axis) = found.position.iter().position(Option::is_none) {
+            let name = ["x", "y", "z"][axis];
+            return Err(rows.missing(file, format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")));
+        }
+        rows.check_ids(file, id)?;
+        Ok(found)
     }
 
-    fn grain(&self, row: usize, columns: &Columns) -> Result<GrainState, ReadError> {
+    fn grain(&self, row: usize, columns: &GrainColumns) -> Result<GrainState, ReadError> {
         let numbers = self.rows.row(row);
-        let fault = |expected: &str, found: f64| {
-            Err(ReadError::at(&self.file, self.rows.first_line + row as u64, expected, found.to_string()))
-        };
-        let id = numbers[columns.id];
+        let fault = |expected: &str, found: f64| Err(self.rows.error(&self.file, row, expected, found.to_string()));
+        let GrainColumns { id, kind, radius, mass, density, position, velocity, .. } = columns;
+        let id = id.map_or(f64::NAN, |at| numbers[at]);
         if !(1.0..=f64::from(u32::MAX)).contains(&id) {
             return fault("an id from 1 to 4294967295", id);
         }
-        let GrainColumns { kind, radius, mass, density, velocity, .. } = &columns.found;
         let radius = radius.map_or_else(|| self.beside.radius.unwrap_or(f64::NAN), |(at, factor)| factor * numbers[at]);
         if !(radius > 0.0 && radius.is_finite()) {
             return fault("a radius above zero", radius);
@@ -166,7 +154,8 @@ impl GrainDump {
         let shape = if self.beside.plane { GrainShape::Disc } else { GrainShape::Sphere };
         let density = density.map(|at| numbers[at]).or(self.beside.density);
         let mass = mass.map(|at| numbers[at]).or_else(|| density.map(|density| shape.mass(radius, density)));
-        let mut position = Vector3::from(columns.position.map(|coordinate| coordinate.value(numbers)));
+        let coordinate = |at: Option<Coordinate>| at.map_or(f64::NAN, |at| at.value(numbers));
+        let mut position = Vector3::from(position.map(coordinate));
         if self.beside.plane {
             position.z = 0.0;
         }

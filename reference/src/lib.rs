@@ -9,7 +9,6 @@ mod contacts;
 pub mod data;
 pub mod deck;
 mod execution;
-mod first_sample;
 pub mod grain_dump;
 pub mod live;
 pub mod names;
@@ -21,7 +20,7 @@ pub mod round_robin;
 pub mod stored;
 
 pub use execution::process::{end_programs_at, has_ended_programs};
-pub use first_sample::read_start;
+pub use outputs::read_start;
 pub use read::data_file::{Atom, DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
 pub use read::format::dump::DumpReader;

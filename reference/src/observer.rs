@@ -12,7 +12,6 @@ use crate::deck::Stepping;
 use crate::names::GrainColumns;
 pub use crate::names::Names;
 use crate::read::digits::Digits;
-use crate::read::number_table::quoted_names;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
@@ -84,7 +83,7 @@ impl Frame<'_> {
     }
 
     fn error(&self, row: usize, expected: String, found: String) -> ReadError {
-        ReadError::at(self.file, self.snapshot.first_line + row as u64, expected, found)
+        self.snapshot.error(self.file, row, expected, found)
     }
 }
 
@@ -256,10 +255,7 @@ impl<'s> DumpObserver<'s> {
         names: &Names,
         digits: Option<&'f [Digits]>,
     ) -> Result<Frame<'f>, ReadError> {
-        let missing = |what: &str| {
-            let line = snapshot.first_line.saturating_sub(1);
-            ReadError::at(file, line, format!("a column {what}"), quoted_names(&snapshot.columns))
-        };
+        let missing = |what: &str| snapshot.missing(file, format!("a column {what}"));
         let columns = GrainColumns::find(snapshot, names);
         if columns.id.is_none() && self.scene.grains.len() > 1 {
             return Err(missing("`id`, because there are several grains"));

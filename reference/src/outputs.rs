@@ -2,6 +2,7 @@
 
 use std::path::{Path, PathBuf};
 
+use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::{Column, Series};
 use grainbench_solver::recorder::Recorder;
@@ -10,7 +11,7 @@ use grainbench_solver::resolution::Resolution;
 use crate::clock::Clock;
 use crate::contacts::PairForces;
 use crate::deck::{Deck, Program, logged, write_deck};
-use crate::names::Names;
+use crate::names::{GrainColumns, Names};
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::digits::Digits;
 use crate::read::format::{RunFile, Snapshots, format_of, in_order, shown};
@@ -59,27 +60,18 @@ pub enum OutputError {
     /// A file is truncated, for example because a job was killed.
     #[error("{0} (--partial judges the complete frames before it)")]
     Cut(ReadError),
-    /// The files or options are not consistent, or they lack grains, times or a time step.
-    #[error(transparent)]
-    Run(ReadError),
-    /// The units are not supported: name of the file and units.
-    #[error(
-        "{}: expected the units `si`, or no units if the scene is dimensionless; found {}",
-        one_line(.0), quoted(.1)
-    )]
-    Units(String, String),
-    /// The files are neither a single table nor only dumps.
-    #[error("{}: expected a single table, or only dumps", one_line(.0))]
-    MixedFiles(String),
+    /// The files or options are not consistent, have unsupported units, or lack grains, times or a time step.
+    #[error("{0}")]
+    Run(String),
 }
 
 impl OutputError {
     /// Returns the error of a file that cannot belong to the run, or of an option. `name` is the name of the file or option.
     fn run(name: &str, expected: impl Into<String>, found: impl Into<String>) -> Self {
-        Self::Run(ReadError::whole(name, expected, found))
+        Self::Run(ReadError::whole(name, expected, found).to_string())
     }
 
-    pub(crate) fn no_grains(name: &str) -> Self {
+    fn no_grains(name: &str) -> Self {
         Self::run(name, "a dump with grains", "a dump without grains")
     }
 
@@ -178,7 +170,8 @@ impl Outputs {
         }
         for file in &outputs.sources.files {
             if format_of(file)?.is_none() {
-                return Err(OutputError::MixedFiles(shown(file)));
+                let name = one_line(&shown(file));
+                return Err(OutputError::Run(format!("{name}: expected a single table, or only dumps")));
             }
         }
         outputs.files = in_order(&outputs.sources.files)?;
@@ -496,6 +489,89 @@ impl Outputs {
     }
 }
 
+/// Reads the first sample of a dump into a scene: radii, masses, positions, velocities and spins of the grains, and the
+/// bounds of periodic axes. Quantities that the file lacks stay as in the scene. Returns the names of the quantities read.
+///
+/// # Errors
+/// If the file is damaged, contains no grains, or has another number of grains than the scene.
+pub fn read_start(file: &Path, names: &Names, scene: &mut Scene) -> Result<Vec<&'static str>, OutputError> {
+    let name = shown(file);
+    let none = || OutputError::no_grains(&name);
+    let files = in_order(&[file.to_owned()])?;
+    let mut reader = Snapshots::open(files.first().ok_or_else(none)?, u64::MAX, false)?;
+    let mut snapshot = DumpSnapshot::default();
+    while snapshot.kind != DumpKind::Atoms || snapshot.columns.is_empty() {
+        if !reader.read(&mut snapshot)? {
+            return Err(none());
+        }
+    }
+    let columns = GrainColumns::find(&snapshot, names);
+    if let Some(id) = columns.id {
+        snapshot.check_ids(&name, id)?;
+    }
+    if snapshot.rows() != scene.grains.len() {
+        let expected = format!("{} grains, the number in the scene", scene.grains.len());
+        return Err(snapshot.error(&name, 0, expected, snapshot.rows().to_string()).into());
+    }
+    let order = snapshot.rows_by(columns.id);
+    let (axes, shape) = (scene.dimension.count(), scene.grain_shape);
+    let mut read = Vec::new();
+    let positive = |ours: &str, at: usize, scale: f64, row: usize| {
+        let value = scale * snapshot.row(row)[at];
+        if value.is_finite() && value > 0.0 {
+            return Ok(value);
+        }
+        Err(snapshot.error(&name, row, format!("a positive {ours}"), format!("{value:?}")))
+    };
+    if let Some((at, scale)) = columns.radius {
+        read.push("radii");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            let density = grain.mass / shape.mass(grain.radius, 1.0);
+            grain.radius = positive("radius", at, scale, row)?;
+            grain.mass = shape.mass(grain.radius, density);
+            grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
+        }
+    }
+    if let Some(at) = columns.mass {
+        read.push("masses");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            grain.mass = positive("mass", at, 1.0, row)?;
+            grain.inertia = shape.inertia_factor() * grain.mass * grain.radius * grain.radius;
+        }
+    }
+    let positions = &columns.position[..axes];
+    if positions.iter().all(Option::is_some) {
+        read.push("positions");
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            for (axis, at) in positions.iter().enumerate() {
+                grain.position[axis] = at.map_or(0.0, |at| at.value(snapshot.row(row)));
+            }
+        }
+    }
+    for (words, columns) in [("velocities", columns.velocity), ("spins", columns.spin)] {
+        let range = if words == "spins" && scene.dimension == Dimension::Two { 2..3 } else { 0..axes };
+        if !columns[range.clone()].iter().all(Option::is_some) {
+            continue;
+        }
+        read.push(words);
+        for (grain, &row) in scene.grains.iter_mut().zip(&order) {
+            let vector = if words == "spins" { &mut grain.spin } else { &mut grain.velocity };
+            for axis in range.clone() {
+                vector[axis] = columns[axis].map_or(0.0, |at| snapshot.row(row)[at]);
+            }
+        }
+    }
+    let has_bounds = snapshot.bounds.0 != snapshot.bounds.1;
+    if let Some(domain) = scene.domain.as_mut().filter(|domain| has_bounds && domain.periodic.contains(&true)) {
+        read.push("box");
+        let (low, high) = snapshot.bounds;
+        for axis in (0..axes).filter(|&axis| domain.periodic[axis]) {
+            (domain.low[axis], domain.high[axis]) = (low[axis], high[axis]);
+        }
+    }
+    Ok(read)
+}
+
 /// Returns the index of the column with times, if the table has one.
 fn time_column(table: &Table, names: &Names) -> Option<usize> {
     ["time", "t", "time (s)"].into_iter().find_map(|name| table.column(names.in_file(name)))
@@ -520,5 +596,9 @@ fn share(digits: &mut [Vec<Digits>], are_of_a_moment: bool) {
 
 /// Returns an error unless `accepted` contains the units.
 fn check_units(file: &Path, units: &str, accepted: &[&str]) -> Result<(), OutputError> {
-    if accepted.contains(&units) { Ok(()) } else { Err(OutputError::Units(shown(file), units.to_owned())) }
+    if accepted.contains(&units) {
+        return Ok(());
+    }
+    let expected = "the units `si`, or no units if the scene is dimensionless";
+    Err(OutputError::Run(format!("{}: expected {expected}; found {}", one_line(&shown(file)), quoted(units))))
 }

@@ -2,7 +2,7 @@
 
 use std::ops::Deref;
 
-use crate::read::number_table::Table;
+use crate::read::number_table::{Table, quoted_names};
 use crate::read::read_error::ReadError;
 
 /// Largest id (2⁵³). Up to this number, an f64 represents every whole number.
@@ -116,23 +116,36 @@ impl DumpSnapshot {
         order
     }
 
+    /// Returns an error about the row with an index. `file` is the name of the file.
+    pub(crate) fn error(
+        &self,
+        file: &str,
+        row: usize,
+        expected: impl Into<String>,
+        found: impl Into<String>,
+    ) -> ReadError {
+        ReadError::at(file, self.first_line + row as u64, expected, found)
+    }
+
+    /// Returns the error of missing columns at the line of the names. `file` is the name of the file.
+    pub(crate) fn missing(&self, file: &str, expected: impl Into<String>) -> ReadError {
+        ReadError::at(file, self.first_line.saturating_sub(1), expected, quoted_names(&self.columns))
+    }
+
     /// Checks that a column of ids has no negative, fractional or repeated number.
     pub(crate) fn check_ids(&self, file: &str, column: usize) -> Result<(), ReadError> {
-        let fault = |row: usize, expected: String, found: String| {
-            Err(ReadError::at(file, self.first_line + row as u64, expected, found))
-        };
         let is_id = |value: f64| (0.0..=LARGEST_ID).contains(&value) && value.fract() == 0.0;
         if let Some((row, value)) = self.values(column).enumerate().find(|(_, value)| !is_id(*value)) {
             let expected = format!("a whole number of 0 or more in the column `{}`", self.columns[column].name);
-            return fault(row, expected, value.to_string());
+            return Err(self.error(file, row, expected, value.to_string()));
         }
         if self.values(column).is_sorted_by(|before, next| before < next) {
             return Ok(());
         }
         let mut ids: Vec<(u64, usize)> = self.values(column).map(|id| id as u64).zip(0..).collect();
         ids.sort_unstable();
-        match ids.windows(2).find(|pair| pair[0].0 == pair[1].0) {
-            Some(pair) => fault(pair[1].1, "each id only once per snapshot".to_owned(), format!("{} again", pair[1].0)),
+        match ids.windows(2).find(|pair| pair[0].0 == pair[1].0).map(|pair| pair[1]) {
+            Some((id, row)) => Err(self.error(file, row, "each id only once per snapshot", format!("{id} again"))),
             None => Ok(()),
         }
     }
@@ -141,8 +154,7 @@ impl DumpSnapshot {
     /// digits. Rows are matched by id. Columns that only one of the snapshots has are skipped.
     pub(crate) fn check_repeated(&self, file: &str, before: &Self) -> Result<(), ReadError> {
         let fault = |row: usize, expected: String, found: String| {
-            let expected = format!("{expected} as in the earlier frame of step {}", self.step);
-            Err(ReadError::at(file, self.first_line + row as u64, expected, found))
+            Err(self.error(file, row, format!("{expected} as in the earlier frame of step {}", self.step), found))
         };
         if self.rows() != before.rows() {
             return fault(0, format!("{} rows", before.rows()), self.rows().to_string());
