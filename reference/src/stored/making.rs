@@ -12,9 +12,8 @@ use grainbench_solver::refined::refined;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::artifact::hashes;
 
-use super::drift::drift;
 use super::scene_hash::scene_hash;
-use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES};
+use super::{HALF_STEP_SERIES, PROVENANCE, Provenance, SERIES, drift};
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::LiveProgram;
 
