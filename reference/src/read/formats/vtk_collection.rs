@@ -3,15 +3,14 @@
 use crate::read::format::{FileContent, Format};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::Numbering;
-use crate::read::vtk::bytes::Bytes;
-use crate::read::vtk::{self, Kind};
+use crate::read::vtk::{self, bytes::Bytes};
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 use std::path::{Component, Path, PathBuf};
 
 pub(crate) static FORMAT: Format = Format {
     words: "a VTK file",
-    is_it: |beginning| vtk::kind(beginning.unpacked) == Some(Kind::Collection),
+    is_it: |beginning| vtk::is_collection(beginning.unpacked) == Some(true),
     numbering: Numbering::Files,
     holds: |path| read_collection(path).map(FileContent::List),
     open: |path, _| {

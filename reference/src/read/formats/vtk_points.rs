@@ -2,11 +2,11 @@
 
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::snapshot::Numbering;
-use crate::read::vtk::{self, Kind};
+use crate::read::vtk;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a VTK file",
-    is_it: |beginning| vtk::kind(beginning.unpacked) == Some(Kind::Points),
+    is_it: |beginning| vtk::is_collection(beginning.unpacked) == Some(false),
     numbering: Numbering::Files,
     holds: |_| Ok(FileContent::Moment),
     open: |path, most_rows| {

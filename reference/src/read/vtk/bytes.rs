@@ -4,7 +4,7 @@ use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
 
 /// File in memory with a reading position.
-#[derive(Clone, Copy)]
+#[derive(Clone, Copy, Default)]
 pub(crate) struct Bytes<'b> {
     file: &'b str,
     all: &'b [u8],

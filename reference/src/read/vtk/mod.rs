@@ -23,10 +23,11 @@ const MOST: u64 = 1 << 30;
 /// First bytes of a legacy file.
 const LEGACY: &[u8] = b"# vtk DataFile";
 
-/// Returns the kind of a VTK file from its first bytes, or `None` for another file.
-pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
+/// Returns true if the first bytes belong to a collection of VTK files with their times, false for a VTK file with points
+/// at one moment, or `None` for another file.
+pub(crate) fn is_collection(head: &[u8]) -> Option<bool> {
     if head.starts_with(LEGACY) {
-        return Some(Kind::Points);
+        return Some(false);
     }
     let text = String::from_utf8_lossy(head);
     let text = text.trim_start_matches('\u{feff}').trim_start();
@@ -34,17 +35,7 @@ pub(crate) fn kind(head: &[u8]) -> Option<Kind> {
     if !is_xml || !text.contains("<VTKFile") {
         return None;
     }
-    let is_collection = text.contains("type=\"Collection\"") || text.contains("type='Collection'");
-    Some(if is_collection { Kind::Collection } else { Kind::Points })
-}
-
-/// Kind of a VTK file.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Kind {
-    /// Points at one moment.
-    Points,
-    /// Collection of files with their times.
-    Collection,
+    Some(text.contains("type=\"Collection\"") || text.contains("type='Collection'"))
 }
 
 /// Reads the points of a file as a snapshot of grains. The file may be plain, gzip or zstd.

@@ -32,9 +32,7 @@ pub(super) fn read(bytes: Bytes<'_>) -> Result<Points, ReadError> {
     let cut = memchr::memmem::find(all, APPENDED);
     let appended = cut.map(|cut| appended(&bytes, cut)).transpose()?;
     let xml = Bytes::new(bytes.file(), &all[..cut.unwrap_or(all.len())]);
-    let (compressor, array, positions, arrays, time) = (None, None, None, Vec::new(), None);
-    let (is_big, wide, pieces) = (false, false, 0);
-    File { bytes: xml, appended, is_big, wide, compressor, array, pieces, positions, arrays, time }.points()
+    File { bytes: xml, appended, ..File::default() }.points()
 }
 
 /// Returns the appended data after the XML part: the bytes after the underscore that begins the data.
@@ -60,6 +58,7 @@ struct DataArray {
     text: String,
 }
 
+#[derive(Default)]
 struct File<'b> {
     bytes: Bytes<'b>,
     appended: Option<Stream<'b>>,
