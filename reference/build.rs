@@ -1,7 +1,6 @@
 //! Publishes the folder of this crate to dependent crates, and generates the list of file formats from the files in
 //! `src/read/formats`. A new format therefore needs only a new file.
 
-use std::fmt::Write as _;
 use std::path::{Path, PathBuf};
 use std::{env, fs};
 
@@ -22,15 +21,10 @@ fn list(folder: &Path) -> Result<String, Failure> {
     let mut files = fs::read_dir(folder)?.map(|entry| Ok(entry?.path())).collect::<Result<Vec<_>, Failure>>()?;
     files.retain(|path| path.extension().is_some_and(|end| end == "rs"));
     files.sort();
-    let (mut code, mut names) = (String::new(), String::new());
-    for file in &files {
-        let name = file.file_stem().unwrap_or_default().to_string_lossy();
-        writeln!(code, "#[path = {file:?}]\npub(crate) mod {name};")?;
-        writeln!(names, "    &{name}::FORMAT,")?;
-    }
-    writeln!(
-        code,
-        "/// Every format, in the order of their names.\npub(crate) static FORMATS: &[&Format] = &[\n{names}];"
-    )?;
-    Ok(code)
+    let name = |file: &PathBuf| file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    let modules: String =
+        files.iter().map(|file| format!("#[path = {file:?}]\npub(crate) mod {};\n", name(file))).collect();
+    let names: String = files.iter().map(|file| format!("    &{}::FORMAT,\n", name(file))).collect();
+    let about = "/// Every format, in the order of their names.";
+    Ok(format!("{modules}{about}\npub(crate) static FORMATS: &[&Format] = &[\n{names}];\n"))
 }
