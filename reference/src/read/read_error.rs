@@ -133,11 +133,4 @@ mod tests {
         assert_eq!(text.chars().count(), EXCERPT + 3);
         assert!(text.ends_with("…`"));
     }
-
-    #[test]
-    fn leaves_the_line_out_where_there_is_none() {
-        let error = ReadError::opening("gone", io::Error::new(io::ErrorKind::NotFound, "no file"));
-        assert_eq!(error.to_string(), "gone: expected a readable file, found no file");
-        assert_eq!(error.line(), None);
-    }
 }
