@@ -1,16 +1,23 @@
-//! Tests with intact and damaged dumps.
+//! Tests of the readers with intact and damaged dumps, logs, tables and data files. Further damaged data files are in
+//! `tests/refusals/data-files.toml`.
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
-mod common;
-
 use std::fmt::Write as _;
 use std::fs::{self, File};
-use std::io::BufReader;
+use std::io::{BufReader, Read, Write};
+use std::path::{Path, PathBuf};
 
-use common::data;
+use flate2::Compression;
+use flate2::write::GzEncoder;
 use grainbench_reference::stored::compressed;
-use grainbench_reference::{DumpKind, DumpReader, DumpSnapshot, NonFiniteNumbers, ReadError};
+use grainbench_reference::{DataFile, DumpKind, DumpReader, DumpSnapshot, NonFiniteNumbers, ReadError};
+use grainbench_reference::{parse_data, parse_log, parse_table, read_data_file, read_log};
+
+/// Returns the path of a file in `tests/data`.
+fn data(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data").join(name)
+}
 
 /// Reads all snapshots of a dump.
 fn all(bytes: &[u8]) -> Result<Vec<DumpSnapshot>, ReadError> {
@@ -146,7 +153,7 @@ fn keeps_what_is_not_finite_where_asked_to() {
 }
 
 #[test]
-fn names_the_place_of_every_fault() {
+fn names_the_place_of_every_fault_of_a_dump() {
     let sound = sound();
     assert_eq!(all(sound.as_bytes()).unwrap().len(), 1);
     let twice = |second: &str| format!("{sound}{}", second.replacen("ITEM: UNITS\nsi\n", "", 1));
@@ -212,4 +219,186 @@ fn refuses_two_gigabytes_of_nothing_at_once() {
     assert!(error.ends_with(":1:1: expected plain text, found the byte 0x00"), "{error}");
     let mut reader = DumpReader::new(BufReader::new(File::open(path.path()).unwrap()), "zeros").unwrap();
     assert!(reader.read(&mut DumpSnapshot::default()).is_err());
+}
+
+#[test]
+fn reads_two_runs_of_lammps() {
+    let log = read_log(&data("lammps-two-runs.log")).unwrap();
+    assert_eq!((log.units.as_deref(), log.time_step), (Some("si"), Some(0.015_254_853_881_062_817)));
+    let rows: Vec<usize> = log.runs.iter().map(|run| run.thermo.rows()).collect();
+    assert_eq!(rows, [4, 3]);
+    let (first, second) = (&log.runs[0], &log.runs[1]);
+    assert_eq!((first.end.unwrap().steps, first.end.unwrap().atoms, first.end.unwrap().processes), (3, 9, 1));
+    let step = second.thermo.column("Step").unwrap();
+    assert_eq!(second.thermo.values(step).collect::<Vec<f64>>(), [3.0, 4.0, 5.0]);
+    assert!(second.thermo.column("KinEng").is_some());
+}
+
+#[test]
+fn reads_a_log_of_liggghts() {
+    let log = read_log(&data("liggghts.log")).unwrap();
+    assert_eq!((log.runs.len(), log.units.as_deref()), (1, Some("si")));
+    let thermo = &log.runs[0].thermo;
+    assert_eq!((thermo.rows(), thermo.column("Atoms")), (4, Some(3)));
+    assert_eq!(log.runs[0].end.unwrap().steps, 3);
+}
+
+/// The log has the alignment of a 2025 release, a warning between rows, a printed NaN, and no end.
+#[test]
+fn reads_another_alignment_and_a_log_that_breaks_off() {
+    let text = "LAMMPS (22 Jul 2025)\nPer MPI rank memory allocation (min/avg/max) = 5 | 5 | 5 Mbytes\n\
+                \x20  Step          Time          \
+                KinEng    \n         0   0              0            \nWARNING: Fix moved\n\
+                \x20      100   0.01           -nan         \n";
+    let log = parse_log(text.as_bytes(), "log").unwrap();
+    let thermo = &log.runs[0].thermo;
+    assert_eq!((thermo.rows(), log.runs[0].end), (2, None));
+    assert!(thermo.values(2).last().unwrap().is_nan());
+}
+
+#[test]
+fn reads_tables_of_any_separator() {
+    for text in ["# made by hand\nt, x\n0,1.5\n\n0.25, 2\n", "t;x\n0;1.5\n0.25;2\n", "\"t\"\tx\n0\t1.5\n0.25\t2"] {
+        let table = parse_table(text.as_bytes(), "csv").unwrap();
+        let columns: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        assert_eq!(columns, ["t", "x"]);
+        assert_eq!(table.values(0).collect::<Vec<f64>>(), [0.0, 0.25]);
+        assert_eq!(table.values(1).collect::<Vec<f64>>(), [1.5, 2.0]);
+    }
+}
+
+#[test]
+fn names_the_place_of_every_fault_of_logs_and_tables() {
+    let mut messages = String::new();
+    let mut say = |name: &str, error: String| writeln!(messages, "{name:<22} {error}").unwrap();
+    for (name, text) in [
+        ("empty", ""),
+        ("no run", "units si\n"),
+        ("several lines a step", "Per MPI rank memory allocation\n------------ Step 0 ----- CPU = 0 (sec) -----\n"),
+        ("a number too few", "Step Time\n0 0\n1\n"),
+        ("a number too many", "Step Time\n0 0 0\n"),
+        ("no number", "Step Time\n0 0.1.2\n"),
+        ("an odd end", "Step Time\n0 0\nLoop time of x\n"),
+    ] {
+        say(name, parse_log(text.as_bytes(), "log").unwrap_err().to_string());
+    }
+    for (name, text) in [
+        ("empty table", ""),
+        ("no names", "0,1\n"),
+        ("a name twice", "t,t\n0,1\n"),
+        ("no row", "t,x\n"),
+        ("a field too few", "t,x\n0,1\n2\n"),
+        ("a field too many", "t,x\n0,1,2\n"),
+        ("an empty field", "t,x\n0,\n"),
+        ("NaN", "t,x\n0,NaN\n"),
+        ("zero byte", "t,x\n0,\0\n"),
+    ] {
+        say(name, parse_table(text.as_bytes(), "csv").unwrap_err().to_string());
+    }
+    insta::assert_snapshot!(messages);
+}
+
+const TWO_GRAINS: &str = include_str!("../../tests/scenes/two-grains.data");
+
+fn data_file(text: &str) -> DataFile {
+    parse_data(text.as_bytes(), "data").unwrap()
+}
+
+fn fault(bytes: impl AsRef<[u8]>) -> String {
+    let error = parse_data(bytes.as_ref(), "data").unwrap_err();
+    let shown = error.to_string();
+    assert!(!shown.contains('\n'), "{shown}");
+    assert!(error.line().is_some());
+    shown
+}
+
+#[test]
+fn reads_what_the_file_says_in_its_order() {
+    let data = data_file(TWO_GRAINS);
+    assert_eq!(data.title, "two grains # of one type");
+    assert_eq!(data.bounds, ([-5.0, -1.0, -0.1], [5.0, 10.0, 0.1]));
+    assert_eq!(data.atoms.len(), 2);
+    let (first, second) = (data.atoms[0], data.atoms[1]);
+    assert_eq!((first.id, first.type_, first.diameter, first.density), (7, 1, 1.0, 2.5));
+    assert_eq!((first.position, first.image), ([-0.5, 0.0, 0.0], [1, -2, 0]));
+    assert_eq!((first.velocity, first.angular_velocity), ([-1.0, 0.0, 0.0], [0.0, 0.0, 1e-3]));
+    assert_eq!((second.id, second.type_, second.image), (2, 3, [0; 3]));
+    assert_eq!(second.position, [40.0, 0.25, 0.0], "outside of the box is allowed");
+    assert_eq!((second.velocity, second.angular_velocity), ([1.0, 2.0, 3.0], [4.0, 5.0, 6.0]));
+}
+
+#[test]
+fn the_mass_is_a_spheres() {
+    let grain = data_file(TWO_GRAINS).atoms[1];
+    let expected = std::f64::consts::PI / 6.0 * 0.125 * 3.0;
+    assert!((grain.mass() - expected).abs() < 1e-15 * expected);
+    assert_eq!(grain.radius(), 0.25);
+}
+
+#[test]
+fn grains_without_velocities_rest() {
+    let text = TWO_GRAINS.split("Pair Coeffs").next().unwrap();
+    assert!(data_file(text).atoms.iter().all(|grain| grain.velocity == [0.0; 3]));
+}
+
+#[test]
+fn line_ends_of_other_systems_and_a_missing_last_one_do_not_matter() {
+    assert_eq!(data_file(&TWO_GRAINS.replace('\n', "\r\n")).atoms, data_file(TWO_GRAINS).atoms);
+    assert_eq!(data_file(TWO_GRAINS.trim_end()), data_file(TWO_GRAINS));
+}
+
+#[test]
+fn gzip_is_recognised_by_its_bytes() {
+    let packed = compressed(TWO_GRAINS);
+    assert_eq!(parse_data(&packed[..], "data").unwrap(), data_file(TWO_GRAINS));
+    let (head, tail) = TWO_GRAINS.split_at(TWO_GRAINS.len() / 2);
+    let both = [compressed(head), compressed(tail)].concat();
+    assert_eq!(parse_data(&both[..], "data").unwrap(), data_file(TWO_GRAINS));
+    // Data may arrive one byte at a time, for example from a pipe.
+    assert_eq!(parse_data(BufReader::with_capacity(1, &packed[..]), "data").unwrap(), data_file(TWO_GRAINS));
+
+    assert_eq!(fault(compressed("")), "data:1: expected a data file that begins with a title, found an empty file");
+    let cut = fault(&packed[..packed.len() / 2]);
+    assert!(cut.starts_with("data:") && cut.contains("expected readable data"), "{cut}");
+    let mut flipped = packed;
+    let middle = flipped.len() / 2;
+    flipped[middle] ^= 0x55;
+    fault(flipped);
+}
+
+#[test]
+fn a_line_without_end_is_refused_before_it_fills_the_memory() {
+    let expected = "data:2: expected a line of at most 65536 bytes, found a longer line";
+    let endless = BufReader::new((&b"title\n"[..]).chain(std::io::repeat(b'7')));
+    assert_eq!(parse_data(endless, "data").unwrap_err().to_string(), expected);
+    let mut encoder = GzEncoder::new(Vec::new(), Compression::fast());
+    encoder.write_all(b"title\n").unwrap();
+    std::io::copy(&mut std::io::repeat(b' ').take(100_000_000), &mut encoder).unwrap();
+    assert_eq!(fault(encoder.finish().unwrap()), expected);
+}
+
+#[test]
+fn files_that_cannot_be_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let gone = folder.path().join("gone");
+    let error = read_data_file(&gone).unwrap_err();
+    assert!(error.to_string().starts_with(&format!("{}: expected a readable file, found ", gone.display())));
+    assert_eq!(error.line(), None);
+    read_data_file(folder.path()).unwrap_err();
+}
+
+#[test]
+fn the_stored_packing() {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../cases/plane-shear/data.relaxed.gz");
+    let data = read_data_file(&path).unwrap();
+    assert_eq!(data.atoms.len(), 10_000);
+    assert_eq!(data.bounds, ([0.0, -0.01, -0.5], [95.793_938_908_5, 94.443_173_986_2, 0.5]));
+    let first = data.atoms[0];
+    assert_eq!((first.id, first.diameter), (1303, 1.135_394_066_56));
+    assert_eq!(first.velocity[..2], [0.001_081_751_859_043_782_7, 3.771_492_326_664_034_4e-5]);
+    // In this packing, each mass equals the square of the diameter (in the units of the file).
+    for grain in &data.atoms {
+        let expected = grain.diameter * grain.diameter;
+        assert!((grain.mass() - expected).abs() < 1e-14 * expected);
+    }
 }
