@@ -2,12 +2,12 @@
 
 use super::manifest::SceneFormat;
 use crate::deck::Stepping;
-use grainbench_scene::body::{Block, BlockShape, Hold};
+use grainbench_scene::body::{Block, BlockShape, Settle, Sides, Wave};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::material::{Constitutive, Deformable};
-use grainbench_scene::scene::{BodyName, Probe, ProbeTarget, Scene, Wall, WallShape};
+use grainbench_scene::scene::{BodyName, Domain, Probe, ProbeTarget, Scene, Wall, WallShape};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::resolution::Resolution;
 use schemars::JsonSchema;
@@ -114,17 +114,6 @@ pub struct Steps {
     /// stiffness.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub critical_time_step: Option<f64>,
-}
-
-/// Box of a scene.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct Domain {
-    /// Lower corner (m).
-    pub low: [f64; 3],
-    /// Upper corner (m).
-    pub high: [f64; 3],
-    /// True for each periodic axis.
-    pub periodic: [bool; 3],
 }
 
 /// Contact law between two materials.
@@ -285,7 +274,7 @@ pub struct Body {
     /// Initial density ρ (kg/m³).
     pub density: f64,
     /// Initial shape of the body.
-    pub shape: BodyShape,
+    pub shape: BlockShape,
     /// Initial velocity (m/s), to which `spin`, `stretch` and `wave` add.
     pub velocity: [f64; 3],
     /// Initial angular velocity ω about the centre c of the shape (rad/s). It adds ω × (x − c) to the velocity at x.
@@ -294,53 +283,11 @@ pub struct Body {
     pub stretch: [f64; 3],
     /// Constraints of the lower and the upper side of a box along each axis: `free`, `sliding` (no normal motion) or
     /// `fixed` (no motion).
-    pub sides: [[&'static str; 2]; 3],
+    #[schemars(with = "[[String; 2]; 3]")]
+    pub sides: Sides,
     /// Sine wave that is added to the velocity along x; absent if there is none.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub wave: Option<Wave>,
-}
-
-/// Initial shape of a body.
-#[derive(Clone, Debug, Serialize, JsonSchema)]
-#[serde(rename_all = "kebab-case")]
-pub enum BodyShape {
-    /// Box along the axes.
-    Box {
-        /// Lower corner (m).
-        low: [f64; 3],
-        /// Upper corner (m).
-        high: [f64; 3],
-    },
-    /// Ring in two dimensions.
-    Annulus {
-        /// Centre (m).
-        centre: [f64; 3],
-        /// Inner radius (m).
-        inner: f64,
-        /// Outer radius (m).
-        outer: f64,
-    },
-}
-
-/// Initial velocity wave v_x = v₀ sin(β (x − x_low)), with the lower side x_low of the body.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct Wave {
-    /// Amplitude v₀ (m/s).
-    pub amplitude: f64,
-    /// Wave number β (1/m).
-    pub wave_number: f64,
-}
-
-/// Damped relaxation before the run, which starts with all bodies at rest. After the relaxation, the initial velocities
-/// and spins are set, and time starts at zero.
-#[derive(Clone, Copy, Debug, Serialize, JsonSchema)]
-pub struct Settle {
-    /// Duration of the relaxation (s).
-    pub duration: f64,
-    /// Mass-proportional damping α during the relaxation (1/s).
-    pub damping: f64,
-    /// Gravity during the relaxation (m/s²).
-    pub gravity: [f64; 3],
 }
 
 /// Probe of a body or of a point inside a body.
@@ -376,11 +323,7 @@ impl Resolved {
             },
             gravity: scene.gravity.into(),
             global_damping: scene.global_damping,
-            domain: scene.domain.as_ref().map(|domain| Domain {
-                low: domain.low.into(),
-                high: domain.high.into(),
-                periodic: domain.periodic,
-            }),
+            domain: scene.domain,
             materials: scene.materials.clone(),
             laws: laws(scene),
             grains: (1..)
@@ -409,11 +352,7 @@ impl Resolved {
             grid: *grid,
             deformable: if grid.is_some() { materials(scene) } else { Vec::new() },
             bodies: bodies(scene),
-            settle: scene.start.settle.map(|settle| Settle {
-                duration: settle.duration,
-                damping: settle.damping,
-                gravity: settle.gravity.into(),
-            }),
+            settle: scene.start.settle,
             probes: probes(scene),
             columns: Recorder::new(scene, 1.0, 1).finish().0.columns.into_iter().map(|column| column.name).collect(),
         }
@@ -519,24 +458,16 @@ fn materials(scene: &Scene) -> Vec<Material> {
 
 /// Returns the deformable bodies of a scene.
 fn bodies(scene: &Scene) -> Vec<Body> {
-    let word = |hold: Hold| match hold {
-        Hold::Free => "free",
-        Hold::Sliding => "sliding",
-        Hold::Fixed => "fixed",
-    };
     let body = |body: &Block| Body {
         name: body.name.clone(),
         material: scene.materials[usize::from(body.material)].clone(),
         density: body.density,
-        shape: match body.shape {
-            BlockShape::Box { low, high } => BodyShape::Box { low: low.into(), high: high.into() },
-            BlockShape::Annulus { centre, inner, outer } => BodyShape::Annulus { centre: centre.into(), inner, outer },
-        },
+        shape: body.shape,
         velocity: body.velocity.into(),
         spin: body.spin.into(),
         stretch: body.stretch.into(),
-        sides: body.sides.map(|sides| sides.map(word)),
-        wave: body.wave.map(|wave| Wave { amplitude: wave.amplitude, wave_number: wave.wave_number }),
+        sides: body.sides,
+        wave: body.wave,
     };
     scene.bodies.iter().map(body).collect()
 }

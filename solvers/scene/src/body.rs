@@ -2,21 +2,27 @@
 
 use crate::manufactured::Manufactured;
 use nalgebra::{Matrix3, Vector3};
+use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
-/// Shape of a deformable body other than a grain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Initial shape of a body.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[serde(rename_all = "kebab-case")]
+#[schemars(rename = "BodyShape")]
 pub enum BlockShape {
-    /// Axis-aligned box.
+    /// Box along the axes.
     Box {
         /// Lower corner (m).
+        #[schemars(with = "[f64; 3]")]
         low: Vector3<f64>,
         /// Upper corner (m).
+        #[schemars(with = "[f64; 3]")]
         high: Vector3<f64>,
     },
-    /// Ring, in two dimensions.
+    /// Ring in two dimensions.
     Annulus {
         /// Centre (m).
+        #[schemars(with = "[f64; 3]")]
         centre: Vector3<f64>,
         /// Inner radius (m).
         inner: f64,
@@ -86,7 +92,8 @@ impl BlockShape {
 pub type Sides = [[Hold; 2]; 3];
 
 /// Boundary condition on a side of a box.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "kebab-case")]
 pub enum Hold {
     /// Free to move.
     #[default]
@@ -99,7 +106,8 @@ pub enum Hold {
 
 /// Initial velocity v₀ sin(β (x − x_low)) along x with β = (2n − 1)π/2L. It is mode n of a bar of length L that is
 /// fixed at x_low, its end of smallest x.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(description = "Initial velocity wave v_x = v₀ sin(β (x − x_low)), with the lower side x_low of the body.")]
 pub struct Wave {
     /// Amplitude v₀ (m/s).
     pub amplitude: f64,
@@ -158,20 +166,22 @@ impl Block {
     }
 }
 
-/// Damped relaxation before t = 0. Bodies start at rest and come to equilibrium. At t = 0, they receive their initial
-/// velocities and spins, and gravity and damping take the values of the scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// Damped relaxation before the run, which starts with all bodies at rest. After the relaxation, the initial velocities
+/// and spins are set, and time starts at zero.
+// Gravity and damping then take the values of the scene.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
 pub struct Settle {
-    /// Duration (s).
+    /// Duration of the relaxation (s).
     pub duration: f64,
     /// Mass-proportional damping α during the relaxation (1/s).
     pub damping: f64,
     /// Gravity during the relaxation (m/s²).
+    #[schemars(with = "[f64; 3]")]
     pub gravity: Vector3<f64>,
 }
 
 /// Initial stress of deformable bodies.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, schemars::JsonSchema)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Deserialize, Serialize, JsonSchema)]
 #[serde(rename_all = "kebab-case")]
 pub enum InitialPressure {
     /// Pressure p of a fluid at rest: ∇p = ρ g, with p = 0 at the highest point of each body.

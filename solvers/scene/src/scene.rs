@@ -13,6 +13,8 @@ use crate::mesh::Mesh;
 use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;
+use schemars::JsonSchema;
+use serde::Serialize;
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
@@ -360,11 +362,14 @@ pub struct Probe {
 }
 
 /// Domain of a scene.
-#[derive(Clone, Copy, Debug, PartialEq)]
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, JsonSchema)]
+#[schemars(description = "Box of a scene.")]
 pub struct Domain {
     /// Lower corner (m); z is −0.5 in two dimensions.
+    #[schemars(with = "[f64; 3]", description = "Lower corner (m).")]
     pub low: Vector3<f64>,
     /// Upper corner (m); z is 0.5 in two dimensions.
+    #[schemars(with = "[f64; 3]", description = "Upper corner (m).")]
     pub high: Vector3<f64>,
     /// True for each periodic axis.
     pub periodic: [bool; 3],
