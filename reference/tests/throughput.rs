@@ -4,43 +4,25 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use std::fmt::Write as _;
-use std::io::{self, BufReader, Read};
+use std::io::{BufReader, PipeReader, Write, pipe};
+use std::thread;
 use std::time::Instant;
 
 use grainbench_reference::{DumpReader, DumpSnapshot};
 
-/// Dump that repeats the same rows at the steps 0, 1, 2, …
-struct EndlessReader {
-    rows: String,
-    atoms: usize,
-    step: u64,
-    last: u64,
-    waiting: Vec<u8>,
-    at: usize,
-}
-
-impl Read for EndlessReader {
-    fn read(&mut self, out: &mut [u8]) -> io::Result<usize> {
-        if self.at == self.waiting.len() {
-            if self.step == self.last {
-                return Ok(0);
-            }
-            self.waiting.clear();
-            let (step, atoms, rows) = (self.step, self.atoms, &self.rows);
-            self.waiting.extend_from_slice(
-                format!(
-                    "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{atoms}\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n\
-                     ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz\n{rows}"
-                )
-                .as_bytes(),
+/// Returns a dump that repeats the same rows at the steps 0 to `steps` − 1. A thread writes it while it is read.
+fn repeated(rows: String, atoms: usize, steps: u64) -> PipeReader {
+    let (reader, mut writer) = pipe().unwrap();
+    thread::spawn(move || {
+        for step in 0..steps {
+            let snapshot = format!(
+                "ITEM: TIMESTEP\n{step}\nITEM: NUMBER OF ATOMS\n{atoms}\nITEM: BOX BOUNDS ff ff ff\n0 1\n0 1\n0 1\n\
+                 ITEM: ATOMS id type x y z vx vy vz omegax omegay omegaz\n{rows}"
             );
-            (self.step, self.at) = (self.step + 1, 0);
+            writer.write_all(snapshot.as_bytes()).unwrap();
         }
-        let count = out.len().min(self.waiting.len() - self.at);
-        out[..count].copy_from_slice(&self.waiting[self.at..self.at + count]);
-        self.at += count;
-        Ok(count)
-    }
+    });
+    reader
 }
 
 /// Returns the peak memory of the process so far (MiB), if the system reports it.
@@ -65,8 +47,7 @@ fn reads_snapshots_in_the_memory_of_one() {
     let bytes = if std::env::var_os("GRAINBENCH_LONG").is_some() { 1 << 30 } else { 1 << 26 };
     let snapshots = (bytes / rows.len()) as u64;
     let size = snapshots as f64 * rows.len() as f64 / 1e6;
-    let source = EndlessReader { rows, atoms: ATOMS, step: 0, last: snapshots, waiting: Vec::new(), at: 0 };
-    let mut reader = DumpReader::new(BufReader::new(source), "endless").unwrap();
+    let mut reader = DumpReader::new(BufReader::new(repeated(rows, ATOMS, snapshots)), "repeated").unwrap();
     let mut snapshot = DumpSnapshot::default();
     // The first snapshots allocate the memory that later snapshots reuse.
     for _ in 0..3 {
