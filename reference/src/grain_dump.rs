@@ -8,7 +8,7 @@ use grainbench_solver::record::{GrainState, Snapshot};
 use nalgebra::Vector3;
 
 use crate::contacts::contacts_of;
-use crate::names::{GrainColumns, Names};
+use crate::names::{AXES, GrainColumns, Names};
 use crate::read::format::dump::DumpReader;
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{Coordinate, DumpKind, DumpSnapshot};
@@ -132,7 +132,7 @@ impl GrainDump {
         }
         let id = found.id.ok_or_else(|| rows.missing(file, "a column `id`"))?;
         if let Some(axis) = found.position.iter().position(Option::is_none) {
-            let name = ["x", "y", "z"][axis];
+            let name = AXES[axis];
             return Err(rows.missing(file, format!("a column `{name}`, `{name}u`, `{name}s` or `{name}su`")));
         }
         rows.check_ids(file, id)?;

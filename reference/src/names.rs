@@ -2,6 +2,9 @@
 
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
 
+/// Our names of the coordinates.
+pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
+
 /// Names of columns in a file that differ from those of LAMMPS. Each entry is a pair of our name, such as `x`, `vx` or
 /// `omegaz`, and the name in the file.
 ///
@@ -20,9 +23,9 @@ impl Names {
         self.0.iter().find(|(ours, _)| ours == name).map_or(name, |(_, theirs)| theirs)
     }
 
-    /// Returns the coordinate along an axis, from the column of the given name or from one of the columns of LAMMPS.
-    pub(crate) fn coordinate(&self, snapshot: &DumpSnapshot, axis: usize) -> Option<Coordinate> {
-        let name = ["x", "y", "z"][axis];
+    /// Returns the coordinate `x`, `y` or `z`, from the column of the given name or from one of the columns of LAMMPS.
+    pub(crate) fn coordinate(&self, snapshot: &DumpSnapshot, name: &str) -> Option<Coordinate> {
+        let axis = AXES.iter().position(|axis| *axis == name)?;
         match self.in_file(name) {
             theirs if theirs == name => snapshot.coordinate(axis),
             theirs => snapshot.coordinate_named(theirs, axis),
@@ -50,7 +53,7 @@ impl GrainColumns {
         Self {
             id: column("id"),
             kind: column("type"),
-            position: [0, 1, 2].map(|axis| names.coordinate(snapshot, axis)),
+            position: AXES.map(|axis| names.coordinate(snapshot, axis)),
             velocity: ["vx", "vy", "vz"].map(column),
             spin: ["omegax", "omegay", "omegaz"].map(column),
             angle: column("angle"),

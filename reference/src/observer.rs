@@ -9,8 +9,8 @@ use std::collections::BTreeMap;
 
 use crate::contacts::{PairForce, PairForces, contacts};
 use crate::deck::Stepping;
-use crate::names::GrainColumns;
 pub use crate::names::Names;
+use crate::names::{AXES, GrainColumns};
 use crate::read::digits::Digits;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{Coordinate, DumpSnapshot};
@@ -40,8 +40,8 @@ pub struct DumpObserver<'s> {
     known: KnownQuantities,
     /// Forces between grains, from a dump of contacts if there is one.
     pairs: PairForces,
-    /// Names of the columns with wall forces in dumps of our decks.
-    names_of_decks: Names,
+    /// Names of columns in dumps of our decks. They apply to wall forces without a name of the user.
+    pub(crate) names_of_decks: Names,
     /// Remaining steps at which snapshots are requested, in order.
     due: &'s [u64],
     snapshots: Vec<Snapshot>,
@@ -118,11 +118,6 @@ impl<'s> DumpObserver<'s> {
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
         let names_of_decks = Names::default();
         Self { scene, sampled, recorders, known, pairs, names_of_decks, due, snapshots, shifted_start, heights, last }
-    }
-
-    /// Adds names of columns in dumps of our decks. They apply to wall forces without a name of the user.
-    pub(crate) fn with_names_of_decks(self, names: Vec<(String, String)>) -> Self {
-        Self { names_of_decks: Names(names), ..self }
     }
 
     pub(crate) fn with_pairs(mut self, pairs: PairForces) -> Self {
@@ -262,7 +257,7 @@ impl<'s> DumpObserver<'s> {
         }
         let needed = &columns.position[..self.scene.dimension.count()];
         if let Some(axis) = needed.iter().position(Option::is_none) {
-            let name = ["x", "y", "z"][axis];
+            let name = AXES[axis];
             return Err(missing(&format!("`{}`, `{name}u`, `{name}s` or `{name}su`", names.in_file(name))));
         }
         let of_deck = |name: &str| {
@@ -273,7 +268,7 @@ impl<'s> DumpObserver<'s> {
             let theirs = names.in_file(&name);
             snapshot.column(theirs).or_else(|| of_deck(&name).filter(|_| theirs == name))
         };
-        let of_wall = |name: &str| ["x", "y", "z"].map(|axis| force(format!("{name}.force_{axis}")));
+        let of_wall = |name: &str| AXES.map(|axis| force(format!("{name}.force_{axis}")));
         let walls = self.scene.walls.iter().map(|wall| of_wall(&wall.name)).collect();
         let of_file = Digits::all(digits.unwrap_or_default());
         Ok(Frame { file, snapshot, columns, walls, digits, of_file })

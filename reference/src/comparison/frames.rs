@@ -5,13 +5,11 @@ use std::path::Path;
 use std::vec;
 
 use super::{Options, PrintedDigits};
-use crate::names::Names;
+use crate::names::{AXES, Names};
 use crate::read::format::{RunFile, Snapshots, in_order};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, read_table};
-
-const AXES: [&str; 3] = ["x", "y", "z"];
 
 /// Position of a frame in its output.
 #[derive(Debug, Clone, Copy, PartialEq)]
@@ -82,9 +80,9 @@ impl Frames {
         };
         match &self.from {
             FrameSource::Grains { snapshot, .. } => {
-                let axes: Vec<_> =
-                    (0..3).filter_map(|axis| Some((axis, self.names.coordinate(snapshot, axis)?))).collect();
-                let mut names: Vec<String> = axes.iter().map(|(axis, _)| AXES[*axis].to_owned()).collect();
+                let coordinate = |name: &'static str| Some((name, self.names.coordinate(snapshot, name)?));
+                let axes: Vec<_> = AXES.into_iter().filter_map(coordinate).collect();
+                let mut names: Vec<String> = axes.iter().map(|(name, _)| (*name).to_owned()).collect();
                 let others = snapshot.columns.iter().enumerate().filter(|(at, column)| {
                     !(column.is_text || column.name == "id" || axes.iter().any(|(_, axis)| axis.column == *at))
                 });
@@ -159,8 +157,7 @@ impl Frames {
         id.map_or(Ok(()), |id| snapshot.check_ids(&self.file, id))?;
         let order = snapshot.rows_by(id);
         let values = self.wanted.iter().map(|name| {
-            let axis = AXES.iter().position(|axis| axis == name);
-            if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
+            if let Some(coordinate) = self.names.coordinate(snapshot, name) {
                 return order.iter().map(|&row| coordinate.value(snapshot.row(row))).collect();
             }
             let at = snapshot.column(self.names.in_file(name));
@@ -212,22 +209,15 @@ impl Frames {
 
     /// Returns the printed digits of a column. The result is final after all frames have been read.
     pub(super) fn printed(&self, name: &str) -> PrintedDigits {
-        let table: &Table = match &self.from {
-            FrameSource::Grains { snapshot, .. } => {
-                let axis = AXES.iter().position(|axis| *axis == name);
-                if let Some(coordinate) = axis.and_then(|axis| self.names.coordinate(snapshot, axis)) {
-                    let digits = snapshot.columns[coordinate.column].digits;
-                    let scale = Some(coordinate.parts().map(|(_, scale)| scale.abs()).sum());
-                    let of_file = snapshot.digits();
-                    return PrintedDigits { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) };
-                }
-                snapshot
-            }
-            FrameSource::Table { table, .. } => table,
+        let (table, coordinate): (&Table, _) = match &self.from {
+            FrameSource::Grains { snapshot, .. } => (snapshot, self.names.coordinate(snapshot, name)),
+            FrameSource::Table { table, .. } => (table, None),
         };
-        table.column(self.names.in_file(name)).map_or(PrintedDigits::default(), |column| {
+        let column = coordinate.map(|at| at.column).or_else(|| table.column(self.names.in_file(name)));
+        column.map_or(PrintedDigits::default(), |column| {
+            let scale = coordinate.map(|at| at.parts().map(|(_, scale)| scale.abs()).sum());
             let (digits, of_file) = (table.columns[column].digits, table.digits());
-            PrintedDigits { digits, of_file, scale: None }
+            PrintedDigits { digits, of_file, scale: scale.filter(|scale| *scale != 1.0) }
         })
     }
 }
