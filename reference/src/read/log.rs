@@ -81,19 +81,20 @@ pub fn read_log(path: &Path) -> Result<Log, ReadError> {
 pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     let mut lines = Lines::new(reader, name)?;
     let mut log = Log::default();
-    let mut expected = ExpectedLine::Text;
+    // Rows of the current run, and true if a line of column names is expected next.
+    let (mut rows, mut are_names_next) = (None::<Table>, false);
     while let Some(raw_line) = lines.next_line()? {
         let line = raw_line.text()?;
         let words = || line.text.split_whitespace();
         if line.number == 1 && ["LAMMPS (", "LIGGGHTS ("].iter().any(|name| line.text.starts_with(name)) {
             log.version = Some(line.text.trim().to_owned());
         }
-        if let ExpectedLine::Rows(thermo) = &mut expected {
+        if let Some(thermo) = &mut rows {
             match words().next() {
                 Some("Loop") => {
                     let end = Some(loop_time(line)?);
                     log.runs.push(LoggedRun { thermo: mem::take(thermo), time_step: log.time_step, end });
-                    expected = ExpectedLine::Text;
+                    rows = None;
                 }
                 // Blank lines are skipped in this case, and warnings in the next one.
                 None => {}
@@ -102,9 +103,9 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
             }
             continue;
         }
-        if expected == ExpectedLine::Names || words().next() == Some("Step") {
+        if mem::take(&mut are_names_next) || words().next() == Some("Step") {
             if let Some(columns) = columns_of(line) {
-                expected = ExpectedLine::Rows(Table::new(columns, Vec::new()));
+                rows = Some(Table::new(columns, Vec::new()));
                 continue;
             }
             if line.text.starts_with("---") {
@@ -113,24 +114,20 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
             }
         }
         let mut words = words();
-        expected = match (words.next(), words.next(), words.next()) {
+        match (words.next(), words.next(), words.next()) {
             // LAMMPS prints the first form; LIGGGHTS and older releases of LAMMPS print the second.
             (Some("Per"), Some("MPI"), Some("rank")) | (Some("Memory"), Some("usage"), Some("per")) => {
-                ExpectedLine::Names
+                are_names_next = true;
             }
-            (Some("units"), Some(units), None) => {
-                log.units = Some(units.to_owned());
-                ExpectedLine::Text
-            }
+            (Some("units"), Some(units), None) => log.units = Some(units.to_owned()),
             (Some("timestep"), Some(step), None) => {
-                log.time_step =
-                    step.parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0).or(log.time_step);
-                ExpectedLine::Text
+                let step = step.parse().ok().filter(|step: &f64| step.is_finite() && *step > 0.0);
+                log.time_step = step.or(log.time_step);
             }
-            _ => ExpectedLine::Text,
-        };
+            _ => {}
+        }
     }
-    if let ExpectedLine::Rows(thermo) = expected {
+    if let Some(thermo) = rows {
         log.runs.push(LoggedRun { thermo, time_step: log.time_step, end: None });
     }
     if log.runs.is_empty() {
@@ -141,15 +138,6 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
 }
 
 const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Kept };
-
-/// Content that is expected in the next line of a log.
-#[derive(PartialEq)]
-enum ExpectedLine {
-    /// Any text.
-    Text,
-    Names,
-    Rows(Table),
-}
 
 /// Returns the columns if a line consists of column names: distinct words that are not numbers, including `Step`.
 fn columns_of(line: Line<'_>) -> Option<Vec<NumberColumn>> {
