@@ -5,7 +5,7 @@ use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
 use crate::read::table::{Table, header, read_table};
-use crate::read::vtk::points::{component, is_id};
+use crate::read::vtk::{component, is_id};
 use std::path::Path;
 
 pub(crate) static FORMAT: Format = Format {

@@ -9,7 +9,7 @@ use crate::read::lines::opened;
 use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
-use crate::read::vtk::points::{self, Moment, Moments};
+use crate::read::vtk::{self, Moment, Moments};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -143,7 +143,7 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
         }
         count = expected;
         let (name, numbers, digits) = (key.to_owned(), array.numbers.clone(), array.digits);
-        found.push((points::Array { name, components: width, numbers, digits }, if of_moments { grains } else { 0 }));
+        found.push((vtk::Array { name, components: width, numbers, digits }, if of_moments { grains } else { 0 }));
     }
     let positions = found.remove(0).0;
     let (arrays, rows): (Vec<_>, Vec<usize>) = found.into_iter().unzip();

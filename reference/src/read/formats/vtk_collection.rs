@@ -3,7 +3,7 @@
 use crate::read::format::{FileContent, Format};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::Numbering;
-use crate::read::vtk::{self, bytes::Bytes};
+use crate::read::vtk::{self, Bytes};
 use quick_xml::events::Event;
 use quick_xml::reader::Reader;
 use std::path::{Component, Path, PathBuf};

@@ -9,7 +9,7 @@ use crate::read::digits::Digits;
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::Numbering;
-use crate::read::vtk::points::{Array, Moment, Moments};
+use crate::read::vtk::{Array, Moment, Moments};
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;

@@ -1,8 +1,7 @@
 //! Legacy VTK files. Three header lines are followed by sections that begin with keywords. Binary numbers are
 //! big-endian.
 
-use super::bytes::Bytes;
-use super::points::{Array, Points};
+use super::{Array, Bytes, Points};
 use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};

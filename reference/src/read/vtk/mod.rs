@@ -4,16 +4,15 @@
 //! Source: "VTK File Formats" of the VTK documentation, up to version 5.1 of the legacy format and version 2.2 of the
 //! XML format.
 
-pub(crate) mod bytes;
 mod legacy;
-pub(crate) mod points;
 mod xml;
 
 use super::decoding::decoded;
+use super::digits::Digits;
 use super::lines::opened;
-use super::read_error::ReadError;
+use super::number_table::{NumberColumn, Table};
+use super::read_error::{ReadError, quoted};
 use super::snapshot::DumpSnapshot;
-use bytes::Bytes;
 use std::io::Read;
 use std::path::Path;
 
@@ -66,6 +65,244 @@ pub(crate) fn whole(path: &Path) -> Result<Vec<u8>, ReadError> {
         return Err(ReadError::at(&name, 1, format!("at most {MOST} bytes"), "more"));
     }
     Ok(bytes)
+}
+
+/// Array with the components of all points, point by point.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Array {
+    pub(crate) name: String,
+    pub(crate) components: usize,
+    pub(crate) numbers: Vec<f64>,
+    pub(crate) digits: Digits,
+}
+
+/// Points with their data.
+#[derive(Clone, Debug, PartialEq)]
+pub(crate) struct Points {
+    /// Time; `None` if the file does not contain it.
+    pub(crate) time: Option<f64>,
+    pub(crate) positions: Array,
+    pub(crate) arrays: Vec<Array>,
+}
+
+/// Names of velocities in different programs, in lower case.
+const VELOCITY: [&str; 7] =
+    ["v", "velocity", "vel", "velocity_lin", "linvelocity", "linear_velocity", "linear velocity"];
+/// Names of angular velocities in different programs, in lower case.
+const SPIN: [&str; 8] =
+    ["omega", "spin", "angvel", "velocity_ang", "angvelocity", "angular_velocity", "angular velocity", "w"];
+/// Names of grain ids in different programs, in lower case.
+const ID: [&str; 4] = ["id", "particle_id", "particleid", "particle id"];
+
+const AXES: [&str; 3] = ["x", "y", "z"];
+
+/// Returns true if a name is a known name of grain ids.
+pub(crate) fn is_id(name: &str) -> bool {
+    ID.contains(&name.to_lowercase().as_str())
+}
+
+/// Returns the name that a component of a vector has in a dump.
+pub(crate) fn component(vector: &str, axis: usize) -> String {
+    let lower = vector.to_lowercase();
+    let is = |names: &[&str]| names.contains(&lower.as_str());
+    let axis = AXES.get(axis).copied().unwrap_or_default();
+    if is(&VELOCITY) {
+        format!("v{axis}")
+    } else if is(&SPIN) {
+        format!("omega{axis}")
+    } else {
+        format!("{vector}_{axis}")
+    }
+}
+
+impl Array {
+    /// Returns the names of the columns that the array becomes.
+    fn columns(&self) -> Vec<String> {
+        match self.components {
+            1 if is_id(&self.name) => vec!["id".to_owned()],
+            1 => vec![self.name.clone()],
+            3 => (0..3).map(|axis| component(&self.name, axis)).collect(),
+            other => (0..other).map(|at| format!("{}_{at}", self.name)).collect(),
+        }
+    }
+}
+
+impl Points {
+    /// Returns a snapshot of the points as grains. The step is 0 and must be set by the caller.
+    pub(crate) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
+        let points = self.positions.numbers.len() / 3;
+        let mut columns: Vec<NumberColumn> = Vec::new();
+        let mut parts: Vec<(&Array, usize)> = Vec::new();
+        let positions = (&self.positions, AXES.map(str::to_owned).to_vec());
+        let others = self.arrays.iter().map(|array| (array, array.columns()));
+        for (array, names) in [positions].into_iter().chain(others) {
+            if array.numbers.len() != points * array.components {
+                let expected = format!("{points} of {} numbers in the array {}", array.components, quoted(&array.name));
+                return Err(ReadError::at(file, 1, expected, array.numbers.len().to_string()));
+            }
+            if let Some(at) = array.numbers.iter().position(|number| !number.is_finite()) {
+                let expected = format!("finite numbers in the array {}", quoted(&array.name));
+                let found = format!("{} at point {}", array.numbers[at], at / array.components.max(1) + 1);
+                return Err(ReadError::at(file, 1, expected, found));
+            }
+            for (component, name) in names.into_iter().enumerate() {
+                // If two arrays have the same meaning, the first one is used.
+                if columns.iter().all(|column| column.name != name) {
+                    columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(&name) });
+                    parts.push((array, component));
+                }
+            }
+        }
+        let row = |point: usize| {
+            let parts = &parts;
+            parts.iter().map(move |(array, component)| array.numbers[point * array.components + component])
+        };
+        let values = (0..points).flat_map(row).collect();
+        let table = Table::new(columns, values);
+        Ok(DumpSnapshot { time: self.time, table, first_line: 1, ..DumpSnapshot::default() })
+    }
+}
+
+/// Points with their data at one or several moments, which may share arrays.
+#[derive(Debug)]
+pub(crate) struct Moments {
+    /// Name of the file for error messages.
+    pub(crate) name: String,
+    pub(crate) positions: Array,
+    pub(crate) arrays: Vec<Array>,
+    pub(crate) moments: Vec<Moment>,
+}
+
+/// Time of a moment, number of its points, and their first row in the positions and in each array.
+#[derive(Debug)]
+pub(crate) struct Moment {
+    pub(crate) time: Option<f64>,
+    pub(crate) points: usize,
+    pub(crate) position: usize,
+    pub(crate) of: Vec<usize>,
+}
+
+impl Moments {
+    /// Returns the largest number of grains at any moment.
+    pub(crate) fn grains(&self) -> usize {
+        self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
+    }
+
+    /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
+    ///
+    /// # Errors
+    /// If an array is too short or has a number that is not finite.
+    pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
+        let Some(moment) = self.moments.get(at) else { return Ok(None) };
+        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
+            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
+            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
+            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
+                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
+                ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / array.components))
+            })?;
+            Ok(Array { numbers, name: array.name.clone(), ..*array })
+        };
+        let cut_arrays: Result<Vec<Array>, ReadError> =
+            self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
+        let points =
+            Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: cut_arrays? };
+        Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
+    }
+}
+
+/// File in memory with a reading position.
+#[derive(Clone, Copy, Default)]
+pub(crate) struct Bytes<'b> {
+    file: &'b str,
+    all: &'b [u8],
+    at: usize,
+}
+
+impl<'b> Bytes<'b> {
+    pub(crate) const fn new(file: &'b str, all: &'b [u8]) -> Self {
+        Self { file, all, at: 0 }
+    }
+
+    /// Returns the whole file.
+    pub(crate) const fn all(&self) -> &'b [u8] {
+        self.all
+    }
+
+    /// Returns the name of the file for error messages.
+    pub(crate) const fn file(&self) -> &'b str {
+        self.file
+    }
+
+    /// Returns an error at the line that contains the byte `at`.
+    pub(crate) fn error_at(&self, at: usize, expected: impl Into<String>, found: impl Into<String>) -> ReadError {
+        let before = &self.all[..at.min(self.all.len())];
+        let line = memchr::memchr_iter(b'\n', before).count() as u64 + 1;
+        ReadError::at(self.file, line, expected, found)
+    }
+
+    /// Returns an error at the reading position, with the next word as the actual content.
+    pub(crate) fn error(&self, expected: impl Into<String>) -> ReadError {
+        let rest = &self.all[self.at.min(self.all.len())..];
+        let start = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+        let word: Vec<u8> = rest[start..].iter().copied().take_while(|byte| !byte.is_ascii_whitespace()).collect();
+        let found =
+            if word.is_empty() { "the end of the file".to_owned() } else { quoted(&String::from_utf8_lossy(&word)) };
+        let error = self.error_at(self.at + start, expected, found);
+        if word.is_empty() { error.cut() } else { error }
+    }
+
+    /// Reads the next line without its line end. Returns `None` at the end of the file.
+    pub(crate) fn line(&mut self) -> Option<&'b [u8]> {
+        let rest = self.all.get(self.at..).filter(|rest| !rest.is_empty())?;
+        let end = memchr::memchr(b'\n', rest).unwrap_or(rest.len());
+        self.at += (end + 1).min(rest.len());
+        Some(rest[..end].strip_suffix(b"\r").unwrap_or(&rest[..end]))
+    }
+
+    /// Returns the words of the next line that is not blank. The reading position does not change.
+    pub(crate) fn next_words(&self) -> Option<Vec<&'b str>> {
+        let mut ahead = *self;
+        loop {
+            let words: Vec<&str> = std::str::from_utf8(ahead.line()?).ok()?.split_whitespace().collect();
+            if !words.is_empty() {
+                return Some(words);
+            }
+        }
+    }
+
+    /// Reads `count` bytes.
+    pub(crate) fn take(&mut self, count: usize) -> Result<&'b [u8], ReadError> {
+        match self.at.checked_add(count).and_then(|end| self.all.get(self.at..end)) {
+            Some(bytes) => {
+                self.at += count;
+                Ok(bytes)
+            }
+            None => {
+                let found = format!("the end of the file after {}", self.all.len().saturating_sub(self.at));
+                Err(self.error_at(self.all.len(), format!("{count} bytes"), found).cut())
+            }
+        }
+    }
+
+    /// Reads `count` printed numbers and updates `digits` from their texts.
+    pub(crate) fn printed(&mut self, count: usize, digits: &mut Digits) -> Result<Vec<f64>, ReadError> {
+        // Memory grows with the numbers that are present, not with the declared number.
+        let mut numbers = Vec::new();
+        for _ in 0..count {
+            let rest = &self.all[self.at..];
+            let start = rest.iter().take_while(|byte| byte.is_ascii_whitespace()).count();
+            let word = &rest[start..];
+            let word = &word[..word.iter().position(u8::is_ascii_whitespace).unwrap_or(word.len())];
+            match fast_float2::parse::<f64, _>(word) {
+                Ok(number) => numbers.push(number),
+                Err(_) => return Err(self.error(format!("{count} numbers"))),
+            }
+            digits.see(word);
+            self.at += start + word.len();
+        }
+        Ok(numbers)
+    }
 }
 
 #[cfg(test)]

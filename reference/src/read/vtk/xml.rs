@@ -1,8 +1,7 @@
 //! XML files with points, `PolyData` and `UnstructuredGrid`. Numbers are text, encoded in place, or in the appended
 //! data.
 
-use super::bytes::Bytes;
-use super::points::{Array, Points};
+use super::{Array, Bytes, Points};
 use crate::read::binary::Number;
 use crate::read::digits::Digits;
 use crate::read::read_error::{ReadError, quoted};
