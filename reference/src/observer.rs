@@ -39,7 +39,7 @@ pub struct DumpObserver<'s> {
     recorders: [Recorder; 3],
     known: KnownQuantities,
     /// Forces between grains, from a dump of contacts if there is one.
-    pairs: PairForces,
+    pub(crate) pairs: PairForces,
     /// Names of columns in dumps of our decks. They apply to wall forces without a name of the user.
     pub(crate) names_of_decks: Names,
     /// Remaining steps at which snapshots are requested, in order.
@@ -57,7 +57,6 @@ struct KnownQuantities {
     velocity: bool,
     spin: bool,
     angle: bool,
-    pairs: bool,
     /// True for each wall whose forces on the grains are known.
     walls: Vec<bool>,
 }
@@ -107,23 +106,11 @@ impl<'s> DumpObserver<'s> {
             Scene { sampling: Sampling::Cycles(1), snapshots: 0, snapshot_times: Vec::new(), ..scene.clone() };
         let recorder = || Recorder::new(&sampled, 1.0, u64::MAX);
         let recorders = [recorder(), recorder(), recorder()];
-        let known = KnownQuantities {
-            velocity: true,
-            spin: true,
-            angle: true,
-            pairs: false,
-            walls: vec![true; scene.walls.len()],
-        };
+        let known = KnownQuantities { velocity: true, spin: true, angle: true, walls: vec![true; scene.walls.len()] };
         let (pairs, due, heights) = (PairForces::default(), snapshot_steps, BTreeMap::new());
         let (snapshots, shifted_start, last) = (Vec::new(), None, None);
         let names_of_decks = Names::default();
         Self { scene, sampled, recorders, known, pairs, names_of_decks, due, snapshots, shifted_start, heights, last }
-    }
-
-    pub(crate) fn with_pairs(mut self, pairs: PairForces) -> Self {
-        self.known.pairs = !pairs.is_empty();
-        self.pairs = pairs;
-        self
     }
 
     /// Adds a snapshot of the file `file` at a time (s). `digits` are the printed digits of each column in the whole
@@ -152,7 +139,7 @@ impl<'s> DumpObserver<'s> {
             *known &= all(&wall[..axes]);
         }
         let order = self.order(&frame)?;
-        if self.known.pairs && !self.pairs.has(snapshot.step) {
+        if !self.pairs.is_empty() && !self.pairs.has(snapshot.step) {
             let expected = format!("a dump with the contacts of step {}", snapshot.step);
             return Err(frame.error(0, expected, "only grains".to_owned()));
         }
@@ -374,7 +361,7 @@ impl<'s> DumpObserver<'s> {
             values.iter().zip(other).map(|(value, other)| (other - value).abs()).collect()
         };
         for (at, (column, values)) in printed.columns.into_iter().zip(printed.values).enumerate() {
-            if !is_known(self.scene, &column.name, &self.known) {
+            if !is_known(self.scene, &column.name, &self.known, !self.pairs.is_empty()) {
                 continue;
             }
             let (along, outwards) = (shifted(&along, at, &values), shifted(&outwards, at, &values));
@@ -422,8 +409,9 @@ impl DumpRecord {
     }
 }
 
-/// Returns true if a column of the series follows from the known quantities.
-fn is_known(scene: &Scene, name: &str, known: &KnownQuantities) -> bool {
+/// Returns true if a column of the series follows from the known quantities. `pairs` is true if the forces between grains
+/// are known.
+fn is_known(scene: &Scene, name: &str, known: &KnownQuantities, pairs: bool) -> bool {
     let Some((probe, quantity)) = name.rsplit_once('.') else { return false };
     match scene.probes.iter().find(|other| other.name == probe).map(|probe| probe.target) {
         Some(ProbeTarget::Grain(_)) => match quantity {
@@ -432,7 +420,7 @@ fn is_known(scene: &Scene, name: &str, known: &KnownQuantities) -> bool {
             "angle" => known.angle,
             _ => known.spin && quantity.starts_with("omega"),
         },
-        Some(ProbeTarget::Pair(..)) => is_known_of_contact(quantity, known.pairs),
+        Some(ProbeTarget::Pair(..)) => is_known_of_contact(quantity, pairs),
         Some(ProbeTarget::GrainWall(_, wall)) => is_known_of_contact(quantity, known.walls[wall]),
         Some(ProbeTarget::Wall(wall)) => known.walls[wall],
         Some(ProbeTarget::System) => match quantity {

@@ -305,8 +305,8 @@ impl Outputs {
         }
         let decks = self.decks(scene);
         let names = decks.iter().flat_map(|deck| deck.names.0.clone()).collect();
-        let mut observer = DumpObserver::new(scene, &self.sources.snapshot_steps).with_pairs(self.contacts(scene)?);
-        observer.names_of_decks = Names(names);
+        let mut observer = DumpObserver::new(scene, &self.sources.snapshot_steps);
+        (observer.pairs, observer.names_of_decks) = (self.contacts(scene)?, Names(names));
         // Number and time (s) of the last snapshot of grains. `before` is the last snapshot of the previous file.
         let mut last: Option<u64> = None;
         let mut last_time = f64::NEG_INFINITY;

@@ -145,8 +145,9 @@ pub(crate) fn execute(launch: &Launch<'_>) -> Result<Execution, RunError> {
         let mut worker = worker.map_err(|failure| fail((failure, Vec::new())))?;
         // The start of the worker is not timed, because later runs do not need it.
         start = Instant::now();
-        let answer = worker.ask(&scene, out, *limits).map_err(fail)?;
+        let answer = worker.ask(&scene, out, *limits);
         let last_lines = worker.last_lines();
+        let answer = answer.map_err(|failure| fail((failure, last_lines.clone())))?;
         idle().push(worker);
         (answer, last_lines)
     } else {

@@ -80,12 +80,7 @@ impl Worker {
     }
 
     /// Requests a run and waits for the answer. After an error the worker must not be used again.
-    pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, (Failure, Vec<String>)> {
-        let answer = self.answer(scene, out, limits);
-        answer.map_err(|failure| (failure, self.last_lines()))
-    }
-
-    fn answer(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, Failure> {
+    pub(super) fn ask(&mut self, scene: &Path, out: &Path, limits: Limits) -> Result<Answer, Failure> {
         let request = serde_json::to_string(&Request { scene, out }).unwrap_or_default();
         let ended = || Failure::Crash("the worker ended".to_owned());
         writeln!(self.requests, "{request}").and_then(|()| self.requests.flush()).map_err(|_| ended())?;

@@ -158,7 +158,8 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
         read([CONTACTS, END_CONTACTS], &mut |name, snapshot| pairs.take(name, snapshot, &deck.names, None))?;
     }
     let recorder = Recorder::new(scene, stepping.time_step, stepping.steps);
-    let mut observer = DumpObserver::new(scene, recorder.snapshot_steps()).with_pairs(pairs);
+    let mut observer = DumpObserver::new(scene, recorder.snapshot_steps());
+    observer.pairs = pairs;
     read([SAMPLES, END], &mut |name, snapshot| {
         observer.take(name, snapshot, &deck.names, snapshot.step as f64 * stepping.time_step, None)
     })?;
