@@ -9,7 +9,7 @@ use crate::read::lines::opened;
 use crate::read::number_table::{NumberColumn, Table};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
-use crate::read::vtk::{self, Moment, Moments};
+use crate::read::vtk::{self, Moment, Points};
 use std::collections::BTreeMap;
 use std::io::Read;
 use std::path::Path;
@@ -54,7 +54,7 @@ struct Course {
     /// Numbering of the moments. If the file has both steps and times, the steps are those of the run. Otherwise the
     /// numbers may count frames.
     numbering: Numbering,
-    grains: Moments,
+    grains: Points,
     contacts: Option<Contacts>,
 }
 
@@ -150,10 +150,9 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
     let moment = |at: usize| Moment {
         time: times.as_ref().map(|times| times[at]),
         points: count,
-        position: at * count,
-        of: rows.iter().map(|rows| at * rows).collect(),
+        first: Some((at * count, rows.iter().map(|rows| at * rows).collect())),
     };
-    let grains = Moments { name: name.to_string(), positions, arrays, moments: (0..moments).map(moment).collect() };
+    let grains = Points { name: name.to_string(), positions, arrays, moments: (0..moments).map(moment).collect() };
     Ok(Course { steps, numbering, grains, contacts })
 }
 

@@ -9,7 +9,7 @@ use crate::read::digits::Digits;
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::Numbering;
-use crate::read::vtk::{Array, Moment, Moments};
+use crate::read::vtk::{Array, Moment, Points};
 use hdf5_reader::error::Error;
 use hdf5_reader::group::Group;
 use hdf5_reader::messages::datatype::Datatype;
@@ -64,7 +64,7 @@ pub(crate) fn has_steps(path: &Path) -> Result<bool, ReadError> {
 ///
 /// # Errors
 /// If the file cannot be read, is truncated or is not a VTKHDF file.
-pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
+pub(crate) fn read_moments(path: &Path) -> Result<Points, ReadError> {
     let file = File::open(path)?;
     let positions = file.array(&file.root, "Points", Some(3))?;
     let counts = file.whole(&file.root, "NumberOfPoints")?;
@@ -87,10 +87,10 @@ pub(crate) fn read_moments(path: &Path) -> Result<Moments, ReadError> {
                     return Err(file.fault(&expected, rows));
                 }
             }
-            vec![Moment { time: file.time()?, points, position: 0, of: vec![0; arrays.len()] }]
+            vec![Moment { time: file.time()?, points, first: None }]
         }
     };
-    Ok(Moments { name: file.name, positions, arrays, moments })
+    Ok(Points { name: file.name, positions, arrays, moments })
 }
 
 impl File {
@@ -217,8 +217,8 @@ impl File {
             let counts = last.and_then(|last| counts.get(first_part[at]..last)).ok_or_else(|| {
                 self.fault(&format!("{} parts from {} on in `NumberOfPoints`", parts[at], first_part[at]), "fewer")
             })?;
-            let offsets = first.iter().map(|first| first[at]).collect();
-            Ok(Moment { time: Some(*time), points: counts.iter().sum(), position: first_point[at], of: offsets })
+            let first = Some((first_point[at], first.iter().map(|first| first[at]).collect()));
+            Ok(Moment { time: Some(*time), points: counts.iter().sum(), first })
         };
         let moments: Vec<Moment> = times.iter().enumerate().map(moment).collect::<Result<_, ReadError>>()?;
         if moments.is_empty() { Err(self.fault("at least one step", "none")) } else { Ok(moments) }

@@ -122,7 +122,7 @@ impl<'b> Reader<'b> {
             }
         }
         let positions = positions.ok_or_else(|| self.bytes.error("`POINTS`"))?;
-        Ok(Points { time, positions, arrays })
+        Ok(Points::of_moment(self.bytes.file(), time, positions, arrays))
     }
 
     /// Skips the connectivity of the cells and returns the number of cells.

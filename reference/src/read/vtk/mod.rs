@@ -14,6 +14,7 @@ use super::number_table::{NumberColumn, Table};
 use super::read_error::{ReadError, quoted};
 use super::snapshot::DumpSnapshot;
 use std::io::Read;
+use std::ops::Range;
 use std::path::Path;
 
 /// Maximum size of a file after decompression (B).
@@ -51,7 +52,7 @@ pub(crate) fn read_points(path: &Path) -> Result<DumpSnapshot, ReadError> {
 fn parse(name: &str, bytes: &[u8]) -> Result<DumpSnapshot, ReadError> {
     let bytes = Bytes::new(name, bytes);
     let points = if bytes.all().starts_with(LEGACY) { legacy::read(bytes)? } else { xml::read(bytes)? };
-    points.snapshot(name)
+    Ok(points.snapshot(0)?.unwrap_or_default())
 }
 
 /// Reads all bytes of a file and decompresses them.
@@ -74,15 +75,6 @@ pub(crate) struct Array {
     pub(crate) components: usize,
     pub(crate) numbers: Vec<f64>,
     pub(crate) digits: Digits,
-}
-
-/// Points with their data.
-#[derive(Clone, Debug, PartialEq)]
-pub(crate) struct Points {
-    /// Time; `None` if the file does not contain it.
-    pub(crate) time: Option<f64>,
-    pub(crate) positions: Array,
-    pub(crate) arrays: Vec<Array>,
 }
 
 /// Names of velocities in different programs, in lower case.
@@ -127,45 +119,9 @@ impl Array {
     }
 }
 
-impl Points {
-    /// Returns a snapshot of the points as grains. The step is 0 and must be set by the caller.
-    pub(crate) fn snapshot(self, file: &str) -> Result<DumpSnapshot, ReadError> {
-        let points = self.positions.numbers.len() / 3;
-        let mut columns: Vec<NumberColumn> = Vec::new();
-        let mut parts: Vec<(&Array, usize)> = Vec::new();
-        let positions = (&self.positions, AXES.map(str::to_owned).to_vec());
-        let others = self.arrays.iter().map(|array| (array, array.columns()));
-        for (array, names) in [positions].into_iter().chain(others) {
-            if array.numbers.len() != points * array.components {
-                let expected = format!("{points} of {} numbers in the array {}", array.components, quoted(&array.name));
-                return Err(ReadError::at(file, 1, expected, array.numbers.len().to_string()));
-            }
-            if let Some(at) = array.numbers.iter().position(|number| !number.is_finite()) {
-                let expected = format!("finite numbers in the array {}", quoted(&array.name));
-                let found = format!("{} at point {}", array.numbers[at], at / array.components.max(1) + 1);
-                return Err(ReadError::at(file, 1, expected, found));
-            }
-            for (component, name) in names.into_iter().enumerate() {
-                // If two arrays have the same meaning, the first one is used.
-                if columns.iter().all(|column| column.name != name) {
-                    columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(&name) });
-                    parts.push((array, component));
-                }
-            }
-        }
-        let row = |point: usize| {
-            let parts = &parts;
-            parts.iter().map(move |(array, component)| array.numbers[point * array.components + component])
-        };
-        let values = (0..points).flat_map(row).collect();
-        let table = Table::new(columns, values);
-        Ok(DumpSnapshot { time: self.time, table, first_line: 1, ..DumpSnapshot::default() })
-    }
-}
-
 /// Points with their data at one or several moments, which may share arrays.
 #[derive(Debug)]
-pub(crate) struct Moments {
+pub(crate) struct Points {
     /// Name of the file for error messages.
     pub(crate) name: String,
     pub(crate) positions: Array,
@@ -178,11 +134,17 @@ pub(crate) struct Moments {
 pub(crate) struct Moment {
     pub(crate) time: Option<f64>,
     pub(crate) points: usize,
-    pub(crate) position: usize,
-    pub(crate) of: Vec<usize>,
+    /// First rows; `None` if the arrays have only the rows of this moment.
+    pub(crate) first: Option<(usize, Vec<usize>)>,
 }
 
-impl Moments {
+impl Points {
+    /// Returns points at one moment, to which all rows of the arrays belong.
+    fn of_moment(name: &str, time: Option<f64>, positions: Array, arrays: Vec<Array>) -> Self {
+        let moment = Moment { time, points: positions.numbers.len() / 3, first: None };
+        Self { name: name.to_owned(), positions, arrays, moments: vec![moment] }
+    }
+
     /// Returns the largest number of grains at any moment.
     pub(crate) fn grains(&self) -> usize {
         self.moments.iter().map(|moment| moment.points).max().unwrap_or(0)
@@ -191,23 +153,56 @@ impl Moments {
     /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
     ///
     /// # Errors
-    /// If an array is too short or has a number that is not finite.
+    /// If an array is too short, has rows of no moment, or has a number that is not finite.
     pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
-        let Some(moment) = self.moments.get(at) else { return Ok(None) };
-        let cut = |array: &Array, first: usize| -> Result<Array, ReadError> {
-            let last = first.checked_add(moment.points).and_then(|last| last.checked_mul(array.components));
-            let numbers = last.and_then(|last| array.numbers.get(first.saturating_mul(array.components)..last));
-            let numbers = numbers.map(<[f64]>::to_vec).ok_or_else(|| {
-                let expected = format!("{} points from {first} on in the array {}", moment.points, quoted(&array.name));
-                ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / array.components))
-            })?;
-            Ok(Array { numbers, name: array.name.clone(), ..*array })
+        let Some(Moment { time, points, first }) = self.moments.get(at) else { return Ok(None) };
+        let rows = |array: &Array, first: Option<usize>| match first {
+            None => Ok(0..array.numbers.len()),
+            Some(first) => self.rows(array, first, *points),
         };
-        let cut_arrays: Result<Vec<Array>, ReadError> =
-            self.arrays.iter().zip(&moment.of).map(|(array, first)| cut(array, *first)).collect();
-        let points =
-            Points { time: moment.time, positions: cut(&self.positions, moment.position)?, arrays: cut_arrays? };
-        Ok(Some(DumpSnapshot { step: at as u64, ..points.snapshot(&self.name)? }))
+        let first_of = |place: usize| first.as_ref().map(|(_, first)| first[place]);
+        let others = self.arrays.iter().enumerate();
+        let others = others.map(|(place, array)| Ok((array, rows(array, first_of(place))?, array.columns())));
+        let others: Vec<_> = others.collect::<Result<_, ReadError>>()?;
+        let of_positions = rows(&self.positions, first.as_ref().map(|(first, _)| *first))?;
+        let positions = (&self.positions, of_positions, AXES.map(str::to_owned).to_vec());
+        let mut columns: Vec<NumberColumn> = Vec::new();
+        // Numbers of the moment in the array of each column, with the number of components and the component.
+        let mut parts: Vec<(&[f64], usize, usize)> = Vec::new();
+        for (array, rows, names) in [positions].into_iter().chain(others) {
+            let (numbers, width) = (&array.numbers[rows], array.components);
+            if numbers.len() != points * width {
+                let expected = format!("{points} of {width} numbers in the array {}", quoted(&array.name));
+                return Err(ReadError::at(&self.name, 1, expected, numbers.len().to_string()));
+            }
+            if let Some(at) = numbers.iter().position(|number| !number.is_finite()) {
+                let expected = format!("finite numbers in the array {}", quoted(&array.name));
+                let found = format!("{} at point {}", numbers[at], at / width.max(1) + 1);
+                return Err(ReadError::at(&self.name, 1, expected, found));
+            }
+            for (component, name) in names.into_iter().enumerate() {
+                // If two arrays have the same meaning, the first one is used.
+                if columns.iter().all(|column| column.name != name) {
+                    columns.push(NumberColumn { digits: array.digits, ..NumberColumn::new(&name) });
+                    parts.push((numbers, width, component));
+                }
+            }
+        }
+        let row =
+            |point: usize| parts.iter().map(move |(numbers, width, component)| numbers[point * width + component]);
+        let table = Table::new(columns, (0..*points).flat_map(row).collect());
+        Ok(Some(DumpSnapshot { step: at as u64, time: *time, table, first_line: 1, ..DumpSnapshot::default() }))
+    }
+
+    /// Returns the range of the numbers of points in an array from its row `first` on.
+    fn rows(&self, array: &Array, first: usize, points: usize) -> Result<Range<usize>, ReadError> {
+        let width = array.components;
+        let last = first.checked_add(points).and_then(|last| last.checked_mul(width));
+        let range = last.map(|last| first.saturating_mul(width)..last);
+        range.filter(|range| array.numbers.get(range.clone()).is_some()).ok_or_else(|| {
+            let expected = format!("{points} points from {first} on in the array {}", quoted(&array.name));
+            ReadError::at(&self.name, 1, expected, format!("{} in all", array.numbers.len() / width))
+        })
     }
 }
 

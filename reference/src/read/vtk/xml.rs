@@ -112,7 +112,7 @@ impl File<'_> {
             }
         }
         let positions = self.positions.ok_or_else(|| self.bytes.error_at(0, "an array in `<Points>`", "none"))?;
-        Ok(Points { time: self.time, positions, arrays: self.arrays })
+        Ok(Points::of_moment(self.bytes.file(), self.time, positions, self.arrays))
     }
 
     /// Adds text to the array whose tag is open.
