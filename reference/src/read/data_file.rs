@@ -1,7 +1,6 @@
 //! Data files, which `write_data` writes and `read_data` of LAMMPS and LIGGGHTS reads.
 
 use std::collections::HashMap;
-use std::collections::hash_map::Entry;
 use std::io::BufRead;
 use std::mem;
 use std::path::Path;
@@ -207,7 +206,6 @@ struct Parser {
     known: HashMap<u32, (usize, bool)>,
     atoms_seen: bool,
     velocities_seen: bool,
-    velocities: u64,
 }
 
 impl Parser {
@@ -274,12 +272,12 @@ impl Parser {
     fn check_section(&self) -> Result<(), Mismatch> {
         let (name, count) = match self.section {
             None => return self.header.check(),
-            Some(Section::Atoms) => ("Atoms", self.atoms.len() as u64),
-            Some(Section::Velocities) => ("Velocities", self.velocities),
+            Some(Section::Atoms) => ("Atoms", self.atoms.len()),
+            Some(Section::Velocities) => ("Velocities", self.known.values().filter(|(_, moving)| *moving).count()),
             Some(Section::PassedOver) => return Ok(()),
         };
         let declared = self.header.atoms.unwrap_or_default();
-        if count == declared {
+        if count as u64 == declared {
             return Ok(());
         }
         let expected = format!("{declared} lines in the section `{name}`, one for each atom of the header");
@@ -324,14 +322,11 @@ impl Parser {
             let found = format!("diameter {:e} and density {:e}", atom.diameter, atom.density);
             return Err(line.error("a finite mass of the grain", found));
         }
-        match self.known.entry(id) {
-            Entry::Occupied(_) => Err(line.error("an id that no other atom has", format!("{id} again"))),
-            Entry::Vacant(place) => {
-                place.insert((self.atoms.len(), false));
-                self.atoms.push(atom);
-                Ok(())
-            }
+        if self.known.insert(id, (self.atoms.len(), false)).is_some() {
+            return Err(line.error("an id that no other atom has", format!("{id} again")));
         }
+        self.atoms.push(atom);
+        Ok(())
     }
 
     fn take_velocity(&mut self, line: Line<'_>, content: &str) -> Result<(), ReadError> {
@@ -350,7 +345,6 @@ impl Parser {
             atom.velocity = velocity;
             atom.angular_velocity = spin;
         }
-        self.velocities += 1;
         Ok(())
     }
 }
