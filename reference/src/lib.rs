@@ -25,7 +25,7 @@ pub use read::data_file::{Atom, DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
 pub use read::format::dump::DumpReader;
 pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};
-pub use read::number_table::{NonFiniteNumbers, NumberColumn};
+pub use read::number_table::NumberColumn;
 pub use read::read_error::ReadError;
 pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot, Numbering};
 pub use read::table::{Table, parse_table, read_table};

@@ -11,7 +11,7 @@ use std::path::{Path, PathBuf};
 use flate2::Compression;
 use flate2::write::GzEncoder;
 use grainbench_reference::stored::compressed;
-use grainbench_reference::{DataFile, DumpKind, DumpReader, DumpSnapshot, NonFiniteNumbers, ReadError};
+use grainbench_reference::{DataFile, DumpKind, DumpReader, DumpSnapshot, ReadError};
 use grainbench_reference::{parse_data, parse_log, parse_table, read_data_file, read_log};
 
 /// Returns the path of a file in `tests/data`.
@@ -144,7 +144,7 @@ fn sound() -> String {
 
 #[test]
 fn keeps_what_is_not_finite_where_asked_to() {
-    let mut reader = DumpReader::new(SOUND.as_bytes(), "dump").unwrap().not_finite(NonFiniteNumbers::Kept);
+    let mut reader = DumpReader::new(SOUND.as_bytes(), "dump").unwrap().keep_non_finite();
     let mut snapshot = DumpSnapshot::default();
     assert!(reader.read(&mut snapshot).unwrap());
     assert!(snapshot.row(1)[1].is_nan() && snapshot.row(1)[0].is_nan());

@@ -23,7 +23,6 @@ use crate::execution::{self, Launch, Protocol, most_bytes, output, plain_file};
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::format::dump::DumpReader;
 use crate::read::log::read_log;
-use crate::read::number_table::NonFiniteNumbers;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 
@@ -144,7 +143,7 @@ fn observe(scene: &Scene, deck: &Deck, folder: &Path, deadline: Deadline) -> Res
     let read = |names: [&'static str; 2], take: &mut dyn FnMut(&str, &DumpSnapshot) -> Result<(), ReadError>| {
         let mut snapshot = DumpSnapshot::default();
         for name in &names[..if stepping.ends_on_a_sample() { 1 } else { 2 }] {
-            let mut reader = open(name)?.not_finite(NonFiniteNumbers::Kept);
+            let mut reader = open(name)?.keep_non_finite();
             while reader.read(&mut snapshot).map_err(output)? {
                 deadline.check()?;
                 take(name, &snapshot).map_err(output)?;

@@ -5,7 +5,7 @@ use std::mem;
 use std::path::Path;
 
 use crate::read::lines::{Line, Lines, opened};
-use crate::read::number_table::{NonFiniteNumbers, NumberColumn, RowForm, Table};
+use crate::read::number_table::{NumberColumn, RowForm, Table};
 use crate::read::read_error::{ReadError, quoted};
 
 /// Output of one `run` command in a log.
@@ -137,7 +137,7 @@ pub fn parse_log(reader: impl BufRead, name: &str) -> Result<Log, ReadError> {
     Ok(log)
 }
 
-const ROW: RowForm = RowForm { separator: None, not_finite: NonFiniteNumbers::Kept };
+const ROW: RowForm = RowForm { separator: None, keeps_non_finite: true };
 
 /// Returns the columns if a line consists of column names: distinct words that are not numbers, including `Step`.
 fn columns_of(line: Line<'_>) -> Option<Vec<NumberColumn>> {

@@ -85,22 +85,13 @@ impl Table {
     }
 }
 
-/// Treatment of NaN and infinity.
-#[derive(Debug, Clone, Copy, PartialEq, Eq, Default)]
-pub enum NonFiniteNumbers {
-    /// NaN and infinity are errors in the file.
-    #[default]
-    Refused,
-    /// NaN and infinity are kept, so that the caller can report the step at which they occur.
-    Kept,
-}
-
 /// Separator of the numbers in a row, and treatment of NaN and infinity.
-#[derive(Debug, Clone, Copy)]
+#[derive(Debug, Clone, Copy, Default)]
 pub(crate) struct RowForm {
     /// Separator of numbers; `None` for blanks.
     pub(crate) separator: Option<u8>,
-    pub(crate) not_finite: NonFiniteNumbers,
+    /// True to keep NaN and infinity, which are errors otherwise.
+    pub(crate) keeps_non_finite: bool,
 }
 
 impl RowForm {
@@ -142,7 +133,7 @@ impl RowForm {
                 let text = &bytes[at..at + length];
                 let delimited =
                     bytes.get(at + length).is_none_or(|byte| self.is_blank(*byte) || Some(*byte) == self.separator);
-                if !delimited || (!value.is_finite() && self.not_finite == NonFiniteNumbers::Refused) {
+                if !delimited || !(value.is_finite() || self.keeps_non_finite) {
                     return Err(self.fault(line, at, column));
                 }
                 column.digits.see(text);
@@ -171,10 +162,10 @@ impl RowForm {
 
     #[cold]
     fn fault(self, line: RawLine<'_>, at: usize, column: &NumberColumn) -> ReadError {
-        let kind = match (column.is_text, self.not_finite) {
+        let kind = match (column.is_text, self.keeps_non_finite) {
             (true, _) => "a word",
-            (false, NonFiniteNumbers::Refused) => "a finite number",
-            (false, NonFiniteNumbers::Kept) => "a number",
+            (false, false) => "a finite number",
+            (false, true) => "a number",
         };
         self.error_at(line, at, &format!("{kind} in the column {}", quoted(&column.name)), "")
     }

@@ -5,7 +5,7 @@ use std::path::Path;
 
 use crate::read::lines::{Lines, opened};
 pub use crate::read::number_table::Table;
-use crate::read::number_table::{MOST_NUMBERS, NonFiniteNumbers, NumberColumn, RowForm};
+use crate::read::number_table::{MOST_NUMBERS, NumberColumn, RowForm};
 use crate::read::parquet;
 use crate::read::read_error::{ReadError, quoted};
 
@@ -41,7 +41,7 @@ pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
 /// or a number that is not finite.
 pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
     let mut lines = Lines::new(reader, name)?;
-    let mut form = RowForm { separator: None, not_finite: NonFiniteNumbers::Refused };
+    let mut form = RowForm::default();
     let mut table = Table::default();
     while let Some(line) = lines.next_line()? {
         let first = line.bytes.iter().find(|byte| !byte.is_ascii_whitespace());

@@ -6,7 +6,7 @@ use std::path::Path;
 
 use crate::read::format::{FileContent, Format};
 use crate::read::lines::{Fields, Line, Lines, opened};
-use crate::read::number_table::{NonFiniteNumbers, NumberColumn, RowForm};
+use crate::read::number_table::{NumberColumn, RowForm};
 use crate::read::read_error::{ReadError, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
 
@@ -70,8 +70,7 @@ impl<'r> DumpReader<'r> {
     /// # Errors
     /// If the beginning cannot be read or has an unsupported compression.
     pub fn new(reader: impl BufRead + 'r, name: &str) -> Result<Self, ReadError> {
-        let form = RowForm { separator: None, not_finite: NonFiniteNumbers::default() };
-        let most_rows = u64::MAX;
+        let (form, most_rows) = (RowForm::default(), u64::MAX);
         Ok(Self { lines: Lines::new(reader, name)?, form, units: None, last_step: None, most_rows })
     }
 
@@ -81,10 +80,10 @@ impl<'r> DumpReader<'r> {
         Self { most_rows: rows, ..self }
     }
 
-    /// Sets the treatment of NaN and infinity. By default they are errors.
+    /// Keeps NaN and infinity, so that the caller can report the step at which they occur. By default they are errors.
     #[must_use]
-    pub fn not_finite(mut self, not_finite: NonFiniteNumbers) -> Self {
-        self.form.not_finite = not_finite;
+    pub fn keep_non_finite(mut self) -> Self {
+        self.form.keeps_non_finite = true;
         self
     }
 
