@@ -26,7 +26,8 @@ impl Clock {
     pub(crate) fn of_log(log: &Log) -> Option<Self> {
         let mut parts: Vec<Part> = Vec::new();
         for run in &log.runs {
-            let Some(from) = run.first_step() else { continue };
+            let first = run.thermo.column("Step").and_then(|step| run.thermo.values(step).next());
+            let Some(from) = first.filter(|first| *first >= 0.0).map(|first| first as u64) else { continue };
             let next = of_run(run, from)?;
             // A run that begins at an earlier step has reset the step counter. Its steps replace the steps with the
             // same numbers.

@@ -20,15 +20,6 @@ pub struct LoggedRun {
     pub end: Option<LoopTime>,
 }
 
-impl LoggedRun {
-    /// Returns the first step that was printed.
-    #[must_use]
-    pub fn first_step(&self) -> Option<u64> {
-        let first = self.thermo.values(self.thermo.column("Step")?).next()?;
-        (first >= 0.0).then_some(first as u64)
-    }
-}
-
 /// Values of the line `Loop time of … on … procs for … steps with … atoms`.
 #[derive(Debug, Clone, Copy, PartialEq)]
 pub struct LoopTime {
