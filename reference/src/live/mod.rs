@@ -179,15 +179,15 @@ mod tests {
     use super::*;
     use grainbench_scene::source::SceneSource;
 
-    const SCENE: &str = "title = 't'\ndimension = 2\nduration = 0.02\n[materials.m]\ndensity = 1000.0\n\
-         [contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1e6\n\
-         [grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.0]\n[output]\nevery = 0.01\n";
+    const SCENE: &str = include_str!("../../../tests/scenes/flight.toml");
     const DUMP: &str = "ITEM: TIMESTEP\n0\nITEM: NUMBER OF ATOMS\n1\nITEM: BOX BOUNDS pp pp pp\n-1 1\n-1 1\n-1 1\n\
          ITEM: ATOMS id x y vx vy omegaz\n1 0 0 0 0 0\n";
 
     #[test]
     fn reading_ends_when_the_time_is_over() {
         let scene = SceneSource::from_text("scene.toml", Path::new("."), SCENE)
+            .set("duration", "0.02")
+            .set("output.every", "0.01")
             .scene(&grainbench_scene::resolve::no_data_file)
             .unwrap();
         let deck = write_deck(&scene, &Resolution::TimeStep(0.01), Program::LAMMPS).unwrap();

@@ -188,9 +188,7 @@ mod tests {
     use proptest::prelude::*;
     use std::path::Path;
 
-    const SCENE: &str = "title = 'a'\ndimension = 2\nduration = 1.0\n[materials.rock]\ndensity = 1e3\n\
-        [contacts.rock]\nbetween = ['rock', 'rock']\nnormal_stiffness = 1e6\n\
-        [grains.disc]\nmaterial = 'rock'\nradius = 0.5\nposition = [0.0, 0.0]\n";
+    const SCENE: &str = include_str!("../../../tests/scenes/flight.toml");
 
     proptest! {
         #[test]
