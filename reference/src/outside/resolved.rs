@@ -3,7 +3,7 @@
 use super::manifest::SceneFormat;
 use crate::deck::Stepping;
 use grainbench_scene::body::{Block, BlockShape, Settle, Sides, Wave};
-use grainbench_scene::contact_law::{ContactLaw, Springs};
+use grainbench_scene::contact_law::Springs;
 use grainbench_scene::dimension::GrainShape;
 use grainbench_scene::effect::Effect;
 use grainbench_scene::material::{Constitutive, Deformable};
@@ -392,24 +392,24 @@ fn laws(scene: &Scene) -> Vec<Law> {
     let count = scene.materials.len() as u16;
     let pairs = (0..count).flat_map(|first| (first..count).map(move |second| (first, second)));
     let name = |place: u16| scene.materials[usize::from(place)].clone();
-    pairs.filter_map(|(first, second)| Some(law([name(first), name(second)], scene.law(first, second)?))).collect()
-}
-
-fn law(between: [String; 2], law: &ContactLaw) -> Law {
-    let damping = law.damping_ratio;
-    Law {
-        between,
-        springs: law.springs,
-        friction: law.friction,
-        cohesion: law.cohesion,
-        stiffness_damping: law.stiffness_damping,
-        normal_damping: law.normal_damping,
-        tangential_damping: law.tangential_damping,
-        // The inverse of ζ = −ln e/√(π² + ln² e).
-        restitution: (damping > 0.0).then(|| (-PI * damping / (1.0 - damping * damping).sqrt()).exp()),
-        rolling_friction: law.rolling_friction,
-        rolling_damping: law.rolling_damping,
-    }
+    let resolved = |(first, second)| {
+        let law = scene.law(first, second)?;
+        let damping = law.damping_ratio;
+        Some(Law {
+            between: [name(first), name(second)],
+            springs: law.springs,
+            friction: law.friction,
+            cohesion: law.cohesion,
+            stiffness_damping: law.stiffness_damping,
+            normal_damping: law.normal_damping,
+            tangential_damping: law.tangential_damping,
+            // The inverse of ζ = −ln e/√(π² + ln² e).
+            restitution: (damping > 0.0).then(|| (-PI * damping / (1.0 - damping * damping).sqrt()).exp()),
+            rolling_friction: law.rolling_friction,
+            rolling_damping: law.rolling_damping,
+        })
+    };
+    pairs.filter_map(resolved).collect()
 }
 
 fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> ResolvedWall {
@@ -443,17 +443,11 @@ fn resolved_wall(wall: &Wall, material: String, stepping: &Stepping) -> Resolved
 
 /// Returns the materials of a scene for which elastic moduli are given.
 fn materials(scene: &Scene) -> Vec<Material> {
-    let named = scene.materials.iter().zip(&scene.deformable);
     let material = |(name, deformable): (&String, &Option<Deformable>)| {
-        let deformable = deformable.as_ref()?;
-        Some(Material {
-            material: name.clone(),
-            bulk_modulus: deformable.bulk_modulus,
-            shear_modulus: deformable.shear_modulus,
-            law: deformable.constitutive,
-        })
+        let Deformable { bulk_modulus, shear_modulus, constitutive } = (*deformable)?;
+        Some(Material { material: name.clone(), bulk_modulus, shear_modulus, law: constitutive })
     };
-    named.filter_map(material).collect()
+    scene.materials.iter().zip(&scene.deformable).filter_map(material).collect()
 }
 
 /// Returns the deformable bodies of a scene.
