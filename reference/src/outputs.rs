@@ -16,10 +16,10 @@ use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::digits::Digits;
 use crate::read::format::{RunFile, Snapshots, format_of, in_order, shown};
 use crate::read::log::{Log, read_log};
-use crate::read::number_table::quoted_names;
+use crate::read::number_table::{Table, quoted_names};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
-use crate::read::table::{Table, read_table};
+use crate::read::table::read_table;
 
 pub use crate::read::format::is_of_a_run;
 

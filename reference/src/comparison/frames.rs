@@ -7,9 +7,10 @@ use std::vec;
 use super::{Options, PrintedDigits};
 use crate::names::{AXES, Names};
 use crate::read::format::{RunFile, Snapshots, in_order};
+use crate::read::number_table::Table;
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::table::{Table, read_table};
+use crate::read::table::read_table;
 
 /// Position of a frame in its output.
 #[derive(Debug, Clone, Copy, PartialEq)]

@@ -23,10 +23,10 @@ use crate::execution::process::{self, Deadline, ERRORS, ProcessStart, SCREEN, on
 use crate::execution::{self, Launch, Protocol, Worker, most_bytes, output, plain_file};
 use crate::observer::{DumpObserver, DumpRecord, Names};
 use crate::outputs::{Outputs, Sources};
-use crate::read::number_table::quoted_names;
+use crate::read::number_table::{Table, quoted_names};
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
-use crate::read::table::{Table, read_table};
+use crate::read::table::read_table;
 use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;

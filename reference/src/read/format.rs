@@ -3,10 +3,9 @@
 
 use super::decoding::decoded;
 use super::lines::{Lines, opened};
-use super::parquet;
 use super::read_error::{ReadError, quoted};
 use super::snapshot::{DumpSnapshot, Numbering};
-use super::table::read_table;
+use super::table::{MARK, read_table};
 use std::io::Read;
 use std::path::{Path, PathBuf};
 
@@ -90,7 +89,7 @@ pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadErro
     let reading = |error| ReadError::reading(&name, 1, error);
     let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
     opened(path)?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
-    if bytes.starts_with(parquet::MARK) {
+    if bytes.starts_with(MARK) {
         return Ok(None);
     }
     let find = |unpacked: &[u8], line: &str| {

@@ -9,7 +9,6 @@ pub(crate) mod format;
 pub(crate) mod lines;
 pub(crate) mod log;
 pub(crate) mod number_table;
-pub(crate) mod parquet;
 pub(crate) mod read_error;
 pub(crate) mod snapshot;
 pub(crate) mod table;

@@ -1,7 +1,9 @@
-//! Table of numbers with column names, and the parser of its rows.
+//! Table of numbers with column names, and its parser.
+
+use std::io::BufRead;
 
 use crate::read::digits::Digits;
-use crate::read::lines::RawLine;
+use crate::read::lines::{Lines, RawLine};
 use crate::read::read_error::{ReadError, quoted};
 
 /// Maximum number of numbers in a table. Processing needs ten times as much memory as the numbers themselves.
@@ -185,6 +187,64 @@ impl RowForm {
         let before = if ends { text.trim_end() } else { text.get(..at).unwrap_or_default() };
         ReadError::at(line.file, line.number, expected, found).with_column(before.chars().count() + 1)
     }
+}
+
+/// Returns the separator in a line of column names, and the names.
+pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
+    let separator = [b',', b';', b'\t'].into_iter().find(|byte| line.contains(char::from(*byte))).unwrap_or(b',');
+    let fields = line.trim_end().split(char::from(separator));
+    (separator, fields.map(|field| field.trim().trim_matches('"')).collect())
+}
+
+/// Reads a table with a line of column names, followed by one line of numbers per row. `name` is the name of the table
+/// in error messages.
+///
+/// The separator is a comma, a semicolon or a tab: the first of these that the line of names contains. Empty lines and
+/// lines that begin with `#` are skipped.
+///
+/// # Errors
+/// If the input cannot be read, has no names, a repeated name or no row, or if a row has a missing or additional field,
+/// or a number that is not finite.
+pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
+    let mut lines = Lines::new(reader, name)?;
+    let mut form = RowForm::default();
+    let mut table = Table::default();
+    while let Some(line) = lines.next_line()? {
+        let first = line.bytes.iter().find(|byte| !byte.is_ascii_whitespace());
+        if matches!(first, None | Some(b'#')) {
+            line.text()?;
+            continue;
+        }
+        if !table.columns.is_empty() {
+            if table.values.len() > MOST_NUMBERS {
+                let line = line.text()?;
+                return Err(line.error(format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
+            }
+            form.read(line, &mut table)?;
+            continue;
+        }
+        let line = line.text()?;
+        let (separator, names) = header(line.text);
+        form.separator = Some(separator);
+        for field in names {
+            if field.is_empty() || field.parse::<f64>().is_ok() {
+                return Err(line.error("a line with the names of the columns", quoted(line.text)));
+            }
+            if table.columns.iter().any(|column| column.name == field) {
+                return Err(
+                    line.error("columns with different names", format!("two columns with the name {}", quoted(field)))
+                );
+            }
+            table.columns.push(NumberColumn::new(field));
+        }
+    }
+    if table.columns.is_empty() {
+        return Err(lines.error("a line with the names of the columns", "an empty file"));
+    }
+    if table.rows() == 0 {
+        return Err(lines.error("at least one row below the names", "none"));
+    }
+    Ok(table)
 }
 
 #[cfg(test)]

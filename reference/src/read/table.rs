@@ -1,13 +1,24 @@
-//! Tables of numbers with column names, as CSV or Parquet.
+//! Files with tables of numbers: text, or Parquet that is uncompressed or compressed by Snappy.
 
+use super::digits::Digits;
+use super::lines::opened;
+use super::number_table::{MOST_NUMBERS, NumberColumn, Table, parse_table};
+use super::read_error::{ReadError, quoted};
+use parquet::errors::ParquetError;
+use parquet::file::reader::{FileReader, SerializedFileReader};
+use parquet::record::Field;
+use std::any::Any;
+use std::cell::Cell;
+use std::fs::File;
 use std::io::BufRead;
+use std::panic::{self, AssertUnwindSafe};
 use std::path::Path;
+use std::sync::Once;
 
-use crate::read::lines::{Lines, opened};
-pub use crate::read::number_table::Table;
-use crate::read::number_table::{MOST_NUMBERS, NumberColumn, RowForm};
-use crate::read::parquet;
-use crate::read::read_error::{ReadError, quoted};
+/// First bytes of a Parquet file.
+pub(crate) const MARK: &[u8] = b"PAR1";
+/// Maximum size of all numbers of a file after decompression (B).
+const MOST: i64 = 1 << 30;
 
 /// Reads the table at `path`, which is Parquet, or text that is plain, gzip or zstd. See [`parse_table`].
 ///
@@ -17,66 +28,142 @@ pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     let name = path.to_string_lossy();
     let mut file = opened(path)?;
     let beginning = file.fill_buf().map_err(|error| ReadError::reading(&name, 1, error))?;
-    if beginning.starts_with(parquet::MARK) {
-        return parquet::read(file.into_inner(), &name);
+    if beginning.starts_with(MARK) {
+        return read_parquet(file.into_inner(), &name);
     }
     parse_table(file, &name)
 }
 
-/// Returns the separator in a line of column names, and the names.
-pub(crate) fn header(line: &str) -> (u8, Vec<&str>) {
-    let separator = [b',', b';', b'\t'].into_iter().find(|byte| line.contains(char::from(*byte))).unwrap_or(b',');
-    let fields = line.trim_end().split(char::from(separator));
-    (separator, fields.map(|field| field.trim().trim_matches('"')).collect())
-}
-
-/// Reads a table with a line of column names, followed by one line of numbers per row. `name` is the name of the table
-/// in error messages.
-///
-/// The separator is a comma, a semicolon or a tab: the first of these that the line of names contains. Empty lines and
-/// lines that begin with `#` are skipped.
+/// Reads the table of a Parquet file. `name` is the name of the file in error messages.
 ///
 /// # Errors
-/// If the input cannot be read, has no names, a repeated name or no row, or if a row has a missing or additional field,
-/// or a number that is not finite.
-pub fn parse_table(reader: impl BufRead, name: &str) -> Result<Table, ReadError> {
-    let mut lines = Lines::new(reader, name)?;
-    let mut form = RowForm::default();
-    let mut table = Table::default();
-    while let Some(line) = lines.next_line()? {
-        let first = line.bytes.iter().find(|byte| !byte.is_ascii_whitespace());
-        if matches!(first, None | Some(b'#')) {
-            line.text()?;
-            continue;
+/// If the file is damaged or too large, a column has a type other than numbers, or a number is missing or not finite.
+fn read_parquet(file: File, name: &str) -> Result<Table, ReadError> {
+    // The `parquet` crate trusts some lengths in a file, so a damaged file can cause a panic, which is converted to an
+    // error.
+    static HUSHED: Once = Once::new();
+    HUSHED.call_once(|| {
+        let previous_hook = panic::take_hook();
+        panic::set_hook(Box::new(move |info| {
+            if !READING.get() {
+                previous_hook(info)
+            }
+        }));
+    });
+    READING.set(true);
+    let read = panic::catch_unwind(AssertUnwindSafe(|| whole(file, name)));
+    READING.set(false);
+    read.unwrap_or_else(|_: Box<dyn Any + Send>| Err(damaged(name, "a truncated or damaged file")))
+}
+
+thread_local! {
+    /// True while a file is being read. A panic then prints no message, because it is converted to an error.
+    static READING: Cell<bool> = const { Cell::new(false) };
+}
+
+fn damaged(name: &str, found: &str) -> ReadError {
+    ReadError::at(name, 1, "a complete Parquet file, uncompressed or compressed by Snappy", found)
+}
+
+fn whole(file: File, name: &str) -> Result<Table, ReadError> {
+    let damage = |error: ParquetError| damaged(name, &quoted(&error.to_string()));
+    let reader = SerializedFileReader::new(file).map_err(damage)?;
+    let about = reader.metadata();
+    let names = about.file_metadata().schema_descr().columns().iter().map(|column| column.name().to_owned());
+    let columns: Vec<NumberColumn> =
+        names.map(|name| NumberColumn { digits: Digits::exact(), ..NumberColumn::new(&name) }).collect();
+    let rows = usize::try_from(about.file_metadata().num_rows()).unwrap_or(usize::MAX);
+    let bytes = about.row_groups().iter().map(|group| group.total_byte_size()).fold(0_i64, i64::saturating_add);
+    if rows.saturating_mul(columns.len()) > MOST_NUMBERS || !(0..=MOST).contains(&bytes) {
+        return Err(ReadError::at(name, 1, format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
+    }
+    if rows == 0 || columns.is_empty() {
+        return Err(ReadError::at(name, 1, "a row of numbers", "none"));
+    }
+    let mut values = Vec::new();
+    for (at, row) in reader.get_row_iter(None).map_err(damage)?.enumerate() {
+        let row = row.map_err(damage)?;
+        let before = values.len();
+        for (column, field) in row.get_column_iter() {
+            let number = number(field).filter(|number| number.is_finite());
+            values.push(number.ok_or_else(|| {
+                let expected = format!("a finite number in column `{column}`, row {}", at + 1);
+                ReadError::at(name, 1, expected, quoted(&field.to_string()))
+            })?);
         }
-        if !table.columns.is_empty() {
-            if table.values.len() > MOST_NUMBERS {
-                let line = line.text()?;
-                return Err(line.error(format!("at most {MOST_NUMBERS} numbers in a table"), "more"));
-            }
-            form.read(line, &mut table)?;
-            continue;
-        }
-        let line = line.text()?;
-        let (separator, names) = header(line.text);
-        form.separator = Some(separator);
-        for field in names {
-            if field.is_empty() || field.parse::<f64>().is_ok() {
-                return Err(line.error("a line with the names of the columns", quoted(line.text)));
-            }
-            if table.columns.iter().any(|column| column.name == field) {
-                return Err(
-                    line.error("columns with different names", format!("two columns with the name {}", quoted(field)))
-                );
-            }
-            table.columns.push(NumberColumn::new(field));
+        if values.len() - before != columns.len() || values.len() > MOST_NUMBERS {
+            let expected = format!("{} columns of numbers", columns.len());
+            return Err(ReadError::at(name, 1, expected, "columns within columns"));
         }
     }
-    if table.columns.is_empty() {
-        return Err(lines.error("a line with the names of the columns", "an empty file"));
+    Ok(Table::new(columns, values))
+}
+
+/// Returns the value of a field as a number, or `None` if the field has another type.
+fn number(field: &Field) -> Option<f64> {
+    Some(match *field {
+        Field::Double(number) => number,
+        Field::Float(number) => f64::from(number),
+        Field::Byte(number) => f64::from(number),
+        Field::Short(number) => f64::from(number),
+        Field::Int(number) => f64::from(number),
+        Field::Long(number) => number as f64,
+        Field::UByte(number) => f64::from(number),
+        Field::UShort(number) => f64::from(number),
+        Field::UInt(number) => f64::from(number),
+        Field::ULong(number) => number as f64,
+        Field::Bool(is_so) => f64::from(u8::from(is_so)),
+        _ => return None,
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::fs;
+    use std::path::PathBuf;
+
+    fn data() -> PathBuf {
+        Path::new(env!("CARGO_MANIFEST_DIR")).join("tests/data/grains_pandas.parquet")
     }
-    if table.rows() == 0 {
-        return Err(lines.error("at least one row below the names", "none"));
+
+    /// The file contains two grains at three steps. It was written by pandas, with number types of different widths.
+    #[test]
+    fn a_table_of_pandas_is_read() {
+        let table = read_table(&data()).unwrap();
+        let names: Vec<&str> = table.columns.iter().map(|column| column.name.as_str()).collect();
+        assert_eq!(names, ["step", "id", "x", "y", "vx", "vy", "omegaz"]);
+        let column = |name: &str| table.values(table.column(name).unwrap()).collect::<Vec<f64>>();
+        assert_eq!(column("step"), [0.0, 0.0, 50.0, 50.0, 100.0, 100.0]);
+        assert_eq!(column("id"), [1.0, 2.0, 1.0, 2.0, 1.0, 2.0]);
+        assert_eq!(column("x")[3], 0.25);
+        assert_eq!(column("vx"), [0.25, 0.5, 0.25, 0.5, 0.25, 0.5]);
+        assert_eq!(column("omegaz")[5], -1.0);
     }
-    Ok(table)
+
+    /// A file that is truncated or has one changed bit yields a table or an error, but no panic.
+    #[test]
+    fn a_damaged_file_is_an_error() {
+        let whole = fs::read(data()).unwrap();
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("grains.parquet");
+        let mut errors = 0;
+        let mut tried = |bytes: &[u8]| {
+            fs::write(&path, bytes).unwrap();
+            match read_table(&path) {
+                Ok(table) => assert!(table.rows() > 0),
+                Err(error) => {
+                    errors += 1;
+                    assert!(error.to_string().contains("grains.parquet:1: expected "), "{error}");
+                }
+            }
+        };
+        (4..whole.len()).step_by(3).for_each(|end| tried(&whole[..end]));
+        for at in 4..whole.len() {
+            let mut bytes = whole.clone();
+            bytes[at] ^= 1 << (at % 8);
+            tried(&bytes);
+        }
+        assert!(errors > 2000, "{errors}");
+    }
 }

@@ -24,8 +24,9 @@ use serde::{Deserialize, Serialize};
 
 use crate::deck::{Program, Stepping, write_deck};
 use crate::live::LiveProgram;
+use crate::read::number_table::Table;
 use crate::read::read_error;
-use crate::read::table::{Table, read_table};
+use crate::read::table::read_table;
 pub use scene_hash::{is_scene_of, scene_hash, scene_hash_by_bits};
 
 const PROVENANCE: &str = "provenance.toml";

@@ -2,9 +2,10 @@
 //! step or time form a snapshot. Columns have the names used in dumps or in ParaView.
 
 use crate::read::format::{FileContent, Format, check_grains, indexed};
+use crate::read::number_table::{Table, header};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::table::{Table, header, read_table};
+use crate::read::table::read_table;
 use crate::read::vtk::{component, is_id};
 use std::path::Path;
 
