@@ -108,14 +108,12 @@ pub enum Wall {
 
 /// Parameters of convergence runs. If a list is empty, the cost study uses its own values.
 #[derive(Clone, Debug, Default, Deserialize)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[serde(deny_unknown_fields, rename_all = "kebab-case", default)]
 pub struct ParameterValues {
     /// Time steps as fractions of the critical time step, above 0 and below 1.
-    #[serde(default)]
     pub critical_fraction: Vec<f64>,
     /// Numbers of cells per reference length of the scene. The reference length is the radius of a grain if there are
     /// grains.
-    #[serde(default)]
     pub cells: Vec<f64>,
 }
 
@@ -124,16 +122,12 @@ pub struct ParameterValues {
 #[serde(deny_unknown_fields)]
 pub struct Output {
     /// File or files with the grains at every sample.
-    #[serde(default)]
     pub grains: Option<Grains>,
     /// Contact forces at the same steps, as a dump in the format of LAMMPS. The grains must be a dump too.
-    #[serde(default)]
     pub contacts: Option<String>,
     /// Table with further columns of the scene's series, one row per sample.
-    #[serde(default)]
     pub series: Option<String>,
     /// Report of the program about its run, as JSON.
-    #[serde(default)]
     pub report: Option<String>,
 }
 
