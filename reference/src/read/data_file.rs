@@ -90,7 +90,10 @@ pub fn parse_data(reader: impl BufRead, name: &str) -> Result<DataFile, ReadErro
     while let Some(line) = lines.next_text()? {
         parser.take(line)?;
     }
-    parser.check_end().map_err(|(expected, found)| lines.error(expected, found))?;
+    parser.check_section().map_err(|(expected, found)| lines.error(expected, found))?;
+    if !parser.atoms_seen {
+        return Err(lines.error("a section `Atoms`", "the end of the file"));
+    }
     let bounds = parser.header.bounds.map(Option::unwrap_or_default);
     Ok(DataFile { title, bounds: (bounds.map(|bound| bound.0), bounds.map(|bound| bound.1)), atoms: parser.atoms })
 }
@@ -282,12 +285,6 @@ impl Parser {
         }
         let expected = format!("{declared} lines in the section `{name}`, one for each atom of the header");
         Err((expected, format!("only {count}")))
-    }
-
-    /// Checks that the file is complete after its last line.
-    fn check_end(&self) -> Result<(), Mismatch> {
-        self.check_section()?;
-        if self.atoms_seen { Ok(()) } else { Err(("a section `Atoms`".to_owned(), "the end of the file".to_owned())) }
     }
 
     fn take_atom(&mut self, line: Line<'_>, content: &str) -> Result<(), ReadError> {

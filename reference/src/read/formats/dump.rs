@@ -207,7 +207,15 @@ impl DumpHeader {
                     let time = one(lines, "the time", |fields| fields.finite("a time, a finite number"))?;
                     header.snapshot.time = Some(time);
                 }
-                ["UNITS"] => header.read_units(lines)?,
+                ["UNITS"] => {
+                    let line = lines.next_text()?;
+                    let Some(line) = line else { return Err(missing(lines, "the name of a unit system")) };
+                    let word = line.text.trim();
+                    if word.is_empty() || word.contains(char::is_whitespace) {
+                        return Err(line.error("the name of a unit system", quoted(word)));
+                    }
+                    (header.snapshot.units, header.units_line) = (Some(word.to_owned()), line.number);
+                }
                 ["NUMBER", "OF", word] => {
                     header.row_word = word.to_owned();
                     let what = format!("a number of rows of at most {MOST_ROWS}");
@@ -225,16 +233,6 @@ impl DumpHeader {
                 _ => return Err(header.unknown(line, item)),
             }
         }
-    }
-
-    fn read_units(&mut self, lines: &mut Lines<'_>) -> Result<(), ReadError> {
-        let Some(line) = lines.next_text()? else { return Err(missing(lines, "the name of a unit system")) };
-        let word = line.text.trim();
-        if word.is_empty() || word.contains(char::is_whitespace) {
-            return Err(line.error("the name of a unit system", quoted(word)));
-        }
-        (self.snapshot.units, self.units_line) = (Some(word.to_owned()), line.number);
-        Ok(())
     }
 
     fn read_bounds(&mut self, lines: &mut Lines<'_>, is_tilted: bool) -> Result<(), ReadError> {
