@@ -24,7 +24,7 @@ pub use outputs::read_start;
 pub use read::data_file::{Atom, DataFile, parse_data, read_data_file};
 pub use read::digits::Digits;
 pub use read::format::dump::DumpReader;
-pub use read::log::{Log, LoggedRun, LoopTime, parse_log, read_log};
+pub use read::log::{Log, LoggedRun, LoopTime, parse_log};
 pub use read::number_table::{NumberColumn, Table, parse_table};
 pub use read::read_error::ReadError;
 pub use read::snapshot::{Coordinate, DumpKind, DumpSnapshot, Numbering};

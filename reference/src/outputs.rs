@@ -15,7 +15,8 @@ use crate::names::{GrainColumns, Names};
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::digits::Digits;
 use crate::read::format::{RunFile, Snapshots, format_of, in_order, shown};
-use crate::read::log::{Log, read_log};
+use crate::read::lines::opened;
+use crate::read::log::{Log, parse_log};
 use crate::read::number_table::{Table, quoted_names};
 use crate::read::read_error::{ReadError, one_line, quoted};
 use crate::read::snapshot::{DumpKind, DumpSnapshot, Numbering};
@@ -144,7 +145,7 @@ impl Outputs {
     /// # Errors
     /// If a file is damaged, or if the files are not consistent.
     pub fn survey(sources: Sources) -> Result<Self, OutputError> {
-        let log = sources.log.as_deref().map(read_log).transpose()?;
+        let log = sources.log.as_ref().map(|path| parse_log(opened(path)?, &shown(path))).transpose()?;
         if let (Some(log), Some(path)) = (&log, &sources.log) {
             log.units.as_deref().map_or(Ok(()), |units| check_units(path, units, &["si", "lj"]))?;
         }

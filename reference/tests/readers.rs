@@ -12,7 +12,7 @@ use flate2::Compression;
 use flate2::write::GzEncoder;
 use grainbench_reference::stored::compressed;
 use grainbench_reference::{DataFile, DumpKind, DumpReader, DumpSnapshot, ReadError};
-use grainbench_reference::{parse_data, parse_log, parse_table, read_data_file, read_log};
+use grainbench_reference::{parse_data, parse_log, parse_table, read_data_file};
 
 /// Returns the path of a file in `tests/data`.
 fn data(name: &str) -> PathBuf {
@@ -223,7 +223,7 @@ fn refuses_two_gigabytes_of_nothing_at_once() {
 
 #[test]
 fn reads_two_runs_of_lammps() {
-    let log = read_log(&data("lammps-two-runs.log")).unwrap();
+    let log = parse_log(&fs::read(data("lammps-two-runs.log")).unwrap()[..], "log").unwrap();
     assert_eq!((log.units.as_deref(), log.time_step), (Some("si"), Some(0.015_254_853_881_062_817)));
     let rows: Vec<usize> = log.runs.iter().map(|run| run.thermo.rows()).collect();
     assert_eq!(rows, [4, 3]);
@@ -236,7 +236,7 @@ fn reads_two_runs_of_lammps() {
 
 #[test]
 fn reads_a_log_of_liggghts() {
-    let log = read_log(&data("liggghts.log")).unwrap();
+    let log = parse_log(&fs::read(data("liggghts.log")).unwrap()[..], "log").unwrap();
     assert_eq!((log.runs.len(), log.units.as_deref()), (1, Some("si")));
     let thermo = &log.runs[0].thermo;
     assert_eq!((thermo.rows(), thermo.column("Atoms")), (4, Some(3)));

@@ -22,7 +22,8 @@ use crate::execution::process::{Deadline, Limits, on_path};
 use crate::execution::{self, Launch, Protocol, most_bytes, output, plain_file};
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::format::dump::DumpReader;
-use crate::read::log::read_log;
+use crate::read::lines::opened;
+use crate::read::log::parse_log;
 use crate::read::read_error::{ReadError, one_line};
 use crate::read::snapshot::DumpSnapshot;
 
@@ -123,7 +124,8 @@ impl Solver for LiveProgram {
         };
         let read = |folder: &Path, deadline| {
             let mut observed = observe(scene, &deck, folder, deadline)?;
-            let log = read_log(&plain_file(folder, LOG)?).map_err(output)?;
+            let path = plain_file(folder, LOG)?;
+            let log = opened(&path).and_then(|file| parse_log(file, &path.to_string_lossy())).map_err(output)?;
             for (column, values) in logged::read(&deck.logged, &log, &observed.series) {
                 observed.add(scene, &column, values);
             }

@@ -2,9 +2,8 @@
 
 use std::io::BufRead;
 use std::mem;
-use std::path::Path;
 
-use crate::read::lines::{Line, Lines, opened};
+use crate::read::lines::{Line, Lines};
 use crate::read::number_table::{NumberColumn, RowForm, Table};
 use crate::read::read_error::{ReadError, quoted};
 
@@ -54,15 +53,7 @@ impl Log {
     }
 }
 
-/// Reads the log at `path`, plain, gzip or zstd. See [`parse_log`].
-///
-/// # Errors
-/// If the file cannot be read or is not a log that [`parse_log`] reads.
-pub fn read_log(path: &Path) -> Result<Log, ReadError> {
-    parse_log(opened(path)?, &path.to_string_lossy())
-}
-
-/// Reads a log with `thermo_style one` or `custom`. `name` is the name of the log in error messages.
+/// Reads a log with `thermo_style one` or `custom`, plain, gzip or zstd. `name` is the name of the log in error messages.
 ///
 /// Printed NaN is kept. Blank lines and warnings between rows are skipped. The last run may be truncated.
 ///
