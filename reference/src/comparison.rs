@@ -377,24 +377,45 @@ impl Frames {
         }
     }
 
-    /// Reads the next frame. Also returns all numbers of the row for a table, and an empty list for a dump.
+    /// Reads the next frame. Also returns all numbers of the row for a table, and an empty list for a dump. A truncated
+    /// file ends after its last complete frame if truncation is allowed.
     fn frame(&mut self) -> Result<Option<(Frame, Vec<f64>)>, ReadError> {
         let number = self.number;
-        if let FrameSource::Table { rows, table, step, time } = &mut self.from {
-            let Some(row) = rows.next() else { return Ok(None) };
-            let numbers = table.row(row).to_vec();
-            let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
-            let step = step.map(|at| value(at) as u64);
-            let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
-            let place = Place { step, time, number, line: row as u64 + 2 };
-            let column = |name: &String| table.column(self.names.in_file(name)).map_or(f64::NAN, value);
-            let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
-            return Ok(Some((Frame { place, ids: None, values }, numbers)));
-        }
-        if !self.next_snapshot()? {
-            return Ok(None);
-        }
-        let FrameSource::Grains { snapshot, .. } = &self.from else { return Ok(None) };
+        let snapshot = match &mut self.from {
+            FrameSource::Table { rows, table, step, time } => {
+                let Some(row) = rows.next() else { return Ok(None) };
+                let numbers = table.row(row).to_vec();
+                let value = |at: usize| numbers.get(at).copied().unwrap_or(f64::NAN);
+                let step = step.map(|at| value(at) as u64);
+                let time = time.map(value).or_else(|| Some(step? as f64 * self.time_step?));
+                let place = Place { step, time, number, line: row as u64 + 2 };
+                let column = |name: &String| table.column(self.names.in_file(name)).map_or(f64::NAN, value);
+                let values = self.wanted.iter().map(|name| vec![column(name)]).collect();
+                return Ok(Some((Frame { place, ids: None, values }, numbers)));
+            }
+            FrameSource::Grains { files, reader, snapshot } => loop {
+                let before = reader.is_none().then(|| snapshot.clone());
+                let open = match reader {
+                    Some(open) => open,
+                    None => {
+                        let Some(file) = files.next() else { return Ok(None) };
+                        reader.insert(Snapshots::open(&file, u64::MAX, self.partial)?)
+                    }
+                };
+                if !open.read(snapshot)? {
+                    self.cut = open.cut.take().or(self.cut.take());
+                    *reader = None;
+                    continue;
+                }
+                if let Some(before) = before
+                    && !before.columns.is_empty()
+                    && before.step == snapshot.step
+                {
+                    snapshot.check_repeated(&self.file, &before)?;
+                }
+                break &**snapshot;
+            },
+        };
         let id = snapshot.column(self.names.in_file("id"));
         id.map_or(Ok(()), |id| snapshot.check_ids(&self.file, id))?;
         let order = snapshot.rows_by(id);
@@ -412,34 +433,6 @@ impl Frames {
         let ids = id.map(|id| order.iter().map(|&row| snapshot.row(row)[id]).collect());
         // A snapshot that repeats a step has already been compared with the previous one by its reader.
         Ok(Some((Frame { place, ids, values: values.collect() }, Vec::new())))
-    }
-
-    /// Reads the next snapshot. Returns false after the last one, or where the file is truncated if truncation is
-    /// allowed.
-    fn next_snapshot(&mut self) -> Result<bool, ReadError> {
-        let FrameSource::Grains { files, reader, snapshot } = &mut self.from else { return Ok(false) };
-        loop {
-            let before = reader.is_none().then(|| snapshot.clone());
-            let open = match reader {
-                Some(open) => open,
-                None => {
-                    let Some(file) = files.next() else { return Ok(false) };
-                    reader.insert(Snapshots::open(&file, u64::MAX, self.partial)?)
-                }
-            };
-            if !open.read(snapshot)? {
-                self.cut = open.cut.take().or(self.cut.take());
-                *reader = None;
-                continue;
-            }
-            if let Some(before) = before
-                && !before.columns.is_empty()
-                && before.step == snapshot.step
-            {
-                snapshot.check_repeated(&self.file, &before)?;
-            }
-            return Ok(true);
-        }
     }
 
     fn units(&self) -> Option<&str> {
