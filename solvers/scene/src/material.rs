@@ -9,46 +9,35 @@ use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
 /// Material: density, elastic moduli and constitutive law.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct MaterialSpec {
     /// Density ρ (kg/m³). Required, except for materials that only walls have, and for grains with masses from a state
     /// or data file.
-    #[serde(default)]
     pub density: Option<f64>,
     /// Young's modulus E (Pa). Required for Hertz contacts unless `rigid` is true. With `poisson_ratio`, it also gives
     /// the elastic moduli for solvers with deformable bodies.
-    #[serde(default)]
     pub young_modulus: Option<f64>,
     /// Poisson's ratio ν, above −1 and at most 1/2; below 1/2 for deformable bodies. Required for Hertz contacts unless
     /// `rigid` is true.
-    #[serde(default)]
     pub poisson_ratio: Option<f64>,
     /// If true, the material is rigid: in a Hertz contact, only the other material deforms. Default false.
-    #[serde(default)]
     pub rigid: bool,
     /// Bulk modulus K (Pa) of deformable bodies. Give `bulk_modulus` and `shear_modulus`, or `young_modulus` and
     /// `poisson_ratio`.
-    #[serde(default)]
     pub bulk_modulus: Option<f64>,
     /// Shear modulus G (Pa) of deformable bodies. Required with `bulk_modulus`.
-    #[serde(default)]
     pub shear_modulus: Option<f64>,
     /// Constitutive law of a deformable material: `neo-hookean` (the default), `kelvin-voigt`, `hypoelastic` or
     /// `von-mises`.
-    #[serde(default)]
     pub constitutive: Option<ConstitutiveKind>,
     /// Yield stress Y (Pa). Required for `von-mises`.
-    #[serde(default)]
     pub yield_stress: Option<f64>,
     /// Hardening modulus H (Pa) of `von-mises`. Default 0.
-    #[serde(default)]
     pub hardening_modulus: Option<f64>,
     /// Shear viscosity η (Pa s). Required for `kelvin-voigt`.
-    #[serde(default)]
     pub viscosity: Option<f64>,
     /// Bulk viscosity ζ (Pa s) of `kelvin-voigt`. Default 0.
-    #[serde(default)]
     pub bulk_viscosity: Option<f64>,
 }
 

@@ -49,16 +49,13 @@ pub struct BodySpec {
 /// Gradients of the initial stress along the axes (Pa/m). Example for soil of density ρ under its own weight, with y
 /// upwards and a lateral stress of K₀ times the vertical stress: `y = [[K₀ρg, 0.0], [0.0, ρg]]`.
 #[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[serde(default, deny_unknown_fields)]
 pub struct StressGradientSpec {
     /// Gradient along x (Pa/m): a symmetric tensor, row by row. Default zero.
-    #[serde(default)]
     pub x: Option<Vec<Vec<f64>>>,
     /// Gradient along y (Pa/m): a symmetric tensor, row by row. Default zero.
-    #[serde(default)]
     pub y: Option<Vec<Vec<f64>>>,
     /// Gradient along z (Pa/m): a symmetric tensor, row by row. Three dimensions only. Default zero.
-    #[serde(default)]
     pub z: Option<Vec<Vec<f64>>>,
 }
 

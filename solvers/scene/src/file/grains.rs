@@ -114,16 +114,14 @@ pub struct RandomSpec {
 }
 
 /// Distribution of radii. Give exactly one of `log_normal` and `by_mass`.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct RadiiSpec {
     /// Log-normal distribution: ln R is normally distributed.
-    #[serde(default)]
     pub log_normal: Option<LogNormalSpec>,
     /// Sieve curve: pairs of a radius (m) and the mass fraction of the grains up to this radius. Radii and fractions
     /// must not decrease. The first fraction is 0, and the last is 1. Between two pairs, the mass is distributed
     /// uniformly over the radii.
-    #[serde(default)]
     pub by_mass: Option<Vec<(f64, f64)>>,
 }
 

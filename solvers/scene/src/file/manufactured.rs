@@ -5,16 +5,14 @@ use serde::{Deserialize, Serialize};
 
 /// Manufactured solution: a chosen motion with the body force that makes it exact. Give exactly one of `axis-aligned`
 /// and `vortex`.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields, rename_all = "kebab-case")]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(default, deny_unknown_fields, rename_all = "kebab-case")]
 pub struct ManufacturedSpec {
     /// Displacement u_x = A sin(2πX/L) sin(cπt/L) in a periodic box of length L along x. X is the initial position, t
     /// the time, and c = √(E/ρ) the bar wave speed.
-    #[serde(default)]
     pub axis_aligned: Option<AxisAlignedSpec>,
     /// Rotation of each circle about the origin with a radius between 0.75 m and 1.25 m. The angle depends on the
     /// radius.
-    #[serde(default)]
     pub vortex: Option<VortexSpec>,
 }
 

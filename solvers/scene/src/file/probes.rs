@@ -5,21 +5,18 @@ use serde::{Deserialize, Serialize};
 
 /// Probe: quantities recorded as a time series. Exactly one of `grain`, `body`, `point`, `contact`, `wall`, `piston`,
 /// `driven`, `stress`, `budget`, `count` and `system` selects them.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct ProbeSpec {
     /// Grain: the name of a group with one grain, or `group.k` for the k-th grain of a group, from 1. Columns in two
     /// dimensions: x, y (m), vx, vy (m/s), omega about z (rad/s), angle (rad). Columns in three dimensions: x, y, z,
     /// vx, vy, vz, omega_x, omega_y, omega_z.
-    #[serde(default)]
     pub grain: Option<String>,
     /// Name of a body other than a grain. The columns are those of `grain`.
-    #[serde(default)]
     pub body: Option<String>,
     /// Material of a deformable grain or body, averaged over the material points that are nearest to a position at the
     /// start. Columns: displacement ux, … (m), velocity vx, … (m/s), stress (Pa) sigma_xx, sigma_yy, sigma_zz, sigma_xy
     /// (in three dimensions also sigma_yz, sigma_zx), and plastic_strain.
-    #[serde(default)]
     pub point: Option<PointSpec>,
     /// Contact between a grain and another grain or a wall, by their names. Columns: overlap (m), normal_force (N),
     /// shear_force (N; with a sign in two dimensions), slipping (0 or 1). `dem` reports the forces that moved the
@@ -27,22 +24,17 @@ pub struct ProbeSpec {
     /// with stiffness k, overlap δ, dashpot coefficient γ and velocity of separation v. LAMMPS and LIGGGHTS report this
     /// force at walls. Between grains, they report a force that they compute from the velocities at step n: kδ − γ
     /// v(n). The two forces differ by γ a Δt/2, with relative acceleration a and time step Δt.
-    #[serde(default)]
     pub contact: Option<[String; 2]>,
     /// Name of a wall. Columns force_x, … (N): force of the grains on the wall.
-    #[serde(default)]
     pub wall: Option<String>,
     /// Name of a wall with `piston` and without `until`. Column advance (m): displacement of the wall along its normal.
-    #[serde(default)]
     pub piston: Option<String>,
     /// Name of a group in `driven`. Columns force_x, … (N): sum of the contact forces on the
     /// group, from free grains and walls.
-    #[serde(default)]
     pub driven: Option<String>,
     /// If true, energy budget of the run. Columns (J): kinetic, elastic, springs, gravitational, work, plastic,
     /// friction, damping, transfer, contact, and unbalanced, which is the stored and dissipated energy less the
     /// supplied energy. Further columns (kg m/s): momentum_x, …, impulse_x, …
-    #[serde(default)]
     pub budget: Option<bool>,
     /// If true, mean stress of the grains from the contacts between them, σ_ij = (1/V) Σ l_i f_j (Love 1927; Weber
     /// 1966). The vector l points from the centre of the first grain of a contact to the centre of the second, and f is
@@ -50,15 +42,12 @@ pub struct ProbeSpec {
     /// grains. Tension is positive. Contacts with walls are not included. Columns: stress (Pa) sigma_xx, sigma_yy,
     /// sigma_xy (in three dimensions also sigma_zz, sigma_xz, sigma_yz), and coordination, the mean number of contacts
     /// with other grains per grain.
-    #[serde(default)]
     pub stress: Option<bool>,
     /// If true, numbers of grains. Columns: present, entered (initial and inserted grains), left (removed grains).
-    #[serde(default)]
     pub count: Option<bool>,
     /// If true, sums over the whole system. Columns: kinetic_energy, rotational_energy, elastic_energy,
     /// gravitational_energy, total_energy (J), momentum_x, … (kg m/s), angular_momentum about the origin (kg m²/s),
     /// contacts, slipping_contacts, and largest_spin of a grain (rad/s).
-    #[serde(default)]
     pub system: Option<bool>,
 }
 

@@ -134,41 +134,31 @@ pub enum LengthUnit {
 
 /// Part of a motion, in one of three forms. The first is a constant `velocity` and `spin` from `start` to `stop`; a
 /// `velocity` without `spin` may rise over a `ramp`. The second is a `table`. The third is a `sine`.
-#[derive(Clone, Debug, Deserialize, Serialize, JsonSchema)]
-#[serde(deny_unknown_fields)]
+#[derive(Clone, Debug, Default, Deserialize, Serialize, JsonSchema)]
+#[serde(default, deny_unknown_fields)]
 pub struct MotionSpec {
     /// Velocity (m/s). Default zero.
-    #[serde(default)]
     pub velocity: Option<Vec<f64>>,
     /// Angular velocity (rad/s) about `centre`.
-    #[serde(default)]
     pub spin: Option<SpinSpec>,
     /// Initial centre of rotation (m). It moves with the wall. Required with `spin`.
-    #[serde(default)]
     pub centre: Option<Vec<f64>>,
     /// Start (s). Default: the start of the run.
-    #[serde(default)]
     pub start: Option<f64>,
     /// Stop (s). Default: never.
-    #[serde(default)]
     pub stop: Option<f64>,
     /// Start as a calculation cycle (time step), instead of `start`.
-    #[serde(default)]
     pub start_cycle: Option<u64>,
     /// Stop as a calculation cycle (time step), instead of `stop`.
-    #[serde(default)]
     pub stop_cycle: Option<u64>,
     /// Time (s) over which the velocity rises from zero to `velocity` at a constant rate, beginning at `start`.
     /// Default: the velocity is constant from the start.
-    #[serde(default)]
     pub ramp: Option<f64>,
     /// Table of displacements from the initial position, with rows `[t, x, y]` or `[t, x, y, z]` of a time (s) and a
     /// displacement (m). Times rise from row to row, and the first displacement is zero. Between rows, the displacement
     /// is linear in time. Before the first row and after the last row, the wall is at rest.
-    #[serde(default)]
     pub table: Option<Vec<Vec<f64>>>,
     /// Sinusoidal oscillation.
-    #[serde(default)]
     pub sine: Option<SineSpec>,
 }
 
