@@ -112,11 +112,11 @@ fn the_packing_fraction_of_a_state_is_the_one_that_is_told() {
         let [low, high] = told.within;
         let volume: f64 = (0..3).map(|axis| high[axis] - low[axis]).product();
         let period = high[1] - low[1];
-        let overlap = |grain: &grainbench::scene::end_state::StateGrain, image: f64| {
+        let overlap = |grain: &grainbench::scene::scene::Grain, image: f64| {
             let mut centre = grain.position;
             centre.y += image * period;
             let side = |corner: [f64; 3]| [0, 1, 2].map(|axis| corner[axis] - centre[axis]);
-            sphere_in_box(grain.size[0], side(low), side(high))
+            sphere_in_box(grain.radius, side(low), side(high))
         };
         let solid: f64 =
             state.grains.iter().flat_map(|grain| [-1.0, 0.0, 1.0].map(|image| overlap(grain, image))).sum();

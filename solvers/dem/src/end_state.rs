@@ -8,7 +8,9 @@ use crate::meshes::PreviousContact;
 use crate::observe::grain_states;
 use crate::share::ThreadPartition;
 use crate::simulation::DemSimulation;
-use grainbench_scene::end_state::{EndState, Springs, StateGrain};
+use grainbench_scene::end_state::{EndState, Springs};
+use grainbench_scene::scene::Grain;
+use grainbench_solver::record::GrainState;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -50,12 +52,11 @@ impl<S: Geometry> DemSimulation<S> {
         // The order of the lists depends on the number of threads, so they are sorted.
         springs.pairs.sort_by_key(|&(first, second, _)| (first, second));
         springs.walls.sort_by(|one, other| (one.0, &one.1).cmp(&(other.0, &other.1)));
-        let grain = |grain: &grainbench_solver::record::GrainState| StateGrain {
-            material: grain.material,
-            size: [grain.radius, grain.mass, scene.grains[grain.id as usize - 1].inertia],
-            position: grain.position,
-            velocity: grain.velocity,
-            spin: grain.spin,
+        let grain = |&GrainState { id, position, velocity, spin, .. }: &GrainState| Grain {
+            position,
+            velocity,
+            spin,
+            ..scene.grains[id as usize - 1]
         };
         EndState {
             of: [scene.title.clone(), solver.to_owned()],

@@ -2,7 +2,7 @@
 //! and the contact history. A LAMMPS data file does not contain this history, although a heap is stable only with its
 //! friction springs.
 
-use nalgebra::Vector3;
+use crate::scene::Grain;
 use serde::{Deserialize, Serialize};
 
 /// Final state of a run.
@@ -16,25 +16,10 @@ pub struct EndState {
     pub time: f64,
     /// Names of the materials of grains.
     pub materials: Vec<String>,
-    /// Grains, in order of id.
-    pub grains: Vec<StateGrain>,
+    /// Grains, in order of id. Their materials are indices in [`EndState::materials`].
+    pub grains: Vec<Grain>,
     /// Contact history.
     pub springs: Springs,
-}
-
-/// Final state of a grain.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub struct StateGrain {
-    /// Index in [`EndState::materials`].
-    pub material: u16,
-    /// Radius (m), mass (kg; kg per metre of depth for discs) and moment of inertia (kg m²).
-    pub size: [f64; 3],
-    /// Centre (m).
-    pub position: Vector3<f64>,
-    /// Velocity (m/s).
-    pub velocity: Vector3<f64>,
-    /// Angular velocity (rad/s).
-    pub spin: Vector3<f64>,
 }
 
 /// Contact history in the layout of a solver.

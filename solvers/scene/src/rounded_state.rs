@@ -23,7 +23,8 @@
 //! [`PackedState`] in postcard's format. Each column stores the lowest bytes of all numbers first, then the next bytes,
 //! and so on. The high bytes of different numbers hardly differ, so they compress well.
 
-use crate::end_state::{EndState, Springs, StateGrain};
+use crate::end_state::{EndState, Springs};
+use crate::scene::Grain;
 use nalgebra::Vector3;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
@@ -48,7 +49,7 @@ pub(crate) struct PackedState {
     materials: Vec<String>,
     /// Rounding step of positions (m).
     step: f64,
-    /// Combinations of material and size.
+    /// Combinations of material, and radius (m), mass (kg; kg per metre of depth for discs) and moment of inertia (kg m²).
     kinds: Vec<(u16, [f64; 3])>,
     layout: String,
     /// Number of history values per contact.
@@ -123,18 +124,18 @@ impl PackedState {
     /// Creates the rounded form of a state. The rounding step of positions is `rounding` times the largest power of two
     /// at or below the smallest radius (m).
     pub(crate) fn new(state: &EndState, rounding: f64) -> Result<Self, String> {
-        let smallest = state.grains.iter().map(|grain| grain.size[0]).fold(f64::INFINITY, f64::min);
+        let smallest = state.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
         let step = if smallest.is_finite() { power_of_two(smallest) * rounding } else { 1.0 };
-        let far = |grain: &StateGrain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
+        let far = |grain: &Grain| !grain.position.iter().all(|&along| (along / step).abs() < FARTHEST);
         if step <= 0.0 || state.grains.iter().any(far) {
             return Err("a grain that is too far away or too small to be rounded".to_owned());
         }
         let mut kinds = Vec::new();
         let mut known = BTreeMap::new();
-        let mut kind = |grain: &StateGrain| {
-            let key = (grain.material, grain.size.map(f64::to_bits));
-            *known.entry(key).or_insert_with(|| {
-                kinds.push((grain.material, grain.size));
+        let mut kind = |grain: &Grain| {
+            let size = [grain.radius, grain.mass, grain.inertia];
+            *known.entry((grain.material, size.map(f64::to_bits))).or_insert_with(|| {
+                kinds.push((grain.material, size));
                 kinds.len() as u32 - 1
             })
         };
@@ -202,10 +203,12 @@ impl PackedState {
         }
         let vector = |component: &dyn Fn(usize) -> f64| Vector3::new(component(0), component(1), component(2));
         let grain = |(at, &kind): (usize, &u32)| {
-            let (material, size) = self.kinds[kind as usize];
-            StateGrain {
+            let (material, [radius, mass, inertia]) = self.kinds[kind as usize];
+            Grain {
                 material,
-                size,
+                radius,
+                mass,
+                inertia,
                 position: vector(&|axis| i64::from_le_bytes(positions[axis][at]) as f64 * self.step),
                 velocity: vector(&|axis| singles[axis][at]),
                 spin: vector(&|axis| singles[3 + axis][at]),

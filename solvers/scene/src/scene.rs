@@ -14,13 +14,13 @@ use crate::motion::{Displacement, Motion};
 use crate::stays::Stays;
 use nalgebra::Vector3;
 use schemars::JsonSchema;
-use serde::Serialize;
+use serde::{Deserialize, Serialize};
 use std::fmt;
 use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
-/// Initial state of a grain.
-#[derive(Clone, Copy, Debug, PartialEq)]
+/// State of a grain at the start of a run or, in [`crate::end_state::EndState`], at its end.
+#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Grain {
     /// Index in [`Scene::materials`].
     pub material: u16,

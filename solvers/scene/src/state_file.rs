@@ -3,8 +3,9 @@
 //! A file contains the line `grainbench state <format>`, length and hash (see `sealed`), and a zlib stream of an
 //! [`EndState`] in postcard's format, which keeps every bit of a number. `rounded_state` describes a smaller form.
 
-use crate::end_state::{EndState, Springs, StateGrain};
+use crate::end_state::{EndState, Springs};
 use crate::rounded_state::{self, PackedState};
+use crate::scene::Grain;
 use crate::sealed::{self, SealError};
 use flate2::Compression;
 use flate2::read::ZlibDecoder;
@@ -46,7 +47,7 @@ impl EndState {
     /// # Errors
     /// When a part of the state cannot be rounded; the error is a message.
     pub fn to_bytes_at_rest(&self) -> Result<Vec<u8>, String> {
-        let at_rest = |grain: &StateGrain| StateGrain { velocity: Vector3::zeros(), spin: Vector3::zeros(), ..*grain };
+        let at_rest = |grain: &Grain| Grain { velocity: Vector3::zeros(), spin: Vector3::zeros(), ..*grain };
         let grains = self.grains.iter().map(at_rest).collect();
         let state = Self {
             of: self.of.clone(),
@@ -74,7 +75,7 @@ impl EndState {
         let of_grains = state.springs.pairs.iter().all(|(a, b, _)| a != b && is_place(a) && is_place(b))
             && state.springs.walls.iter().all(|(grain, ..)| is_place(grain))
             && state.grains.iter().all(|grain| usize::from(grain.material) < state.materials.len());
-        let numbers = |grain: &StateGrain| [grain.position, grain.velocity, grain.spin].iter().all(is_finite);
+        let numbers = |grain: &Grain| [grain.position, grain.velocity, grain.spin].iter().all(is_finite);
         let of_springs = |memory: &[f64]| memory.iter().all(|number| number.is_finite());
         let finite = state.grains.iter().all(numbers)
             && state.springs.pairs.iter().all(|(.., memory)| of_springs(memory))
@@ -121,9 +122,11 @@ mod tests {
     use super::*;
 
     fn state() -> EndState {
-        let grain = |x: f64| StateGrain {
+        let grain = |x: f64| Grain {
             material: 0,
-            size: [0.5, 1.0, 0.1],
+            radius: 0.5,
+            mass: 1.0,
+            inertia: 0.1,
             position: Vector3::new(x, -0.0, f64::from_bits(1)),
             velocity: Vector3::x(),
             spin: Vector3::z(),
@@ -146,8 +149,9 @@ mod tests {
         assert!(bytes.len() < state().to_rounded_bytes().unwrap().len());
         assert_eq!(back.springs, Springs::default());
         for (grain, given) in back.grains.iter().zip(state().grains) {
-            assert_eq!((grain.velocity, grain.spin, grain.size), (Vector3::zeros(), Vector3::zeros(), given.size));
             assert!((grain.position - given.position).amax() <= 0.25 / f64::from(1 << 20));
+            let still = Vector3::zeros();
+            assert_eq!(grain, &Grain { position: grain.position, velocity: still, spin: still, ..given });
         }
     }
 
@@ -174,8 +178,8 @@ mod tests {
         let mut exact = state();
         // The state has two sizes of grains, two walls, and contacts in which the first index is the smaller or the
         // larger one.
-        let third =
-            StateGrain { size: [0.3, 0.2, 0.05], position: Vector3::new(-70.1, 1.0 / 3.0, 1e-3), ..exact.grains[0] };
+        let position = Vector3::new(-70.1, 1.0 / 3.0, 1e-3);
+        let third = Grain { radius: 0.3, mass: 0.2, inertia: 0.05, position, ..exact.grains[0] };
         exact.grains.push(third);
         exact.grains[1].velocity = Vector3::new(1.0 / 3.0, -1e-30, 7.0);
         exact.springs.pairs = vec![(0, 2, vec![0.1]), (1, 0, vec![-1e-5]), (1, 2, vec![0.0])];
@@ -186,7 +190,8 @@ mod tests {
         // The smallest radius, 0.3 m, lies between 2⁻² m and 2⁻¹ m.
         let step = (-2.0_f64 - 36.0).exp2();
         for (found, exact) in rounded.grains.iter().zip(&exact.grains) {
-            assert_eq!((found.material, found.size), (exact.material, exact.size));
+            let Grain { position, velocity, spin, .. } = *found;
+            assert_eq!(*found, Grain { position, velocity, spin, ..*exact });
             assert!((found.position - exact.position).amax() <= 0.5 * step);
             for (found, exact) in found.velocity.iter().zip(&exact.velocity).chain(found.spin.iter().zip(&exact.spin)) {
                 assert!((found - exact).abs() <= exact.abs() * (-24.0_f64).exp2());

@@ -30,16 +30,10 @@ impl Resolver<'_> {
         };
         let first = grains.len() as u32;
         for grain in &state.grains {
-            let [radius, mass, inertia] = grain.size;
-            grains.push(Grain {
-                material: materials[usize::from(grain.material)],
-                radius: check.positive(&key, radius, "radius (m)")?,
-                mass: check.positive(&key, mass, "mass (kg)")?,
-                inertia: check.positive(&key, inertia, "moment of inertia (kg m²)")?,
-                position: grain.position,
-                velocity: grain.velocity,
-                spin: grain.spin,
-            });
+            check.positive(&key, grain.radius, "radius (m)")?;
+            check.positive(&key, grain.mass, "mass (kg)")?;
+            check.positive(&key, grain.inertia, "moment of inertia (kg m²)")?;
+            grains.push(Grain { material: materials[usize::from(grain.material)], ..*grain });
         }
         if spec.springs {
             let expected = "springs of one state (`springs = false` for further states)";
