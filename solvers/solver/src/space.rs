@@ -7,7 +7,7 @@ use nalgebra::{Matrix2, Matrix3, Vector2, Vector3};
 use serde::Serialize;
 use serde::de::DeserializeOwned;
 use std::fmt::Debug;
-use std::ops::{Add, AddAssign, Mul, Neg, Sub, SubAssign};
+use std::ops::{Add, AddAssign, Index, Mul, Neg, Sub, SubAssign};
 
 mod sealed {
     pub trait Sealed {}
@@ -45,12 +45,21 @@ pub trait Space: sealed::Sealed + Copy + Debug + Default + Send + Sync + 'static
     /// Number of dimensions.
     const DIMENSION: usize;
     /// Vector, such as a position, velocity or force.
-    type Vector: Linear;
+    type Vector: Linear + Index<usize, Output = f64>;
     /// Gradient of a vector.
     type Matrix: Linear + Mul<Output = Self::Matrix> + Mul<Self::Vector, Output = Self::Vector>;
     /// Symmetric tensor, with the components xx, yy, zz, xy, and in three dimensions also yz, zx. In two dimensions, zz
     /// is the out-of-plane component (plane strain).
-    type Symmetric: Copy + Debug + PartialEq + Default + Serialize + DeserializeOwned + Send + Sync + 'static;
+    type Symmetric: Copy
+        + Debug
+        + PartialEq
+        + Default
+        + Index<usize, Output = f64>
+        + Serialize
+        + DeserializeOwned
+        + Send
+        + Sync
+        + 'static;
     /// Zero vector.
     const ORIGIN: Self::Vector;
     /// Zero gradient.
@@ -92,15 +101,24 @@ pub trait Space: sealed::Sealed + Copy + Debug + Default + Send + Sync + 'static
     /// Returns the unit tensor of three dimensions, multiplied by `value`.
     fn isotropic(value: f64) -> Self::Symmetric;
     /// Returns the trace in three dimensions.
-    fn trace(tensor: Self::Symmetric) -> f64;
+    #[inline(always)]
+    fn trace(tensor: Self::Symmetric) -> f64 {
+        tensor[0] + tensor[1] + tensor[2]
+    }
     /// Returns `σ : σ` in three dimensions.
-    fn norm_squared(tensor: Self::Symmetric) -> f64;
+    #[inline(always)]
+    fn norm_squared(tensor: Self::Symmetric) -> f64 {
+        Self::double_dot(tensor, tensor)
+    }
     /// Returns `σ : ε` in three dimensions.
     fn double_dot(one: Self::Symmetric, other: Self::Symmetric) -> f64;
     /// Returns the product of a symmetric tensor and a vector of this space.
     fn apply(tensor: Self::Symmetric, vector: Self::Vector) -> Self::Vector;
     /// Returns a component of a vector.
-    fn component(vector: Self::Vector, axis: usize) -> f64;
+    #[inline(always)]
+    fn component(vector: Self::Vector, axis: usize) -> f64 {
+        vector[axis]
+    }
 }
 
 /// Two dimensions: vectors (x, y), spin about z.
@@ -189,24 +207,12 @@ impl Space for Plane {
         [value, value, value, 0.0]
     }
     #[inline(always)]
-    fn trace([xx, yy, zz, _]: [f64; 4]) -> f64 {
-        xx + yy + zz
-    }
-    #[inline(always)]
-    fn norm_squared([xx, yy, zz, xy]: [f64; 4]) -> f64 {
-        xx * xx + yy * yy + zz * zz + 2.0 * xy * xy
-    }
-    #[inline(always)]
     fn double_dot(a: [f64; 4], b: [f64; 4]) -> f64 {
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * a[3] * b[3]
     }
     #[inline(always)]
     fn apply([xx, yy, _, xy]: [f64; 4], v: Vector2<f64>) -> Vector2<f64> {
         Vector2::new(xx * v.x + xy * v.y, xy * v.x + yy * v.y)
-    }
-    #[inline(always)]
-    fn component(vector: Vector2<f64>, axis: usize) -> f64 {
-        vector[axis]
     }
 }
 
@@ -291,24 +297,12 @@ impl Space for Solid {
         [value, value, value, 0.0, 0.0, 0.0]
     }
     #[inline(always)]
-    fn trace([xx, yy, zz, ..]: [f64; 6]) -> f64 {
-        xx + yy + zz
-    }
-    #[inline(always)]
-    fn norm_squared([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> f64 {
-        xx * xx + yy * yy + zz * zz + 2.0 * (xy * xy + yz * yz + zx * zx)
-    }
-    #[inline(always)]
     fn double_dot(a: [f64; 6], b: [f64; 6]) -> f64 {
         a[0] * b[0] + a[1] * b[1] + a[2] * b[2] + 2.0 * (a[3] * b[3] + a[4] * b[4] + a[5] * b[5])
     }
     #[inline(always)]
     fn apply([xx, yy, zz, xy, yz, zx]: [f64; 6], v: Vector3<f64>) -> Vector3<f64> {
         Vector3::new(xx * v.x + xy * v.y + zx * v.z, xy * v.x + yy * v.y + yz * v.z, zx * v.x + yz * v.y + zz * v.z)
-    }
-    #[inline(always)]
-    fn component(vector: Vector3<f64>, axis: usize) -> f64 {
-        vector[axis]
     }
 }
 
