@@ -156,15 +156,11 @@ mod tests {
             touch(2, 5, 0.1),
         ];
         let snapshot = Snapshot {
-            step: 0,
-            time: 0.0,
             bounds: (Vector3::zeros(), Vector3::new(4.0, 2.0, 1.0)),
             periodic: [true, false, false],
             grains,
             contacts: Some(contacts),
-            walls: Vec::new(),
-            bodies: Vec::new(),
-            points: Vec::new(),
+            ..Snapshot::default()
         };
         let found = chains(&snapshot);
         assert_eq!((found.lengths.as_slice(), found.links.len()), ([4].as_slice(), 4));

@@ -137,15 +137,12 @@ mod tests {
         let grain = Grain { material: 0, radius: 0.4, mass: 1.0, inertia: 0.08, position, velocity, spin };
         let grain = GrainState { angle: Some(0.3), ..GrainState::start(1, &grain) };
         Snapshot {
-            step: 0,
-            time: 0.0,
             bounds: (Vector3::zeros(), Vector3::new(2.0, 1.0, 0.0)),
             periodic: [true, false, false],
             grains: vec![grain],
             contacts: Some(Vec::new()),
-            walls: Vec::new(),
-            bodies: Vec::new(),
             points,
+            ..Snapshot::default()
         }
     }
 

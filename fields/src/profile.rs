@@ -94,15 +94,11 @@ mod tests {
             GrainState::start(id, &grain)
         };
         Snapshot {
-            step: 0,
             time,
             bounds: (Vector3::zeros(), Vector3::new(4.0, 4.0, 0.0)),
             periodic: [false, true, false],
             grains: (1..=4).map(grain).collect(),
-            contacts: None,
-            walls: Vec::new(),
-            bodies: Vec::new(),
-            points: Vec::new(),
+            ..Snapshot::default()
         }
     }
 

@@ -19,17 +19,8 @@ fn grain(id: u32, position: Vector3<f64>) -> GrainState {
 }
 
 fn snapshot(grains: Vec<GrainState>, high: Vector3<f64>, periodic: [bool; 3]) -> Snapshot {
-    Snapshot {
-        step: 0,
-        time: 0.0,
-        bounds: (Vector3::zeros(), high),
-        periodic,
-        grains,
-        contacts: Some(Vec::new()),
-        walls: Vec::new(),
-        bodies: Vec::new(),
-        points: Vec::new(),
-    }
+    let bounds = (Vector3::zeros(), high);
+    Snapshot { bounds, periodic, grains, contacts: Some(Vec::new()), ..Snapshot::default() }
 }
 
 /// Returns a face-centred cubic lattice of spheres of diameter one under a deformation F, and the undeformed positions.

@@ -98,10 +98,7 @@ impl GrainDump {
             bounds,
             periodic: self.periodic()?,
             grains,
-            contacts: None,
-            walls: Vec::new(),
-            bodies: Vec::new(),
-            points: Vec::new(),
+            ..Snapshot::default()
         };
         if let Some((reader, file)) = &mut self.contacts {
             snapshot.contacts = Some(contacts_of(&snapshot, reader, &mut self.entries, file, &self.beside.names)?);

@@ -58,8 +58,7 @@ pub(crate) fn snapshot() -> Snapshot {
             infinite: false,
             force: Some(Vector3::new(0.0, -20.0, 0.0)),
         }],
-        bodies: Vec::new(),
-        points: Vec::new(),
+        ..Snapshot::default()
     }
 }
 

@@ -201,7 +201,7 @@ pub struct WallState {
 }
 
 /// State at one time.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Snapshot {
     /// Step (calculation cycle).
     pub step: u64,
@@ -284,7 +284,7 @@ impl Snapshot {
     ) -> Self {
         let bounds = bounds(scene, &grains);
         let periodic = scene.domain.map_or([false; 3], |domain| domain.periodic);
-        Self { step, time, bounds, periodic, grains, contacts, walls, bodies: Vec::new(), points: Vec::new() }
+        Self { step, time, bounds, periodic, grains, contacts, walls, ..Self::default() }
     }
 }
 
@@ -321,7 +321,7 @@ pub fn nearest_turn(angle: f64, expected: f64) -> f64 {
 }
 
 /// State of a simulation at one step: a snapshot, and further data for probes.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct StepState {
     /// Grains sorted by id, contacts and walls.
     pub snapshot: Snapshot,
@@ -351,17 +351,7 @@ impl StepState {
     /// Returns the state of a simulation with rigid grains.
     #[must_use]
     pub fn of_rigid(snapshot: Snapshot, elastic_energy: f64) -> Self {
-        Self {
-            touching: snapshot.touching(),
-            snapshot,
-            elastic_energy,
-            inner_kinetic_energy: 0.0,
-            uneven_rotational_energy: 0.0,
-            uneven_angular_momentum: Vector3::zeros(),
-            spots: Vec::new(),
-            driven: Vec::new(),
-            budget: None,
-        }
+        Self { touching: snapshot.touching(), snapshot, elastic_energy, ..Self::default() }
     }
 }
 
