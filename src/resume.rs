@@ -1,6 +1,5 @@
 //! Runs that can be interrupted and continued from periodic checkpoints.
 
-use crate::harness::wrapper::Start;
 use crate::scene::end_state::EndState;
 use crate::scene::scene::Scene;
 use crate::solver::Solver;
@@ -50,7 +49,7 @@ pub fn run(
 ) -> Result<Record, RunError> {
     let before = from.map_or(Some(0.0), seconds).unwrap_or(f64::NAN);
     let mut watcher = CheckpointWriter { observer, place, before, begun: std::time::Instant::now() };
-    let mut record = Start { scene, resolution, from }.run(solver, &mut watcher)?;
+    let mut record = solver.run_from(scene, resolution, from, &mut watcher)?;
     record.cost.wall_seconds += before;
     Ok(record)
 }

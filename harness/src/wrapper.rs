@@ -25,10 +25,7 @@ impl Start<'_> {
     /// # Errors
     /// When the solver fails, or the checkpoint belongs to another run.
     pub fn run(&self, solver: &dyn Solver, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        match self.from {
-            None => solver.run(self.scene, self.resolution, observer),
-            Some(from) => solver.restart(self.scene, self.resolution, from, observer),
-        }
+        solver.run_from(self.scene, self.resolution, self.from, observer)
     }
 }
 
@@ -71,16 +68,16 @@ impl<W: Wrapper> Solver for Wrapped<W> {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        self.0.run(Start { scene, resolution, from: None }, observer)
+        self.run_from(scene, resolution, None, observer)
     }
 
-    fn restart(
+    fn run_from(
         &self,
         scene: &Scene,
         resolution: &Resolution,
-        from: &Checkpoint,
+        from: Option<&Checkpoint>,
         observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        self.0.run(Start { scene, resolution, from: Some(from) }, observer)
+        self.0.run(Start { scene, resolution, from }, observer)
     }
 }

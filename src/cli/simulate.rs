@@ -14,7 +14,6 @@ use super::value::{path_and_value, positive, whole};
 use clap::builder::{PossibleValuesParser, TypedValueParser};
 use grainbench::cases::registry::read_grains;
 use grainbench::dem::stability::stable_fraction;
-use grainbench::harness::wrapper::Start;
 use grainbench::jobs::shard;
 use grainbench::jobs::sweep::Sweep;
 use grainbench::reports::export::{self, SnapshotFormat};
@@ -216,8 +215,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         state: None,
         interrupt,
     };
-    let start = Start { scene: &scene, resolution: &resolution, from: from.as_ref() };
-    let record = start.run(&*solver, &mut watcher);
+    let record = solver.run_from(&scene, &resolution, from.as_ref(), &mut watcher);
     let Watcher { mut snapshots, remains, state, .. } = watcher;
     let mut record = match record {
         Ok(record) => record,

@@ -169,7 +169,7 @@ fn of_checkpoint(lot: &mut RandomSource) -> Answer {
     let words = |error: CheckpointError| one_line_of(Path::new("checkpoint"), &error);
     match Checkpoint::from_bytes(&bytes) {
         Err(error) => words(error),
-        Ok(checkpoint) => match Dem::new(SOLVER).restart(&scene(), &RESOLUTION, &checkpoint, &mut ()) {
+        Ok(checkpoint) => match Dem::new(SOLVER).run_from(&scene(), &RESOLUTION, Some(&checkpoint), &mut ()) {
             Ok(_) | Err(RunError::Broken(_) | RunError::NotFinite { .. }) => Ok(()),
             Err(RunError::Checkpoint(error)) => words(error),
             Err(error) => Err(error.to_string()),

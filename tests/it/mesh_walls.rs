@@ -168,7 +168,8 @@ fn threads_and_restarts_change_no_bit() {
     let solver = solvers::by_name("dem").unwrap();
     assert!(observer.checkpoints.len() > 5);
     for checkpoint in &observer.checkpoints {
-        let record = solver.restart(&scene, &STEP, checkpoint, &mut ()).unwrap_or_else(|error| panic!("{error}"));
+        let record =
+            solver.run_from(&scene, &STEP, Some(checkpoint), &mut ()).unwrap_or_else(|error| panic!("{error}"));
         assert!(bits(record) == straight);
     }
 }

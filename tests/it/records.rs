@@ -107,7 +107,7 @@ fn means_are_the_same_to_the_bit_on_any_threads_and_from_any_checkpoint() {
     assert_eq!(checkpoints.iter().map(Checkpoint::step).collect::<Vec<_>>(), [13, 26, 39, 52]);
     for checkpoint in &checkpoints {
         let mut observer = RunObserver::with_checkpoints(13, 2);
-        let continued = solver.restart(&scene, &STEP, checkpoint, &mut observer).unwrap();
+        let continued = solver.run_from(&scene, &STEP, Some(checkpoint), &mut observer).unwrap();
         assert!(bits(&continued) == bits(&whole), "from step {}", checkpoint.step());
     }
     // Output options do not change the run.

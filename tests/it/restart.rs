@@ -58,7 +58,7 @@ fn every_case_continues_to_the_same_bits() {
             assert!(whole == watched, "{}: {} is another run when checkpoints are taken", case.name, solver.name());
             let (first, last) = (observer.checkpoints.first().unwrap(), observer.checkpoints.last().unwrap());
             for checkpoint in [first, last] {
-                let continued = bits(solver.restart(scene, &resolution, checkpoint, &mut ()).unwrap());
+                let continued = bits(solver.run_from(scene, &resolution, Some(checkpoint), &mut ()).unwrap());
                 assert!(whole == continued, "{}: {} from step {}", case.name, solver.name(), checkpoint.step());
                 compared += 1;
             }

@@ -53,7 +53,7 @@ fn restart(rows: &Rows<'_>) -> Vec<Verdict> {
         // A checkpoint must survive being written and read.
         let bytes = halfway.written_by(solver)?.to_bytes().map_err(RunError::from)?;
         let checkpoint = Checkpoint::from_bytes(&bytes).map_err(RunError::from)?;
-        differing(whole, solver.restart(&named.scene, resolution, &checkpoint, &mut ())?)
+        differing(whole, solver.run_from(&named.scene, resolution, Some(&checkpoint), &mut ())?)
     })
 }
 

@@ -175,23 +175,10 @@ impl Solver for Dem {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        self.go(scene, resolution, None, observer)
+        self.run_from(scene, resolution, None, observer)
     }
 
-    fn restart(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: &Checkpoint,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        self.go(scene, resolution, Some(from), observer)
-    }
-}
-
-impl Dem {
-    /// Runs a scene to its end, from the start or from a checkpoint.
-    fn go(
+    fn run_from(
         &self,
         scene: &Scene,
         resolution: &Resolution,

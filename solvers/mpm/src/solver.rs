@@ -85,20 +85,6 @@ impl Mpm {
         let course = Course { solver, scene, steps, from, between_progress: STEPS_BETWEEN_PROGRESS, provenance };
         course.drive(&mut simulation, observer)
     }
-
-    /// Runs from the start or from a checkpoint to the end.
-    fn go(
-        &self,
-        scene: &Scene,
-        resolution: &Resolution,
-        from: Option<&Checkpoint>,
-        observer: &mut dyn Observer,
-    ) -> Result<Record, RunError> {
-        match scene.dimension {
-            Dimension::Two => self.run_in::<Plane>(scene, resolution, from, observer),
-            Dimension::Three => self.run_in::<Solid>(scene, resolution, from, observer),
-        }
-    }
 }
 
 /// Maximum number of steps between two progress reports.
@@ -265,16 +251,19 @@ impl Solver for Mpm {
     }
 
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError> {
-        self.go(scene, resolution, None, observer)
+        self.run_from(scene, resolution, None, observer)
     }
 
-    fn restart(
+    fn run_from(
         &self,
         scene: &Scene,
         resolution: &Resolution,
-        from: &Checkpoint,
+        from: Option<&Checkpoint>,
         observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        self.go(scene, resolution, Some(from), observer)
+        match scene.dimension {
+            Dimension::Two => self.run_in::<Plane>(scene, resolution, from, observer),
+            Dimension::Three => self.run_in::<Solid>(scene, resolution, from, observer),
+        }
     }
 }

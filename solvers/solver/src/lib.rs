@@ -68,19 +68,22 @@ pub trait Solver: Send + Sync {
     /// When the scene is not supported, the resolution is not valid, or the simulation breaks.
     fn run(&self, scene: &Scene, resolution: &Resolution, observer: &mut dyn Observer) -> Result<Record, RunError>;
 
-    /// Continues a run of the same scene at the same resolution from one of its checkpoints. The record equals that of
-    /// an uninterrupted run in every bit except for wall-clock times.
+    /// Runs a scene or, with a checkpoint, continues a run of the same scene at the same resolution. The record of a
+    /// continued run equals that of an uninterrupted run in every bit except for wall-clock times.
     ///
     /// # Errors
     /// When [`Solver::run`] fails, the checkpoint belongs to another run, or the solver writes no checkpoints.
-    fn restart(
+    fn run_from(
         &self,
-        _scene: &Scene,
-        _resolution: &Resolution,
-        _from: &Checkpoint,
-        _observer: &mut dyn Observer,
+        scene: &Scene,
+        resolution: &Resolution,
+        from: Option<&Checkpoint>,
+        observer: &mut dyn Observer,
     ) -> Result<Record, RunError> {
-        Err(self.unsupported("it writes no checkpoints".to_owned()))
+        match from {
+            None => self.run(scene, resolution, observer),
+            Some(_) => Err(self.unsupported("it writes no checkpoints".to_owned())),
+        }
     }
 
     /// Returns the error for a scene or a request that the solver does not support.

@@ -64,7 +64,7 @@ fn a_continued_run_leaves_the_same_bits() {
         let (whole, kept) = checkpoints(solver, &text, &at, 13);
         assert!(whole == untimed(solver.run(&scene(&text), &at, &mut ()).unwrap()), "{name}: another run when watched");
         for checkpoint in [kept.first().unwrap(), kept.last().unwrap()] {
-            let continued = untimed(solver.restart(&scene(&text), &at, checkpoint, &mut ()).unwrap());
+            let continued = untimed(solver.run_from(&scene(&text), &at, Some(checkpoint), &mut ()).unwrap());
             assert!(whole == continued, "{name} from step {} is another run", checkpoint.step());
         }
     }
@@ -76,10 +76,11 @@ fn a_continued_run_leaves_the_same_bits() {
 fn another_run_and_half_a_file_are_refused() {
     let (text, at) = (collision(0.1, 0.9, 0.5), Resolution::grid(4.0, 2));
     let (_, kept) = checkpoints(Mpm::BEST, &text, &at, 13);
-    let refused = |solver: Mpm, text: &str, at: Resolution| match solver.restart(&scene(text), &at, &kept[0], &mut ()) {
-        Err(RunError::Checkpoint(error)) => error.to_string(),
-        other => format!("{other:?}"),
-    };
+    let refused =
+        |solver: Mpm, text: &str, at: Resolution| match solver.run_from(&scene(text), &at, Some(&kept[0]), &mut ()) {
+            Err(RunError::Checkpoint(error)) => error.to_string(),
+            other => format!("{other:?}"),
+        };
     let other_scene = refused(Mpm::BEST, &collision(0.1, 0.8, 0.5), at);
     assert!(other_scene.contains("another run") && other_scene.contains("fingerprint"), "{other_scene}");
     for message in [

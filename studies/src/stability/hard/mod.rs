@@ -165,7 +165,7 @@ fn continues(
 ) -> Result<(), Stop> {
     let checkpoint = halfway.written_by(solver).map_err(Stop::Cannot)?;
     let continued =
-        solver.restart(scene, resolution, &checkpoint, &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
+        solver.run_from(scene, resolution, Some(&checkpoint), &mut RunOptions::unstable()).map_err(Stop::Cannot)?;
     let differ = end(whole).iter().zip(end(&continued)).filter(|(a, b)| a != b).count();
     if differ > 0 || end(whole).len() != end(&continued).len() {
         let what = format!("{differ} grains have a different final state when the run is continued");
