@@ -1,28 +1,23 @@
-//! Keys of a scene file as types that serde reads, with one module per table of keys.
+//! Keys of a scene file as types that serde reads, with modules for the tables of keys.
 //!
 //! Doc comments here are the documentation of the keys: `grainbench scene --schema` prints them.
 
 mod bodies;
-mod driven;
 mod grains;
-mod manufactured;
 mod output;
-mod probes;
 mod walls;
 
 pub use crate::contact_law::{ContactSpec, LawKind};
 pub use crate::material::{ConstitutiveKind, MaterialSpec};
-pub use bodies::{AnnulusSpec, BodySpec, BoxSpec, SideSpec, WaveSpec};
-pub use driven::DrivenSpec;
+pub use bodies::{AnnulusSpec, AxisAlignedSpec, BodySpec, BoxSpec, ManufacturedSpec, SideSpec, VortexSpec, WaveSpec};
 pub use grains::{
     FileSpec, GrainsSpec, LatticeSpec, LogNormalSpec, PackedSpec, PouredSpec, RadiiSpec, RandomSpec, RegionSpec,
     RemovalSpec, SpacingSpec, SpinSpec, StateSpec,
 };
-pub use manufactured::{AxisAlignedSpec, ManufacturedSpec, VortexSpec};
-pub use output::OutputSpec;
-pub use probes::{PointSpec, ProbeSpec};
+pub use output::{OutputSpec, PointSpec, ProbeSpec};
 pub use walls::{
-    ConeSpec, CylinderSpec, LengthUnit, MeshSpec, MotionSpec, Piston, PlaneSpec, RectangleSpec, SineSpec, WallSpec,
+    ConeSpec, CylinderSpec, DrivenSpec, LengthUnit, MeshSpec, MotionSpec, Piston, PlaneSpec, RectangleSpec, SineSpec,
+    WallSpec,
 };
 
 use crate::body::InitialPressure;
