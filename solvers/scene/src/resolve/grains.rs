@@ -1,24 +1,29 @@
 //! Grains of a scene file.
 
+use super::stays::along;
 use super::{Groups, Resolver};
 use crate::dimension::GrainShape;
-use crate::end_state::Springs;
+use crate::end_state::{EndState, Springs};
 use crate::error::SceneError;
-use crate::file::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, RandomSpec, SpacingSpec};
+use crate::file::{FileSpec, GrainsSpec, LatticeSpec, PackedSpec, RandomSpec, RegionSpec, SpacingSpec, StateSpec};
 use crate::generate::{self, NoRoom};
 use crate::memory;
 use crate::overlap::{self, DeepestOverlap};
 use crate::packing;
+use crate::radii::Radii;
 use crate::scene::{Domain, Grain, Wall};
 use crate::stays::{Entry, Stays};
-use indexmap::IndexMap;
 use nalgebra::Vector3;
 use std::sync::Arc;
 
 /// Memory per grain, summed over scene, solver and snapshot (B).
 const BYTES_OF_A_GRAIN: f64 = 1e3;
+/// Smallest fraction of a log-normal distribution that must lie within its range. Radii outside the range are drawn
+/// again, and a smaller fraction would need many draws.
+const LEAST: f64 = 0.01;
 
 /// Grains with their initial state.
+#[derive(Default)]
 pub(super) struct PlacedGrains {
     pub(super) grains: Vec<Grain>,
     pub(super) groups: Groups,
@@ -49,17 +54,15 @@ impl Group<'_> {
 
 impl Resolver<'_> {
     pub(super) fn grains(&self, shape: GrainShape, domain: Option<&Domain>) -> Result<PlacedGrains, SceneError> {
-        let mut grains = Vec::new();
-        let (mut entries, mut springs) = (Vec::new(), None);
-        let mut groups = IndexMap::new();
+        let mut placed = PlacedGrains::default();
         for (name, spec) in &self.file.grains {
-            let start = grains.len();
-            self.group(name, spec, shape, domain, (&mut grains, &mut entries, &mut springs))?;
-            self.refuse_beyond_numbers(name, &grains[start..])?;
-            groups.insert(name.clone(), start..grains.len());
+            let start = placed.grains.len();
+            self.group(name, spec, shape, domain, &mut placed)?;
+            self.refuse_beyond_numbers(name, &placed.grains[start..])?;
+            placed.groups.insert(name.clone(), start..placed.grains.len());
         }
-        entries.sort_by(|a: &Entry, b: &Entry| a.time.total_cmp(&b.time));
-        Ok(PlacedGrains { grains, groups, entries, springs: springs.map(Arc::new) })
+        placed.entries.sort_by(|a, b| a.time.total_cmp(&b.time));
+        Ok(placed)
     }
 
     fn group(
@@ -68,9 +71,9 @@ impl Resolver<'_> {
         spec: &GrainsSpec,
         shape: GrainShape,
         domain: Option<&Domain>,
-        (grains, entries, springs): (&mut Vec<Grain>, &mut Vec<Entry>, &mut Option<Springs>),
+        placed: &mut PlacedGrains,
     ) -> Result<(), SceneError> {
-        let check = &self.check;
+        let (check, grains) = (&self.check, &mut placed.grains);
         let key = |part: &str| format!("grains.{name}.{part}");
         self.check_keys(name, spec)?;
         let material = self.material(&key("material"), &spec.material)?;
@@ -92,11 +95,11 @@ impl Resolver<'_> {
             self.refuse_too_many(&key("poured.count"), u128::from(poured.count))?;
             let (radius, density) = (self.radius(&group)?, self.density(material)?);
             for (time, centre) in self.pour(name, spec, poured, radius, velocity, domain)? {
-                entries.push(Entry { grain: grains.len(), time });
+                placed.entries.push(Entry { grain: grains.len(), time });
                 grains.push(group.grain(centre, radius, density, velocity));
             }
         } else if let Some(state) = &spec.state {
-            self.grains_from_state(name, state, material, (grains, springs))?;
+            self.grains_from_state(name, state, material, placed)?;
         } else if let Some(file) = &spec.file {
             self.grains_from_file(name, file, shape, material, grains)?;
         }
@@ -337,6 +340,110 @@ impl Resolver<'_> {
             });
         }
         Ok(())
+    }
+
+    /// Adds the grains of the final state of a run.
+    fn grains_from_state(
+        &self,
+        name: &str,
+        spec: &StateSpec,
+        material: u16,
+        placed: &mut PlacedGrains,
+    ) -> Result<(), SceneError> {
+        let check = &self.check;
+        let key = format!("grains.{name}.state.path");
+        let path = check.source.directory.join(&spec.path);
+        let refuse = |found: String| check.error(&key, "a state written by `simulate --state`", &found);
+        let bytes = std::fs::read(&path).map_err(|error| refuse(error.to_string()))?;
+        let state = EndState::from_bytes(&bytes).map_err(refuse)?;
+        if state.dimension != check.dimension.count() {
+            return Err(refuse(format!("a state in {} dimensions", state.dimension)));
+        }
+        // A state with a single material gets the material of the group, even if the names differ.
+        let materials: Vec<u16> = match &state.materials[..] {
+            [_] => vec![material],
+            several => several.iter().map(|material| self.material(&key, material)).collect::<Result<_, _>>()?,
+        };
+        let first = placed.grains.len() as u32;
+        for grain in &state.grains {
+            check.positive(&key, grain.radius, "radius (m)")?;
+            check.positive(&key, grain.mass, "mass (kg)")?;
+            check.positive(&key, grain.inertia, "moment of inertia (kg m²)")?;
+            placed.grains.push(Grain { material: materials[usize::from(grain.material)], ..*grain });
+        }
+        if spec.springs {
+            let expected = "springs of one state (`springs = false` for further states)";
+            check.require(placed.springs.is_none(), &key, expected, "two")?;
+            placed.springs = Some(Arc::new(state.springs.later_by(first)));
+        }
+        Ok(())
+    }
+
+    /// Returns the distribution of radii. By default, all grains have the `radius` of the group.
+    fn radii(
+        &self,
+        key: &str,
+        spec: &RandomSpec,
+        shape: GrainShape,
+        radius: &dyn Fn() -> Result<f64, SceneError>,
+    ) -> Result<Radii, SceneError> {
+        let check = &self.check;
+        let Some(radii) = &spec.radii else {
+            let Some(range) = spec.radius_range else { return Ok(Radii::Uniform([radius()?; 2])) };
+            return Ok(Radii::Uniform(self.range(&format!("{key}.radius_range"), range)?));
+        };
+        check.require(spec.radius_range.is_none(), key, "one of `radius_range` and `radii`", "both")?;
+        let key = format!("{key}.radii");
+        check.exactly_one(&key, &[("log_normal", radii.log_normal.is_some()), ("by_mass", radii.by_mass.is_some())])?;
+        if let Some(spec) = &radii.log_normal {
+            let key = |part: &str| format!("{key}.log_normal.{part}");
+            let range = self.range(&key("range"), spec.range)?;
+            let median = check.positive(&key("median"), spec.median, "radius (m)")?;
+            let deviation = check.not_negative(&key("deviation"), spec.deviation, "ratio")?;
+            let is_within = (range[0]..=range[1]).contains(&median);
+            check.require(is_within, &key("median"), "a radius within `range`", median)?;
+            let share =
+                |radius: f64| 0.5 * libm::erf(libm::log(radius / median) / (deviation * std::f64::consts::SQRT_2));
+            let is_wide = deviation <= 0.0 || share(range[1]) - share(range[0]) >= LEAST;
+            let expected = format!("a range that contains at least {LEAST} of the distribution");
+            check.require(is_wide, &key("range"), &expected, format_args!("{} to {} m", range[0], range[1]))?;
+            return Ok(Radii::LogNormal { median, deviation, range });
+        }
+        let curve = radii.by_mass.as_deref().unwrap_or_default();
+        let key = format!("{key}.by_mass");
+        let rises = curve.windows(2).all(|pair| pair[0].0 <= pair[1].0 && pair[0].1 <= pair[1].1);
+        let is_whole =
+            curve.first().is_some_and(|first| first.1 == 0.0) && curve.last().is_some_and(|last| last.1 == 1.0);
+        let is_valid = rises && is_whole && curve.iter().all(|(radius, _)| radius.is_finite() && *radius > 0.0);
+        let expected = "pairs [radius (m), mass fraction of the grains up to this radius] in increasing order, with \
+                        fractions from 0 to 1";
+        let pairs: Vec<[f64; 2]> = curve.iter().map(|&(radius, fraction)| [radius, fraction]).collect();
+        check.require(is_valid, &key, expected, format_args!("{pairs:?}"))?;
+        Ok(Radii::by_mass(curve, if shape == GrainShape::Disc { 2 } else { 3 }))
+    }
+
+    /// Returns the smallest and largest radius (m), after checking that they are positive, finite and in this order.
+    fn range(&self, key: &str, [small, large]: [f64; 2]) -> Result<[f64; 2], SceneError> {
+        self.check.positive(key, small, "radius (m)")?;
+        let found = format_args!("{small} to {large}");
+        self.check.require(large.is_finite() && large >= small, key, "an increasing range", found)?;
+        Ok([small, large])
+    }
+
+    /// Returns the part of the domain within a box. This part is periodic along the periodic axes that the box spans
+    /// completely.
+    fn region_of(&self, key: &str, spec: &RegionSpec, domain: &Domain) -> Result<Domain, SceneError> {
+        let [low, high] = self.corners(key, &spec.low, &spec.high)?;
+        let mut part = *domain;
+        for axis in 0..self.check.dimension.count() {
+            let is_within = low[axis] >= domain.low[axis] && high[axis] <= domain.high[axis];
+            let expected = format!("a box within the domain, {} to {}", domain.low[axis], domain.high[axis]);
+            self.check.require(is_within, key, &expected, along(low[axis], high[axis], axis))?;
+            let is_whole = low[axis] == domain.low[axis] && high[axis] == domain.high[axis];
+            (part.low[axis], part.high[axis]) = (low[axis], high[axis]);
+            part.periodic[axis] = domain.periodic[axis] && is_whole;
+        }
+        Ok(part)
     }
 
     pub(super) fn refuse_deep_overlap(

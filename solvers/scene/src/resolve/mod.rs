@@ -23,12 +23,8 @@ mod bodies;
 mod driven;
 mod grains;
 mod laws;
-mod materials;
-mod meshes;
 mod motion;
 mod probes;
-mod random;
-mod state;
 mod stays;
 mod walls;
 
