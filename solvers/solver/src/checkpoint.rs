@@ -19,35 +19,10 @@ const FORMAT: u32 = 10;
 /// Reason why a run cannot continue from a checkpoint, or why a checkpoint cannot be stored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
-    /// File of another kind.
-    #[error("expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file")]
-    Foreign,
-    /// Checkpoint of an earlier version of the program.
-    #[error(
-        "expected a checkpoint of format {FORMAT}, found format {found}: an older version of the program wrote it, and \
-         only that version can continue it"
-    )]
-    Older {
-        /// Format version of the checkpoint.
-        found: u32,
-    },
-    /// Checkpoint of a later version of the program.
-    #[error(
-        "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program wrote it"
-    )]
-    Newer {
-        /// Format version of the checkpoint.
-        found: u32,
-    },
-    /// File that is truncated, or longer than expected.
-    #[error("expected {expected} bytes after the first line, found {found}: the checkpoint is incomplete")]
-    Length {
-        /// Expected number of bytes.
-        expected: u64,
-        /// Number of bytes found.
-        found: u64,
-    },
-    /// File with bytes that differ from those that were written.
+    /// File of another kind or format, or of the wrong length, or with bytes that differ from those that were written.
+    #[error("{}", seal_words(.0))]
+    NotSealed(SealError),
+    /// Data that do not fit together or to the scene.
     #[error("the checkpoint is damaged: {0}")]
     Damaged(String),
     /// Checkpoint of another run.
@@ -63,6 +38,27 @@ pub enum CheckpointError {
     /// The checkpoint could not be stored.
     #[error("{0}")]
     NotStored(String),
+}
+
+/// Returns the message for bytes that are not a sealed checkpoint of this format.
+fn seal_words(error: &SealError) -> String {
+    match error {
+        SealError::Foreign => {
+            "expected a checkpoint, which begins with `grainbench checkpoint`; found another kind of file".to_owned()
+        }
+        SealError::Older(found) => format!(
+            "expected a checkpoint of format {FORMAT}, found format {found}: an older version of the program wrote it, \
+             and only that version can continue it"
+        ),
+        SealError::Newer(found) => format!(
+            "expected a checkpoint of format {FORMAT} or earlier, found format {found}: a newer version of the program \
+             wrote it"
+        ),
+        SealError::Length(expected, found) => {
+            format!("expected {expected} bytes after the first line, found {found}: the checkpoint is incomplete")
+        }
+        SealError::Changed => "the checkpoint is damaged: its bytes differ from the written bytes".to_owned(),
+    }
 }
 
 /// Identity of a run. A checkpoint continues only a run of the same identity.
@@ -199,13 +195,7 @@ impl Checkpoint {
     /// # Errors
     /// When the file is of another kind or another format, truncated or damaged.
     pub fn from_bytes(bytes: &[u8]) -> Result<Self, CheckpointError> {
-        let body = sealed::open(MAGIC, FORMAT, bytes).map_err(|broken| match broken {
-            SealError::Foreign => CheckpointError::Foreign,
-            SealError::Older(found) => CheckpointError::Older { found },
-            SealError::Newer(found) => CheckpointError::Newer { found },
-            SealError::Length(expected, found) => CheckpointError::Length { expected, found },
-            SealError::Changed => CheckpointError::Damaged("its bytes differ from the written bytes".to_owned()),
-        })?;
+        let body = sealed::open(MAGIC, FORMAT, bytes).map_err(CheckpointError::NotSealed)?;
         postcard::from_bytes(body).map_err(|error| CheckpointError::Damaged(error.to_string()))
     }
 }
@@ -252,18 +242,21 @@ mod tests {
             assert!(Checkpoint::from_bytes(&changed).is_err(), "changed at {length}");
         }
         let longer = [whole.as_slice(), b"x"].concat();
-        assert!(matches!(Checkpoint::from_bytes(&longer), Err(CheckpointError::Length { .. })));
+        assert!(matches!(Checkpoint::from_bytes(&longer), Err(CheckpointError::NotSealed(SealError::Length(..)))));
     }
 
     #[test]
     fn other_files_and_newer_formats_are_told_apart() {
-        assert_eq!(Checkpoint::from_bytes(b"ITEM: TIMESTEP\n0\n"), Err(CheckpointError::Foreign));
-        assert_eq!(Checkpoint::from_bytes(&[0; 100]), Err(CheckpointError::Foreign));
-        let older = [b"grainbench checkpoint 1\n".as_slice(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&older), Err(CheckpointError::Older { found: 1 }));
-        let found = FORMAT + 1;
-        let newer = [format!("grainbench checkpoint {found}\n").as_bytes(), &bytes()[24..]].concat();
-        assert_eq!(Checkpoint::from_bytes(&newer), Err(CheckpointError::Newer { found }));
+        let (after, newer) = (&bytes()[24..], FORMAT + 1);
+        for (start, expected) in [
+            ("ITEM: TIMESTEP\n0\n".to_owned(), SealError::Foreign),
+            ("\0".repeat(100), SealError::Foreign),
+            ("grainbench checkpoint 1\n".to_owned(), SealError::Older(1)),
+            (format!("grainbench checkpoint {newer}\n"), SealError::Newer(newer)),
+        ] {
+            let read = Checkpoint::from_bytes(&[start.as_bytes(), after].concat());
+            assert_eq!(read, Err(CheckpointError::NotSealed(expected)), "{start}");
+        }
     }
 
     #[test]
