@@ -204,14 +204,11 @@ impl Start {
     /// none.
     #[must_use]
     pub fn needs_deformable(&self) -> Option<&'static str> {
-        if self.settle.is_some() {
-            Some("a phase of settling before the clock starts")
-        } else if self.initial_pressure.is_some() {
-            Some("an initial pressure inside bodies")
-        } else if self.manufactured.is_some() {
-            Some("a manufactured body force")
-        } else {
-            None
-        }
+        let features = [
+            (self.settle.is_some(), "a phase of settling before the clock starts"),
+            (self.initial_pressure.is_some(), "an initial pressure inside bodies"),
+            (self.manufactured.is_some(), "a manufactured body force"),
+        ];
+        features.into_iter().find_map(|(is_used, words)| is_used.then_some(words))
     }
 }

@@ -20,7 +20,7 @@ use std::ops::{Deref, DerefMut};
 use std::sync::Arc;
 
 /// State of a grain at the start of a run or, in [`crate::end_state::EndState`], at its end.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Grain {
     /// Index in [`Scene::materials`].
     pub material: u16,
@@ -481,22 +481,19 @@ impl Scene {
     /// initial contact history, and removal of walls.
     #[must_use]
     pub fn passing(&self) -> Option<&'static str> {
-        if !self.stays.entries.is_empty() {
-            return Some("grains that are poured");
-        }
-        if self.stays.removal.is_some() {
-            return Some("grains that are removed");
-        }
-        if self.walls.iter().any(|wall| wall.piston.is_some()) {
-            return Some("a piston");
-        }
-        if self.driven.iter().any(Driven::is_for_a_while) {
-            return Some("grains that are driven for a part of the run (`driven.….start`, `stop`)");
-        }
-        if self.springs.is_some() {
-            return Some("contacts with springs at the start (`springs = false` next to the state omits them)");
-        }
-        self.walls.iter().any(|wall| wall.until.is_some()).then_some("walls that are removed")
+        let is_driven_for_a_while = self.driven.iter().any(Driven::is_for_a_while);
+        let features = [
+            (!self.stays.entries.is_empty(), "grains that are poured"),
+            (self.stays.removal.is_some(), "grains that are removed"),
+            (self.walls.iter().any(|wall| wall.piston.is_some()), "a piston"),
+            (is_driven_for_a_while, "grains that are driven for a part of the run (`driven.….start`, `stop`)"),
+            (
+                self.springs.is_some(),
+                "contacts with springs at the start (`springs = false` next to the state omits them)",
+            ),
+            (self.walls.iter().any(|wall| wall.until.is_some()), "walls that are removed"),
+        ];
+        features.into_iter().find_map(|(is_used, words)| is_used.then_some(words))
     }
 
     /// Returns a description of a snapshot quantity that is an average over time; `None` if the scene requests none.

@@ -53,7 +53,6 @@ impl Terms {
     /// Properties of central differences, which are of second order in the time step. The time steps suit contact
     /// springs.
     pub const SECOND_ORDER: Self = Self {
-        resolution: Resolution::CriticalFraction(0.02),
         order: Some(Order {
             expected: 2.0,
             levels: [
@@ -62,9 +61,7 @@ impl Terms {
                 Resolution::CriticalFraction(0.0025),
             ],
         }),
-        less: &[],
-        in_space: true,
-        long: false,
+        ..Self::at(Resolution::CriticalFraction(0.02))
     };
 
     /// Returns properties with a resolution, and without a claimed order or limitations.
