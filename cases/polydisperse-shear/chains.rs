@@ -118,15 +118,8 @@ mod tests {
     #[test]
     fn a_pressed_row_is_a_chain() {
         let grain = |id: u32, x: f64, y: f64| {
-            let start = Grain {
-                material: 0,
-                radius: 0.5,
-                mass: 1.0,
-                inertia: 1.0,
-                position: Vector3::new(x, y, 0.0),
-                velocity: Vector3::zeros(),
-                spin: Vector3::zeros(),
-            };
+            let position = Vector3::new(x, y, 0.0);
+            let start = Grain { radius: 0.5, mass: 1.0, inertia: 1.0, position, ..Grain::default() };
             GrainState::start(id, &start)
         };
         let grains: Vec<GrainState> =

@@ -89,8 +89,7 @@ mod tests {
             let x = f64::from(id) - 0.5;
             let (position, velocity) =
                 (Vector3::new(x, (3.0 + x * time).rem_euclid(4.0), 0.0), Vector3::new(0.0, x, 0.0));
-            let spin = Vector3::zeros();
-            let grain = Grain { material: 0, radius: 0.5, mass: 1.0, inertia: 0.125, position, velocity, spin };
+            let grain = Grain { radius: 0.5, mass: 1.0, inertia: 0.125, position, velocity, ..Grain::default() };
             GrainState::start(id, &grain)
         };
         Snapshot {

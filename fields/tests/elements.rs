@@ -14,8 +14,7 @@ use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::{Matrix3, Vector3};
 
 fn grain(id: u32, position: Vector3<f64>) -> GrainState {
-    let (velocity, spin) = (Vector3::zeros(), Vector3::zeros());
-    GrainState::start(id, &Grain { material: 0, radius: 0.5, mass: 1.0, inertia: 0.1, position, velocity, spin })
+    GrainState::start(id, &Grain { radius: 0.5, mass: 1.0, inertia: 0.1, position, ..Grain::default() })
 }
 
 fn snapshot(grains: Vec<GrainState>, high: Vector3<f64>, periodic: [bool; 3]) -> Snapshot {

@@ -151,15 +151,7 @@ mod tests {
     /// periods away. They overlap by half a radius.
     #[test]
     fn grains_far_from_a_periodic_domain_meet_those_within() {
-        let grain = |x: f64| Grain {
-            material: 0,
-            radius: 0.1,
-            mass: 1.0,
-            inertia: 1.0,
-            position: Vector3::new(x, 0.5, 0.0),
-            velocity: Vector3::zeros(),
-            spin: Vector3::zeros(),
-        };
+        let grain = |x: f64| Grain { radius: 0.1, position: Vector3::new(x, 0.5, 0.0), ..Grain::default() };
         let domain = Domain { low: Vector3::zeros(), high: Vector3::repeat(4.0), periodic: [true, false, false] };
         let found = deepest(&[grain(4001.0), grain(2.5), grain(1.15)], &[], Some(&domain), 1.0).unwrap();
         assert!(matches!(found, DeepestOverlap::Grains(0, 2, _)) && (found.ratio() - 0.5).abs() < 1e-9, "{found:?}");
@@ -201,15 +193,7 @@ mod tests {
     /// Comparing all pairs of a million grains at one position would take hours.
     #[test]
     fn grains_in_one_place_are_found_at_once() {
-        let grain = Grain {
-            material: 0,
-            radius: 0.1,
-            mass: 1.0,
-            inertia: 1.0,
-            position: Vector3::zeros(),
-            velocity: Vector3::zeros(),
-            spin: Vector3::zeros(),
-        };
+        let grain = Grain { radius: 0.1, ..Grain::default() };
         assert!(deepest(&vec![grain; 1_000_000], &[], None, 1.0).is_some_and(|found| found.ratio() == 2.0));
     }
 }

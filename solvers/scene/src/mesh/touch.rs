@@ -115,9 +115,12 @@ mod tests {
         found
     }
 
-    /// Returns a cube with edges of 1 m and a corner at the origin.
-    fn cube() -> Surface {
-        let corner = |bits: usize| [0, 1, 2].map(|axis| f64::from((bits >> axis & 1) as u8));
+    /// Returns a block with edges of 1 m along x and y, a height (m) along z, and a corner at the origin.
+    fn block(height: f64) -> Surface {
+        let corner = |bits: usize| {
+            let [x, y, z] = [0, 1, 2].map(|axis| f64::from((bits >> axis & 1) as u8));
+            [x, y, height * z]
+        };
         let mut triangles = Vec::new();
         for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
             triangles.push([a, b, c].map(corner));
@@ -128,7 +131,7 @@ mod tests {
 
     #[test]
     fn a_cube_has_six_patches_twelve_ridges_and_eight_corners() {
-        assert_eq!(cube().parts(), [6, 12, 8]);
+        assert_eq!(block(1.0).parts(), [6, 12, 8]);
     }
 
     /// A sphere on a plane of many triangles has one contact at every position.
@@ -159,7 +162,7 @@ mod tests {
     /// three.
     #[test]
     fn a_cube_is_touched_as_a_cube() {
-        let cube = cube();
+        let cube = block(1.0);
         for (centre, distance) in [
             ([0.5, 0.5, 1.1], 0.1),
             ([0.2, 0.2, 1.1], 0.1),
@@ -180,15 +183,7 @@ mod tests {
     /// The far side of a thin plate lies behind the near side, so a sphere is in contact with the near side only.
     #[test]
     fn a_thin_plate_is_touched_on_one_side() {
-        let thin = |bits: usize| {
-            [f64::from((bits & 1) as u8), f64::from((bits >> 1 & 1) as u8), 1e-3 * f64::from((bits >> 2) as u8)]
-        };
-        let mut triangles = Vec::new();
-        for [a, b, c, d] in [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]] {
-            triangles.push([a, b, c].map(thin));
-            triangles.push([a, c, d].map(thin));
-        }
-        let plate = surface(&triangles, false);
+        let plate = block(1e-3);
         for [x, y] in [[0.5, 0.4], [0.5, 0.5], [1.0, 0.3]] {
             assert_eq!(touched(&plate, [x, y, 0.091], 0.1).len(), 1);
         }
