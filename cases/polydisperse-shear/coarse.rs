@@ -157,7 +157,7 @@ fn volume(done: &FinishedRun) -> Result<f64, MissingData> {
 fn moved(scene: &mut Scene) {
     let Some(domain) = scene.domain else { return };
     let (low, length) = (domain.low.y, domain.high.y - domain.low.y);
-    for grain in &mut scene.grains {
+    for grain in scene.grains.iter_mut() {
         grain.position.y = low + (grain.position.y + MOVED * length - low).rem_euclid(length);
     }
 }

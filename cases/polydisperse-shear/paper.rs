@@ -35,7 +35,7 @@ fn other_side(scene: &mut Scene) {
 /// Stops the walls and enlarges the grains slightly, for a negative control in which the force chains do not change.
 fn swollen(scene: &mut Scene) {
     Effect::MovingWalls.switch_off(scene);
-    for grain in &mut scene.grains {
+    for grain in scene.grains.iter_mut() {
         grain.radius *= 1.01;
     }
 }
@@ -141,7 +141,7 @@ fn on_springs() -> Vec<Claim> {
         .within(judged(0.4, "spread between packings, and another kind of contact: the grains of the prototype deform"))
         .refuses(
             Control::scene("grains of three hundredths of the mass", |scene| {
-                for grain in &mut scene.grains {
+                for grain in scene.grains.iter_mut() {
                     (grain.mass, grain.inertia) = (0.03 * grain.mass, 0.03 * grain.inertia);
                 }
             })

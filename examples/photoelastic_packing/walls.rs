@@ -113,7 +113,7 @@ pub(crate) fn go_on_from(scene: &mut Scene, snapshot: &Snapshot) {
 
 /// Sets the velocities and spins of all discs to zero.
 pub(crate) fn stop(scene: &mut Scene) {
-    for grain in &mut scene.grains {
+    for grain in scene.grains.iter_mut() {
         (grain.velocity, grain.spin) = (Vector3::zeros(), Vector3::zeros());
     }
 }

@@ -73,7 +73,7 @@ impl Flaw {
     fn spoil(self, scene: &mut Scene, run: u64) {
         let flat = scene.dimension == Dimension::Two;
         let turns = scene.walls.iter().any(|wall| wall.motion.is_moving());
-        for grain in &mut scene.grains {
+        for grain in scene.grains.iter_mut() {
             match self {
                 Self::Drag => grain.velocity *= 1.0 - SIZE,
                 Self::StrongDrag => grain.velocity *= 1.0 - LARGE,

@@ -107,7 +107,7 @@ fn in_frame(rows: &Rows<'_>, frame: impl Fn(&Scene) -> Frame) -> Vec<Verdict> {
         rows,
         |scene| {
             let Frame { turn, speed } = frame(scene);
-            for grain in &mut scene.grains {
+            for grain in scene.grains.iter_mut() {
                 grain.position = turn * grain.position;
                 grain.velocity = turn * grain.velocity + speed;
                 grain.spin = of_spin(turn) * grain.spin;

@@ -2,7 +2,7 @@
 //! and the contact history. A LAMMPS data file does not contain this history, although a heap is stable only with its
 //! friction springs.
 
-use crate::scene::Grain;
+use crate::grain::Grain;
 use serde::{Deserialize, Serialize};
 
 /// Final state of a run.

@@ -15,6 +15,7 @@ pub mod error;
 pub mod file;
 pub mod function;
 pub mod generate;
+mod grain;
 pub mod manufactured;
 pub mod material;
 pub mod memory;

@@ -182,7 +182,7 @@ fn perturb(scene: &mut Scene, turns: bool) {
     };
     let row = scene.grains.len() > 1 && scene.grains.iter().all(|grain| grain.position.y == scene.grains[0].position.y);
     let dimensions = scene.dimension.count();
-    for grain in &mut scene.grains {
+    for grain in scene.grains.iter_mut() {
         for axis in 0..if row { 1 } else { dimensions } {
             grain.position[axis] += PERTURBATION * dice();
         }
