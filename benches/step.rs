@@ -10,10 +10,8 @@ use grainbench::dem::convention::Convention;
 use grainbench::dem::solver::Dem;
 use grainbench::scene::contact_law::ContactLaw;
 use grainbench::scene::scene::Scene;
-use grainbench::scene::source::SceneSource;
 use grainbench::solver::drive::Stepper;
 use std::hint::black_box;
-use std::path::Path;
 
 fn start(scene: &Scene, convention: Convention, time_step: f64) -> Box<dyn Stepper> {
     Dem::new(convention).start(scene, time_step).expect("the scene runs")
@@ -39,9 +37,7 @@ radius = 1.0
 lattice = {{ origin = [0.0, 0.0], spacing = [1.999, 1.999], count = [{count}, {count}] }}
 "#
     );
-    SceneSource::from_text("lattice", Path::new(""), &text)
-        .scene(&grainbench::scene::resolve::no_data_file)
-        .expect("the scene is right")
+    Scene::from_text("lattice", &text).expect("the scene is right")
 }
 
 /// Adds a material with friction that no grain has. The kernel then computes friction, but friction has no effect.

@@ -3,8 +3,6 @@
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
-use std::path::Path;
 
 /// Scene with a name for its results.
 pub(super) struct NamedScene {
@@ -81,8 +79,7 @@ fn grains(title: &str, duration: f64, rows: &[Row]) -> String {
 
 /// Builds a scene from the parts of a scene file. `frictional` states that grains exert torques on each other.
 pub(super) fn scene_of(name: &'static str, parts: &[&str], frictional: bool) -> Result<NamedScene, SceneError> {
-    let source = SceneSource::from_text(&format!("conformance/{name}"), Path::new(""), &parts.concat());
-    Ok(NamedScene { name, scene: source.scene(&grainbench_scene::resolve::no_data_file)?, frictional })
+    Ok(NamedScene { name, scene: Scene::from_text(&format!("conformance/{name}"), &parts.concat())?, frictional })
 }
 
 /// Returns collisions in free space in two and three dimensions, without friction or with friction and dashpots.

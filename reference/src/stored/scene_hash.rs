@@ -182,11 +182,9 @@ impl Numbers {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use grainbench_scene::source::SceneSource;
     use grainbench_solver::resolution::Resolution;
     use nalgebra::Vector3;
     use proptest::prelude::*;
-    use std::path::Path;
 
     const SCENE: &str = include_str!("../../../tests/scenes/flight.toml");
 
@@ -226,8 +224,7 @@ mod tests {
 
     #[test]
     fn physics_counts_and_titles_do_not() {
-        let scene =
-            SceneSource::from_text("s", Path::new("."), SCENE).scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let scene = Scene::from_text("s", SCENE).unwrap();
         let hash = |change: fn(&mut Scene), step: f64| {
             let mut scene = scene.clone();
             change(&mut scene);

@@ -9,10 +9,8 @@ use crate::solver::loops;
 use grainbench_lanes::{Processor, Team};
 use grainbench_scene::contact_law::{ContactLaw, Springs};
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::space::{Plane, Solid, Space};
 use std::fmt::Write as _;
-use std::path::Path;
 
 /// Returns a scene with grains of two materials in a box with periodic faces and a floor. Some grains are in contact at
 /// the start, others collide later.
@@ -49,8 +47,7 @@ fn scene(dimension: usize) -> Scene {
             if dimension == 2 { format!("{odd:?}") } else { vector(odd, -odd, 0.5) },
         );
     }
-    let source = SceneSource::from_text("grains", Path::new(""), &text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
+    Scene::from_text("grains", &text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// Returns the state after 300 steps and the recorded contacts, as text.
@@ -163,8 +160,7 @@ fn ball_under_beads() -> Scene {
          [grains.ball]\nmaterial = 'm'\nradius = 3.0\nposition = [6.4, 6.4, -3.4]\nvelocity = [0.0, 0.0, 2.0]\n\
          [grains.beads]\nmaterial = 'm'\nradius = 0.5\n\
          lattice = { origin = [0.0, 0.0, 0.0], spacing = [0.99, 0.99, 0.99], count = [14, 14, 8] }\n";
-    let source = SceneSource::from_text("ball", Path::new(""), text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_or_else(|error| panic!("{error}"))
+    Scene::from_text("ball", text).unwrap_or_else(|error| panic!("{error}"))
 }
 
 /// In a call with many cycles, the beads must not move before the forces in the row of the ball are computed. The final

@@ -9,9 +9,7 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::effects::Effects;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use std::collections::BTreeSet;
-use std::path::Path;
 
 /// Number of compiled kernels, in two and three dimensions. There are four normal stages. Each is combined with no
 /// friction (1 kernel), or with friction (4 kernels): with or without rolling resistance, for two transports of springs
@@ -44,8 +42,7 @@ fn law_with_everything(hertz: bool) -> ContactLaw {
 /// Returns a scene of two grains and a moving wall with every effect, for Hertz contacts or for linear springs.
 fn scene_with_everything(dimension: usize, hertz: bool) -> Scene {
     let texts = [include_str!("scenes/everything-2d.toml"), include_str!("scenes/everything-3d.toml")];
-    let source = SceneSource::from_text("everything", Path::new(""), texts[dimension - 2]);
-    let mut scene = source.scene(&grainbench_scene::resolve::no_data_file).unwrap();
+    let mut scene = Scene::from_text("everything", texts[dimension - 2]).unwrap();
     scene.change_laws(|law| *law = law_with_everything(hertz));
     let off: Vec<Effect> = effects().filter(|effect| !effect.is_on(&scene)).collect();
     assert!(off == if hertz { vec![] } else { vec![Effect::Hertz] }, "{off:?} are off");

@@ -9,16 +9,13 @@ use criterion::{Criterion, Throughput, criterion_group, criterion_main};
 use grainbench_mpm::options::{Contact, Setting};
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::record::Cost;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
 use std::time::Duration;
 
 fn scene(text: &str) -> Scene {
-    let source = SceneSource::from_text("bench", Path::new(""), &format!("title = 'bench'\ndimension = 2\n{text}"));
-    source.scene(&grainbench_scene::resolve::no_data_file).expect("the scene is right")
+    Scene::from_text("bench", &format!("title = 'bench'\ndimension = 2\n{text}")).expect("the scene is right")
 }
 
 /// Returns a free vibrating square of 122.5 × 122.5 cells.

@@ -3,16 +3,13 @@
 use crate::options::Setting;
 use crate::simulation::Simulation;
 use crate::solver::{Mpm, Plan};
-use grainbench_scene::source::SceneSource;
+use grainbench_scene::scene::Scene;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::space::Space;
-use std::path::Path;
 
 /// Returns a simulation of a scene before its first step, and the number of steps of the run.
 pub(crate) fn prepared<S: Space>(setting: Setting, text: &str, cells: f64, points: u32) -> (Simulation<S>, u64) {
-    let text = format!("title = 'test'\n{text}");
-    let source = SceneSource::from_text("test", Path::new(""), &text);
-    let scene = source.scene(&grainbench_scene::resolve::no_data_file).expect("the scene is right");
+    let scene = Scene::from_text("test", &format!("title = 'test'\n{text}")).expect("the scene is right");
     let solver = Mpm { setting, ..Mpm::BEST };
     let plan = solver.plan(&scene, &Resolution::grid(cells, points)).expect("the resolution is right");
     let Plan { lattice, points, time_step, critical, steps } = plan;

@@ -239,8 +239,6 @@ impl Stepper for Simulation<'_> {
 mod tests {
     use super::*;
     use crate::settings::Settings;
-    use grainbench_scene::source::SceneSource;
-    use std::path::Path;
 
     /// An engine that reports one contact.
     struct OneContactEngine(LoadedContact);
@@ -267,8 +265,7 @@ mod tests {
             contacts.m = { between = ['m', 'm'], normal_stiffness = 1.0 }\n\
             [grains.g]\nmaterial = 'm'\nradius = 0.5\nlattice = { origin = [0.0, 0.0], spacing = [0.9, 1.0], count = [2, 1] }\n\
             [walls.w]\nmaterial = 'm'\nplane = { point = [-0.4, 0.0], normal = [1.0, 0.0] }\n";
-        let scene =
-            SceneSource::from_text("t", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap();
+        let scene = Scene::from_text("t", text).unwrap();
         let settings = Settings::default();
         let stepping = Stepping { time_step: 0.1, iterations: 4, length: 1.0, mass: 1.0, settings };
         for (other, normal) in [(Side::Grain(1), Vector3::x()), (Side::Wall(0), -Vector3::x())] {

@@ -6,17 +6,15 @@
 use grainbench_rigid::settings::Settings;
 use grainbench_rigid::solver::Rigid;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::{Cause, RunError};
 use grainbench_solver::record::{Cost, Partner, Record};
 use grainbench_solver::resolution::Resolution;
 use nalgebra::Vector3;
 use std::f64::consts::{PI, TAU};
-use std::path::Path;
 
 fn scene(text: &str) -> Scene {
-    SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    Scene::from_text("test", text).unwrap()
 }
 
 fn run(scene: &Scene, substeps: u32) -> Record {

@@ -334,8 +334,6 @@ mod tests {
     }
 
     use super::*;
-    use crate::source::SceneSource;
-    use std::path::Path;
 
     /// The table of laws gets a row and a column. The laws of the scene stay with their pairs of materials.
     #[test]
@@ -347,8 +345,7 @@ mod tests {
                     contacts.bb = { between = ['b', 'b'], normal_stiffness = 3.0 }\n\
                     grains.a = { material = 'a', radius = 1.0, position = [0.0, 1.0] }\n\
                     grains.b = { material = 'b', radius = 1.0, position = [9.0, 1.0] }\n";
-        let source = SceneSource::from_text("two-materials", Path::new(""), text);
-        let mut scene = source.scene(&crate::resolve::no_data_file).unwrap();
+        let mut scene = Scene::from_text("two-materials", text).unwrap();
         assert!(Effect::Friction.switch_on_idly(&mut scene));
         let stiffness = scene.laws.iter().map(|law| law.map(|law| law.normal_stiffness()));
         let [a, ab, b] = [1.0, 2.0, 3.0].map(Some);
@@ -363,8 +360,7 @@ mod tests {
                     contacts.all = { between = ['disc', 'disc'], normal_stiffness = 1.0 }\n\
                     grains.a = { material = 'disc', radius = 1.0, position = [0.0, 1.0] }\n\
                     walls.floor = { material = 'disc', plane = { point = [0.0, 0.0], normal = [0.0, 1.0] } }\n";
-        let source = SceneSource::from_text("two-discs", Path::new(""), text);
-        let scene = source.scene(&crate::resolve::no_data_file).unwrap();
+        let scene = Scene::from_text("two-discs", text).unwrap();
         for effect in Effect::ALL {
             let mut idle = scene.clone();
             assert!(!effect.is_on(&scene), "{effect:?}");

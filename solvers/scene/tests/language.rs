@@ -14,8 +14,7 @@ const SCENE: &str = "title = 't'\ndimension = 2\nduration = 1.0\nmaterials.m.den
 
 fn read(periodic: &str, group: &str) -> Result<Scene, String> {
     let text = SCENE.replace("PERIODIC", periodic) + group;
-    let scene = SceneSource::from_text("s.toml", Path::new(""), &text).scene(&grainbench_scene::resolve::no_data_file);
-    scene.map_err(|error| error.to_string())
+    Scene::from_text("s.toml", &text).map_err(|error| error.to_string())
 }
 
 const LATTICE: &str = "radius = 0.5\nlattice = { origin = [1.0, 1.0], spacing = [1.0, 1.0], count = [3, 3] }\n";

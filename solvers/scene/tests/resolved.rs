@@ -6,18 +6,14 @@
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::material::Constitutive;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
-use std::path::Path;
 
 fn scene(text: &str) -> Scene {
-    let source = SceneSource::from_text("test", Path::new(""), text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    Scene::from_text("test", text).unwrap()
 }
 
 /// Returns the error message of an invalid scene.
 fn refusal(text: &str) -> String {
-    let source = SceneSource::from_text("test", Path::new(""), text);
-    source.scene(&grainbench_scene::resolve::no_data_file).unwrap_err().to_string()
+    Scene::from_text("test", text).unwrap_err().to_string()
 }
 
 fn close(found: f64, expected: f64) {

@@ -3,15 +3,13 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::record::{BodyState, ContactState, GrainState, Partner, Snapshot, StepState};
 use grainbench_solver::recorder::Recorder;
 use grainbench_solver::virial;
 use nalgebra::Vector3;
-use std::path::Path;
 
 fn scene(text: &str) -> Scene {
-    SceneSource::from_text("test", Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file).unwrap()
+    Scene::from_text("test", text).unwrap()
 }
 
 /// Returns a contact of the grain 1 in the plane, from the overlap (m) and the forces (N).

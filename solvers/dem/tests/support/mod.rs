@@ -4,13 +4,10 @@
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_scene::error::SceneError;
-use grainbench_scene::resolve::no_data_file;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
 
 pub const MATERIAL: &str = r#"
 title = "test"
@@ -29,7 +26,7 @@ pub fn run_as(text: &str, convention: Convention) -> Record {
 
 /// Returns the scene of a text, without [`MATERIAL`].
 pub fn scene(text: &str) -> Result<Scene, SceneError> {
-    SceneSource::from_text("test", Path::new(""), text).scene(&no_data_file)
+    Scene::from_text("test", text)
 }
 
 pub fn run_at(text: &str, convention: Convention, resolution: &Resolution) -> Record {

@@ -3,20 +3,16 @@
 use grainbench_mpm::options::Setting;
 use grainbench_mpm::solver::Mpm;
 use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
-use std::path::Path;
 
 /// Speed of each of two bodies that collide: .01 of the speed of sound (m/s).
 pub(crate) const SPEED: f64 = 0.042_426_406_871_192_85;
 
 pub(crate) fn scene(text: &str) -> Scene {
-    SceneSource::from_text("test", Path::new(""), &format!("title = 'test'\n{text}"))
-        .scene(&grainbench_scene::resolve::no_data_file)
-        .unwrap()
+    Scene::from_text("test", &format!("title = 'test'\n{text}")).unwrap()
 }
 
 pub(crate) fn try_run(

@@ -73,6 +73,16 @@ impl SceneSource {
     }
 }
 
+impl Scene {
+    /// Reads a scene from a text that names no other file. `name` stands for the path of the file in errors.
+    ///
+    /// # Errors
+    /// When the scene has an error.
+    pub fn from_text(name: &str, text: &str) -> Result<Self, SceneError> {
+        SceneSource::from_text(name, Path::new(""), text).scene(&no_data_file)
+    }
+}
+
 /// Range of grain indices for each group of the file, by name.
 type Groups = IndexMap<String, Range<usize>>;
 
