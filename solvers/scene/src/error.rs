@@ -25,6 +25,11 @@ impl SceneError {
     pub fn of_file(place: String, expected: &str, found: String) -> Self {
         Self { place, key: String::new(), expected: expected.to_owned(), found, help: None }
     }
+
+    /// Returns the error with a suggested correction.
+    pub(crate) fn help(self, help: &str) -> Self {
+        Self { help: Some(help.to_owned()), ..self }
+    }
 }
 
 /// Returns the error message, in which control characters from the scene file are not yet escaped.

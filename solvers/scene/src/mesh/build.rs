@@ -1,11 +1,12 @@
 //! Construction of a surface from the facets of a file. Corners are merged, errors are detected, and the connectivity
 //! is computed.
 
-use super::flaw::Flaw;
+use super::flaw::flaw;
 use super::geometry::{Part, nearest};
 use super::groups::{Edge, Groups};
 use super::stl::Facet;
 use super::tree::Tree;
+use crate::error::SceneError;
 use nalgebra::Vector3;
 use std::collections::BTreeMap;
 
@@ -70,7 +71,7 @@ impl Surface {
     /// - When an edge belongs to more than two triangles, or to only one although open edges are not allowed.
     /// - When a corner of an open edge lies on another open edge, between its ends.
     /// - When the normals of a closed surface point inwards instead of outwards, or the reverse for `inward`.
-    pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, Flaw> {
+    pub fn new(facets: &[Facet], reading: Reading) -> Result<Self, SceneError> {
         let (corners, faces) = merged(facets, reading);
         let triangles: Vec<_> = faces.iter().map(|face| face.map(|corner| corners[corner as usize])).collect();
         let names = Names(facets);
@@ -119,13 +120,14 @@ impl Surface {
         self.triangles.iter().map(tetrahedron).sum()
     }
 
-    fn refuse_wrong_side(&self, inward: bool) -> Result<(), Flaw> {
+    fn refuse_wrong_side(&self, inward: bool) -> Result<(), SceneError> {
         match (self.volume() < 0.0, inward) {
             (true, false) => {
-                Err(Flaw::new("normals that point out of the enclosed volume", "all point into the enclosed volume")
+                Err(flaw(None, "normals that point out of the enclosed volume", "all point into the enclosed volume")
                     .help("the triangles are inverted; if this is intended, set `inward = true`"))
             }
-            (false, true) => Err(Flaw::new(
+            (false, true) => Err(flaw(
+                None,
                 "normals that point into the enclosed volume (`inward`)",
                 "all point out of the enclosed volume",
             )),
@@ -135,7 +137,7 @@ impl Surface {
 
     /// Rejects a surface if a corner of an open edge lies on another open edge, between its ends. The surface seems to
     /// be closed there but has two rims, and a grain would be in contact with both rims.
-    fn refuse_corners_on_edges(&self, merge: f64, names: Names<'_>) -> Result<(), Flaw> {
+    fn refuse_corners_on_edges(&self, merge: f64, names: Names<'_>) -> Result<(), SceneError> {
         let (low, high) = self.bounds();
         let near = merge.max(1e-9 * (high - low).norm());
         for edge in self.edges.iter().filter(|edge| edge.is_open()) {
@@ -258,8 +260,8 @@ impl Names<'_> {
     }
 
     /// Returns an error at the position of a facet.
-    fn flaw(self, face: u32, expected: &str, found: &str) -> Flaw {
-        Flaw::new(expected, found).at(self.0[face as usize].place)
+    fn flaw(self, face: u32, expected: &str, found: &str) -> SceneError {
+        flaw(Some(self.0[face as usize].place), expected, found)
     }
 }
 
@@ -268,7 +270,7 @@ fn normals(
     faces: &[[u32; 3]],
     triangles: &[[Vector3<f64>; 3]],
     names: Names<'_>,
-) -> Result<Vec<Vector3<f64>>, Flaw> {
+) -> Result<Vec<Vector3<f64>>, SceneError> {
     let triangle_normal = |number: usize| {
         let ([a, b, c], [i, j, k]) = (triangles[number], faces[number]);
         let across = (b - a).cross(&(c - a));
@@ -290,7 +292,7 @@ fn normals(
     (0..facets.len()).map(triangle_normal).collect()
 }
 
-fn refuse_twice(faces: &[[u32; 3]], names: Names<'_>) -> Result<(), Flaw> {
+fn refuse_twice(faces: &[[u32; 3]], names: Names<'_>) -> Result<(), SceneError> {
     let mut known = BTreeMap::new();
     for (number, face) in faces.iter().enumerate() {
         let mut sorted = *face;
@@ -309,7 +311,7 @@ fn edges(
     corners: &[Vector3<f64>],
     normals: &[Vector3<f64>],
     names: Names<'_>,
-) -> Result<(Vec<Edge>, Vec<[u32; 3]>), Flaw> {
+) -> Result<(Vec<Edge>, Vec<[u32; 3]>), SceneError> {
     let (mut edges, mut sides): (Vec<Edge>, Vec<[u32; 3]>) = (Vec::new(), Vec::new());
     let mut known: BTreeMap<[u32; 2], u32> = BTreeMap::new();
     for (number, face) in faces.iter().enumerate() {
@@ -359,7 +361,7 @@ fn edges(
     Ok((edges, sides))
 }
 
-fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], names: Names<'_>) -> Flaw {
+fn open_flaw(edge: &Edge, count: usize, corners: &[Vector3<f64>], names: Names<'_>) -> SceneError {
     let [a, b] = edge.ends.map(|end| corners[end as usize]);
     let found = format!(
         "{count} edges of one triangle, the first of {} between {:?} and {:?}",

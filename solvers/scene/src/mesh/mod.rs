@@ -13,7 +13,7 @@ mod touch;
 mod tree;
 
 pub use build::{Reading, Surface};
-pub use flaw::{Flaw, Place};
+pub use flaw::Place;
 pub use touch::SphereContact;
 
 use crate::motion::{Displacement, Motion};

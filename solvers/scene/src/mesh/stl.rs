@@ -1,6 +1,7 @@
 //! Reader of STL files in text or binary form. It stores the position of each triangle in the file for error messages.
 
-use super::flaw::{EACH, Flaw, HEAD, Place};
+use super::flaw::{EACH, HEAD, Place, flaw};
+use crate::error::SceneError;
 use nalgebra::Vector3;
 
 /// Triangle as stored in a file.
@@ -19,9 +20,9 @@ pub struct Facet {
 ///
 /// # Errors
 /// When the file is empty, is truncated, has additional data, or contains an invalid or infinite number.
-pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
+pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, SceneError> {
     if bytes.is_empty() {
-        return Err(Flaw::new("triangles as STL", "an empty file"));
+        return Err(flaw(None, "triangles as STL", "an empty file"));
     }
     let count = bytes.get(80..HEAD).map(|count| u32::from_le_bytes([count[0], count[1], count[2], count[3]]) as usize);
     let is_whole = count.is_some_and(|count| bytes.len() == HEAD + EACH * count);
@@ -29,15 +30,15 @@ pub fn read(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
     let says_solid = bytes[first..].get(..5).is_some_and(|word| word.eq_ignore_ascii_case(b"solid"));
     let facets = if !is_whole && says_solid && !bytes.contains(&0) { ascii(bytes)? } else { binary(bytes, count)? };
     if facets.is_empty() {
-        return Err(Flaw::new("at least one triangle", "none"));
+        return Err(flaw(None, "at least one triangle", "none"));
     }
     Ok(facets)
 }
 
-fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
+fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, SceneError> {
     let Some(count) = count else {
         let found = format!("{} bytes, less than the {HEAD} before the first triangle", bytes.len());
-        return Err(Flaw::new("an STL file, binary or as text that begins with `solid`", &found));
+        return Err(flaw(None, "an STL file, binary or as text that begins with `solid`", &found));
     };
     let triangles = bytes.len() - HEAD;
     let whole = triangles / EACH;
@@ -49,7 +50,7 @@ fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
         let expected = format!("{count} triangles, as byte 80 states, {} bytes in total", HEAD + EACH * count);
         let found = format!("{} bytes, {whole} triangles{rest}", bytes.len());
         let help = if whole < count { "the file is truncated" } else { "the file is longer than it states" };
-        return Err(Flaw::new(&expected, &found).help(help));
+        return Err(flaw(None, &expected, &found).help(help));
     }
     let number = |at: usize| f64::from(f32::from_le_bytes([bytes[at], bytes[at + 1], bytes[at + 2], bytes[at + 3]]));
     let vector = |at: usize| Vector3::new(number(at), number(at + 4), number(at + 8));
@@ -59,7 +60,7 @@ fn binary(bytes: &[u8], count: Option<usize>) -> Result<Vec<Facet>, Flaw> {
             let corners = [at + 12, at + 24, at + 36].map(vector);
             let facet_is = Facet { corners, normal: vector(at), place: Place::Byte(at) };
             match corners.iter().flatten().find(|number| !number.is_finite()) {
-                Some(number) => Err(Flaw::new("finite coordinates", &number.to_string()).at(facet_is.place)),
+                Some(number) => Err(flaw(Some(facet_is.place), "finite coordinates", &number.to_string())),
                 None => Ok(facet_is),
             }
         })
@@ -89,18 +90,18 @@ impl<'a> Words<'a> {
         self.text = &self.text[self.text.find('\n').unwrap_or(self.text.len())..];
     }
 
-    fn flaw(&self, expected: &str, found: Option<(&str, usize)>) -> Flaw {
+    fn flaw(&self, expected: &str, found: Option<(&str, usize)>) -> SceneError {
         match found {
             Some((word, line)) => {
                 let word: String = word.chars().take(40).collect();
-                Flaw::new(expected, &format!("`{word}`")).at(Place::Line(line))
+                flaw(Some(Place::Line(line)), expected, &format!("`{word}`"))
             }
-            None => Flaw::new(expected, "the end of the file").at(Place::Line(self.line)).help("the file is truncated"),
+            None => flaw(Some(Place::Line(self.line)), expected, "the end of the file").help("the file is truncated"),
         }
     }
 
     /// Reads the next word, which must be one of the expected words.
-    fn take(&mut self, expected: &[&str]) -> Result<(&'a str, usize), Flaw> {
+    fn take(&mut self, expected: &[&str]) -> Result<(&'a str, usize), SceneError> {
         let found = self.next();
         found.filter(|(word, _)| expected.iter().any(|expected| word.eq_ignore_ascii_case(expected))).ok_or_else(|| {
             let names: Vec<String> = expected.iter().map(|word| format!("`{word}`")).collect();
@@ -108,7 +109,7 @@ impl<'a> Words<'a> {
         })
     }
 
-    fn vector(&mut self) -> Result<Vector3<f64>, Flaw> {
+    fn vector(&mut self) -> Result<Vector3<f64>, SceneError> {
         let mut numbers = [0.0; 3];
         for number in &mut numbers {
             let found = self.next();
@@ -119,9 +120,9 @@ impl<'a> Words<'a> {
     }
 }
 
-fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, Flaw> {
+fn ascii(bytes: &[u8]) -> Result<Vec<Facet>, SceneError> {
     let text = std::str::from_utf8(bytes)
-        .map_err(|error| Flaw::new("text", &format!("other bytes after byte {}", error.valid_up_to())))?;
+        .map_err(|error| flaw(None, "text", &format!("other bytes after byte {}", error.valid_up_to())))?;
     let mut words = Words { text, line: 1 };
     let mut facets = Vec::new();
     words.take(&["solid"])?;

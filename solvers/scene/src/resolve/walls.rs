@@ -4,7 +4,7 @@ use super::Resolver;
 use crate::dimension::Dimension;
 use crate::error::SceneError;
 use crate::file::{LengthUnit, MeshSpec, WallSpec};
-use crate::mesh::{Flaw, Mesh, Place, Reading, Surface, stl};
+use crate::mesh::{Mesh, Reading, Surface, stl};
 use crate::motion::Motion;
 use crate::scene::{Domain, Grain, Piston, Wall, WallShape};
 use nalgebra::Vector3;
@@ -127,11 +127,9 @@ impl Resolver<'_> {
         };
         let reading = Reading { unit, merge, open: spec.open, inward: spec.inward };
         let read = stl::read(&bytes).and_then(|facets| Surface::new(&facets, reading));
-        let surface = read.map_err(|Flaw { expected, found, place, help }| {
-            let (key, file) = (key(".file"), &spec.file);
-            let in_file = place.map(Place::after_name).unwrap_or_default();
-            let place = format!("{}: {key}: {file}{in_file}", check.source.place(&key));
-            SceneError { place, key: String::new(), expected, found, help }
+        let surface = read.map_err(|error| {
+            let key = key(".file");
+            SceneError { place: format!("{}: {key}: {}{}", check.source.place(&key), spec.file, error.place), ..error }
         })?;
         Ok(WallShape::Mesh(Mesh::at_rest(surface)))
     }
