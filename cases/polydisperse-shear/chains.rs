@@ -136,8 +136,7 @@ mod tests {
                 normal: between.normalize(),
                 overlap: 0.01,
                 normal_force: force,
-                shear_force: Vector3::zeros(),
-                slipping: false,
+                ..ContactState::default()
             }
         };
         let contacts = vec![

@@ -154,12 +154,10 @@ mod tests {
             PointState {
                 owner: if x < 0.0 { Owner::Grain(1) } else { Owner::Grain(2) },
                 position: Vector3::new(x, (f64::from(j) + 0.5) * width, 0.0),
-                displacement: Vector3::zeros(),
-                velocity: Vector3::zeros(),
                 stress: [3.0 * x, x, 0.0, 0.0, 0.0, 0.0],
                 plastic_strain: 0.5,
-                rotation: 0.0,
                 volume: width * width,
+                ..PointState::default()
             }
         };
         (0..count * count).map(|at| point(at % count, at / count)).collect()

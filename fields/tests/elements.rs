@@ -52,8 +52,7 @@ fn lattice(deformation: &Matrix3<f64>, stiffness: f64) -> (Snapshot, Vec<Vector3
                 normal: between.normalize(),
                 overlap,
                 normal_force: stiffness * overlap,
-                shear_force: Vector3::zeros(),
-                slipping: false,
+                ..ContactState::default()
             });
         }
     }
@@ -208,12 +207,11 @@ fn no_choice_of_cells_gains_or_loses_anything() {
         .map(|id| ContactState {
             grain: id,
             partner: if id % 7 == 0 { Partner::Wall(0) } else { Partner::Grain(id + 1) },
-            point: Vector3::zeros(),
             normal: Vector3::from_fn(|_, _| odd.normal()).normalize(),
             overlap: 0.01 * odd.even(),
             normal_force: odd.even(),
             shear_force: Vector3::from_fn(|_, _| odd.normal()),
-            slipping: false,
+            ..ContactState::default()
         })
         .collect();
     let all: f64 = grains.iter().map(|grain| 4.0 / 3.0 * std::f64::consts::PI * grain.radius.powi(3)).sum();

@@ -48,8 +48,7 @@ pub(crate) fn snapshot() -> Snapshot {
                 normal: Vector3::new(0.0, -1.0, 0.0),
                 overlap: 0.25,
                 normal_force: 20.0,
-                shear_force: Vector3::zeros(),
-                slipping: false,
+                ..ContactState::default()
             },
         ]),
         walls: vec![WallState {

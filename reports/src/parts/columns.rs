@@ -1,8 +1,5 @@
 //! Conversion of rows to columns and back. Each type of row lists its columns once, for writing and for reading.
 
-use nalgebra::Vector3;
-use std::array;
-
 pub(super) enum Value<'r> {
     Whole(&'r mut i64),
     /// Number, which may be NaN.
@@ -13,66 +10,54 @@ pub(super) enum Value<'r> {
     Word(&'r mut String),
 }
 
-/// Visitor of the columns of a row, in a fixed order. One implementation reads the values; another one replaces them. The
-/// methods for the kinds of values return the values after the visit.
+/// Visitor of the columns of a row, in a fixed order. One implementation reads the values; another one replaces them.
 pub(super) trait Columns {
     fn visit(&mut self, name: &'static str, value: Value<'_>);
 
     /// Visits an integer of any type. A stored value that does not fit the type becomes 0; our own files contain no such value.
-    fn whole<T: TryFrom<i64> + TryInto<i64> + Default>(&mut self, name: &'static str, value: Option<T>) -> T {
-        let mut number = value.map_or(0, |value| value.try_into().unwrap_or(i64::MAX));
+    fn whole<T: TryFrom<i64> + TryInto<i64> + Copy + Default>(&mut self, name: &'static str, value: &mut T) {
+        let mut number = (*value).try_into().unwrap_or(i64::MAX);
         self.visit(name, Value::Whole(&mut number));
-        T::try_from(number).unwrap_or_default()
+        *value = T::try_from(number).unwrap_or_default();
     }
 
-    fn number(&mut self, name: &'static str, value: Option<f64>) -> f64 {
-        let mut number = value.unwrap_or_default();
-        self.visit(name, Value::Number(&mut number));
-        number
+    fn number(&mut self, name: &'static str, value: &mut f64) {
+        self.visit(name, Value::Number(value));
     }
 
-    fn told(&mut self, name: &'static str, mut value: Option<f64>) -> Option<f64> {
-        self.visit(name, Value::Told(&mut value));
-        value
+    fn numbers<'v>(&mut self, names: &[&'static str], values: impl IntoIterator<Item = &'v mut f64>) {
+        names.iter().zip(values).for_each(|(name, value)| self.number(name, value));
     }
 
-    fn flag(&mut self, name: &'static str, value: Option<bool>) -> bool {
-        let mut flag = value.unwrap_or_default();
-        self.visit(name, Value::Flag(&mut flag));
-        flag
+    fn flag(&mut self, name: &'static str, value: &mut bool) {
+        self.visit(name, Value::Flag(value));
     }
 
-    fn word(&mut self, name: &'static str, value: Option<&str>) -> String {
-        let mut word = value.unwrap_or_default().to_owned();
-        self.visit(name, Value::Word(&mut word));
-        word
+    fn word(&mut self, name: &'static str, value: &mut String) {
+        self.visit(name, Value::Word(value));
     }
 
-    fn numbers<const N: usize>(&mut self, names: [&'static str; N], value: Option<[f64; N]>) -> [f64; N] {
-        array::from_fn(|at| self.number(names[at], value.map(|numbers| numbers[at])))
-    }
-
-    fn vector(&mut self, names: [&'static str; 3], value: Option<Vector3<f64>>) -> Vector3<f64> {
-        self.numbers(names, value.map(Into::into)).into()
+    fn told(&mut self, name: &'static str, value: &mut Option<f64>) {
+        self.visit(name, Value::Told(value));
     }
 
     /// Visits several numbers that are either all present or all absent.
-    fn told_numbers<const N: usize>(&mut self, names: [&'static str; N], value: Option<[f64; N]>) -> Option<[f64; N]> {
-        let numbers: [Option<f64>; N] = array::from_fn(|at| self.told(names[at], value.map(|numbers| numbers[at])));
-        numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default))
-    }
-
-    fn told_vector(&mut self, names: [&'static str; 3], value: Option<Vector3<f64>>) -> Option<Vector3<f64>> {
-        self.told_numbers(names, value.map(Into::into)).map(Vector3::from)
+    fn told_numbers<T, const N: usize>(&mut self, names: [&'static str; N], value: &mut Option<T>)
+    where
+        T: AsRef<[f64; N]> + From<[f64; N]>,
+    {
+        let mut numbers = value.as_ref().map_or([None; N], |value| value.as_ref().map(Some));
+        names.into_iter().zip(&mut numbers).for_each(|(name, number)| self.told(name, number));
+        *value = numbers.iter().all(Option::is_some).then(|| numbers.map(Option::unwrap_or_default).into());
     }
 }
 
-pub(super) trait Row: Sized {
+pub(super) trait Row: Default {
     /// File name of the table, without extension.
     const TABLE: &'static str;
 
-    /// Visits the columns of a row, or of a row with default values. Returns the row with the values after the visits.
-    fn visit(row: Option<&Self>, columns: &mut impl Columns) -> Self;
+    /// Visits the columns of the row.
+    fn visit(&mut self, columns: &mut impl Columns);
 }
 
 /// Values of one column.
@@ -94,12 +79,12 @@ struct ColumnBuffer {
 }
 
 /// Returns the names and the values of the columns of some rows. Without rows, all columns are empty.
-pub(super) fn columns_of<R: Row>(rows: &[R]) -> Vec<(&'static str, Values)> {
+pub(super) fn columns_of<R: Row>(rows: &mut [R]) -> Vec<(&'static str, Values)> {
     let mut buffer = ColumnBuffer::default();
-    R::visit(None, &mut buffer);
+    R::default().visit(&mut buffer);
     for row in rows {
         buffer.next = Some(0);
-        R::visit(Some(row), &mut buffer);
+        row.visit(&mut buffer);
     }
     buffer.columns
 }
@@ -138,7 +123,9 @@ struct RowWriter<'v> {
 
 /// Returns `count` rows with the values of the columns.
 pub(super) fn rows_of<R: Row>(columns: &[Values], count: usize) -> Vec<R> {
-    (0..count).map(|row| R::visit(None, &mut RowWriter { columns, row, next: 0 })).collect()
+    let mut rows: Vec<R> = std::iter::repeat_with(R::default).take(count).collect();
+    rows.iter_mut().enumerate().for_each(|(row, read)| read.visit(&mut RowWriter { columns, row, next: 0 }));
+    rows
 }
 
 impl Columns for RowWriter<'_> {

@@ -28,6 +28,7 @@ pub(super) fn left_out(columns: &Columns) -> Vec<&'static str> {
 }
 
 /// Data of a snapshot that no other table contains.
+#[derive(Default)]
 pub(super) struct Frame {
     pub(super) bounds: (Vector3<f64>, Vector3<f64>),
     pub(super) periodic: [bool; 3],
@@ -37,68 +38,60 @@ pub(super) struct Frame {
 impl Row for Frame {
     const TABLE: &'static str = "snapshots";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        const PERIODIC: [&str; 3] = ["periodic_x", "periodic_y", "periodic_z"];
-        let low = columns.vector(["low_x", "low_y", "low_z"], row.map(|row| row.bounds.0));
-        let high = columns.vector(["high_x", "high_y", "high_z"], row.map(|row| row.bounds.1));
-        Self {
-            bounds: (low, high),
-            periodic: [0, 1, 2].map(|axis| columns.flag(PERIODIC[axis], row.map(|row| row.periodic[axis]))),
-            has_contacts: columns.flag("contacts_told", row.map(|row| row.has_contacts)),
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.numbers(&["low_x", "low_y", "low_z"], &mut self.bounds.0);
+        columns.numbers(&["high_x", "high_y", "high_z"], &mut self.bounds.1);
+        for (name, periodic) in ["periodic_x", "periodic_y", "periodic_z"].into_iter().zip(&mut self.periodic) {
+            columns.flag(name, periodic);
         }
+        columns.flag("contacts_told", &mut self.has_contacts);
     }
 }
 
 impl Row for GrainState {
     const TABLE: &'static str = "grains";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        let boxed = |numbers: Option<[f64; 6]>| numbers.map(Box::new);
-        Self {
-            id: columns.whole("id", row.map(|row| row.id)),
-            material: columns.whole("material", row.map(|row| row.material)),
-            radius: columns.number("radius", row.map(|row| row.radius)),
-            mass: columns.number("mass", row.map(|row| row.mass)),
-            position: columns.vector(PLACE, row.map(|row| row.position)),
-            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
-            spin: columns.vector(SPIN, row.map(|row| row.spin)),
-            angle: columns.told("angle", row.and_then(|row| row.angle)),
-            force: columns.told_vector(FORCE, row.and_then(|row| row.force)),
-            torque: columns.told_vector(TORQUE, row.and_then(|row| row.torque)),
-            plastic_strain: columns.number("plastic_strain", row.map(|row| row.plastic_strain)),
-            virial: boxed(columns.told_numbers(VIRIAL, row.and_then(|row| row.virial.as_deref().copied()))),
-            mean_virial: boxed(
-                columns.told_numbers(MEAN_VIRIAL, row.and_then(|row| row.mean_virial.as_deref().copied())),
-            ),
-        }
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.whole("id", &mut self.id);
+        columns.whole("material", &mut self.material);
+        columns.number("radius", &mut self.radius);
+        columns.number("mass", &mut self.mass);
+        columns.numbers(&PLACE, &mut self.position);
+        columns.numbers(&VELOCITY, &mut self.velocity);
+        columns.numbers(&SPIN, &mut self.spin);
+        columns.told("angle", &mut self.angle);
+        columns.told_numbers(FORCE, &mut self.force);
+        columns.told_numbers(TORQUE, &mut self.torque);
+        columns.number("plastic_strain", &mut self.plastic_strain);
+        columns.told_numbers(VIRIAL, &mut self.virial);
+        columns.told_numbers(MEAN_VIRIAL, &mut self.mean_virial);
     }
 }
 
 impl Row for ContactState {
     const TABLE: &'static str = "contacts";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        let grain = columns.whole("grain", row.map(|row| row.grain));
-        let (kind, number) = match row.map_or(Partner::Wall(0), |row| row.partner) {
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.whole("grain", &mut self.grain);
+        let (kind, mut number) = match self.partner {
             Partner::Grain(id) => ("grain", i64::from(id)),
             Partner::Body(place) => ("body", i64::from(place)),
             Partner::Wall(place) => ("wall", i64::from(place)),
         };
-        let (kind, number) = (columns.word("partner", Some(kind)), columns.whole("partner_number", Some(number)));
-        Self {
-            grain,
-            partner: match kind.as_str() {
-                "grain" => Partner::Grain(number as u32),
-                "body" => Partner::Body(number as u32),
-                _ => Partner::Wall(number as u16),
-            },
-            point: columns.vector(PLACE, row.map(|row| row.point)),
-            normal: columns.vector(["normal_x", "normal_y", "normal_z"], row.map(|row| row.normal)),
-            overlap: columns.number("overlap", row.map(|row| row.overlap)),
-            normal_force: columns.number("normal_force", row.map(|row| row.normal_force)),
-            shear_force: columns.vector(["shear_x", "shear_y", "shear_z"], row.map(|row| row.shear_force)),
-            slipping: columns.flag("slipping", row.map(|row| row.slipping)),
-        }
+        let mut kind = kind.to_owned();
+        columns.word("partner", &mut kind);
+        columns.whole("partner_number", &mut number);
+        self.partner = match kind.as_str() {
+            "grain" => Partner::Grain(number as u32),
+            "body" => Partner::Body(number as u32),
+            _ => Partner::Wall(number as u16),
+        };
+        columns.numbers(&PLACE, &mut self.point);
+        columns.numbers(&["normal_x", "normal_y", "normal_z"], &mut self.normal);
+        columns.number("overlap", &mut self.overlap);
+        columns.number("normal_force", &mut self.normal_force);
+        columns.numbers(&["shear_x", "shear_y", "shear_z"], &mut self.shear_force);
+        columns.flag("slipping", &mut self.slipping);
     }
 }
 
@@ -113,57 +106,56 @@ const CORNERS: [[&str; 3]; 4] = [
 impl Row for WallState {
     const TABLE: &'static str = "walls";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        let (name, infinite) =
-            (columns.word("name", row.map(|row| &*row.name)), columns.flag("infinite", row.map(|row| row.infinite)));
-        let corner = |at: usize| row.and_then(|row| row.corners.get(at).copied());
-        let corners = CORNERS.into_iter().enumerate();
-        let corners = corners.filter_map(|(at, names)| columns.told_vector(names, corner(at))).collect();
-        Self { name, infinite, corners, force: columns.told_vector(FORCE, row.and_then(|row| row.force)) }
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.word("name", &mut self.name);
+        columns.flag("infinite", &mut self.infinite);
+        let mut corners = [0, 1, 2, 3].map(|at| self.corners.get(at).copied());
+        CORNERS.into_iter().zip(&mut corners).for_each(|(names, corner)| columns.told_numbers(names, corner));
+        self.corners = corners.into_iter().flatten().collect();
+        columns.told_numbers(FORCE, &mut self.force);
     }
 }
 
 impl Row for BodyState {
     const TABLE: &'static str = "bodies";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        Self {
-            name: columns.word("name", row.map(|row| &*row.name)),
-            mass: columns.number("mass", row.map(|row| row.mass)),
-            inertia: columns.number("inertia", row.map(|row| row.inertia)),
-            position: columns.vector(PLACE, row.map(|row| row.position)),
-            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
-            spin: columns.vector(SPIN, row.map(|row| row.spin)),
-            angle: columns.number("angle", row.map(|row| row.angle)),
-            force: columns.vector(FORCE, row.map(|row| row.force)),
-        }
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.word("name", &mut self.name);
+        columns.number("mass", &mut self.mass);
+        columns.number("inertia", &mut self.inertia);
+        columns.numbers(&PLACE, &mut self.position);
+        columns.numbers(&VELOCITY, &mut self.velocity);
+        columns.numbers(&SPIN, &mut self.spin);
+        columns.number("angle", &mut self.angle);
+        columns.numbers(&FORCE, &mut self.force);
     }
 }
 
 impl Row for PointState {
     const TABLE: &'static str = "points";
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        let (kind, number) = match row.map_or(Owner::Body(0), |row| row.owner) {
+    fn visit(&mut self, columns: &mut impl Visit) {
+        let (kind, mut number) = match self.owner {
             Owner::Grain(id) => ("grain", i64::from(id)),
             Owner::Body(place) => ("body", i64::from(place)),
         };
-        let (kind, number) = (columns.word("owner", Some(kind)), columns.whole("owner_number", Some(number)));
-        Self {
-            owner: if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) },
-            position: columns.vector(PLACE, row.map(|row| row.position)),
-            displacement: columns.vector(["ux", "uy", "uz"], row.map(|row| row.displacement)),
-            velocity: columns.vector(VELOCITY, row.map(|row| row.velocity)),
-            stress: columns.numbers(["sxx", "syy", "szz", "sxy", "syz", "szx"], row.map(|row| row.stress)),
-            plastic_strain: columns.number("plastic_strain", row.map(|row| row.plastic_strain)),
-            rotation: columns.number("rotation", row.map(|row| row.rotation)),
-            volume: columns.number("volume", row.map(|row| row.volume)),
-        }
+        let mut kind = kind.to_owned();
+        columns.word("owner", &mut kind);
+        columns.whole("owner_number", &mut number);
+        self.owner = if kind == "grain" { Owner::Grain(number as u32) } else { Owner::Body(number as u32) };
+        columns.numbers(&PLACE, &mut self.position);
+        columns.numbers(&["ux", "uy", "uz"], &mut self.displacement);
+        columns.numbers(&VELOCITY, &mut self.velocity);
+        columns.numbers(&["sxx", "syy", "szz", "sxy", "syz", "szx"], &mut self.stress);
+        columns.number("plastic_strain", &mut self.plastic_strain);
+        columns.number("rotation", &mut self.rotation);
+        columns.number("volume", &mut self.volume);
     }
 }
 
 /// A row with the number, the step and the time of its snapshot. Two snapshots can have the same step: the last regular
 /// state and the state at a crash.
+#[derive(Default)]
 pub(super) struct SnapshotRow<R> {
     /// Index of the snapshot in the run, from 0.
     pub(super) snapshot: u64,
@@ -175,12 +167,10 @@ pub(super) struct SnapshotRow<R> {
 impl<R: Row> Row for SnapshotRow<R> {
     const TABLE: &'static str = R::TABLE;
 
-    fn visit(row: Option<&Self>, columns: &mut impl Visit) -> Self {
-        Self {
-            snapshot: columns.whole("snapshot", row.map(|row| row.snapshot)),
-            step: columns.whole("step", row.map(|row| row.step)),
-            time: columns.number("time", row.map(|row| row.time)),
-            row: R::visit(row.map(|row| &row.row), columns),
-        }
+    fn visit(&mut self, columns: &mut impl Visit) {
+        columns.whole("snapshot", &mut self.snapshot);
+        columns.whole("step", &mut self.step);
+        columns.number("time", &mut self.time);
+        self.row.visit(columns);
     }
 }

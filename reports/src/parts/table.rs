@@ -43,7 +43,7 @@ impl TableWriter {
         }
         // Bytes of the same significance are stored together, which compresses well. Leading bytes are similar, and the
         // last bytes of rounded numbers are zero.
-        let mut columns = columns_of::<R>(&[]);
+        let mut columns = columns_of::<R>(&mut []);
         columns.retain(|(name, _)| !without.contains(name));
         for (name, values) in columns.iter().filter(|(name, _)| !REPEATED.contains(name)) {
             let encoding = match values {
@@ -60,11 +60,11 @@ impl TableWriter {
     /// Adds rows of the type for which the table was created.
     pub(super) fn add<R: Row>(&mut self, mut rows: impl Iterator<Item = R>) -> io::Result<()> {
         loop {
-            let group: Vec<R> = rows.by_ref().take(GROUP).collect();
+            let mut group: Vec<R> = rows.by_ref().take(GROUP).collect();
             if group.is_empty() {
                 return Ok(());
             }
-            let mut columns = columns_of(&group);
+            let mut columns = columns_of(&mut group);
             drop(group);
             columns.retain(|(name, _)| !self.without.contains(name));
             self.table.add(&columns)?;
@@ -120,7 +120,7 @@ impl<R: Row> TableReader<R> {
         let group = file.get_row_group(self.group).map_err(io_error)?;
         self.group += 1;
         let count = group.metadata().num_rows() as usize;
-        let shapes = columns_of::<R>(&[]);
+        let shapes = columns_of::<R>(&mut []);
         let names = group.metadata().schema_descr();
         let column = |(name, shape): &(&str, Values)| -> Result<Values, ParquetError> {
             let Some(at) = (0..names.num_columns()).find(|&at| names.column(at).name() == *name) else {

@@ -39,7 +39,7 @@ impl Series {
 }
 
 /// Grain in a snapshot. In two dimensions, z components are zero and the spin is along z.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct GrainState {
     /// Id, from 1; the same in every snapshot.
     pub id: u32,
@@ -88,18 +88,13 @@ impl GrainState {
             position: grain.position,
             velocity: grain.velocity,
             spin: grain.spin,
-            angle: None,
-            force: None,
-            torque: None,
-            plastic_strain: 0.0,
-            virial: None,
-            mean_virial: None,
+            ..Self::default()
         }
     }
 }
 
 /// Deformable body other than a grain, in a snapshot.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct BodyState {
     /// Name in the scene.
     pub name: String,
@@ -128,8 +123,14 @@ pub enum Owner {
     Body(u32),
 }
 
+impl Default for Owner {
+    fn default() -> Self {
+        Self::Body(0)
+    }
+}
+
 /// Material point of a deformable body.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct PointState {
     /// Body to which the point belongs.
     pub owner: Owner,
@@ -162,8 +163,14 @@ pub enum Partner {
     Wall(u16),
 }
 
+impl Default for Partner {
+    fn default() -> Self {
+        Self::Wall(0)
+    }
+}
+
 /// Contact in a snapshot.
-#[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct ContactState {
     /// Grain, by id.
     pub grain: u32,
@@ -184,7 +191,7 @@ pub struct ContactState {
 }
 
 /// Wall in a snapshot.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct WallState {
     /// Name in the scene.
     pub name: String,

@@ -17,12 +17,11 @@ fn touch(partner: Partner, normal: [f64; 2], overlap: f64, normal_force: f64, sh
     ContactState {
         grain: 1,
         partner,
-        point: Vector3::zeros(),
         normal: Vector3::new(normal[0], normal[1], 0.0),
         overlap,
         normal_force,
         shear_force: Vector3::new(shear[0], shear[1], 0.0),
-        slipping: false,
+        ..ContactState::default()
     }
 }
 
@@ -51,8 +50,7 @@ fn energies_and_momenta() {
         position: Vector3::new(1.0, -2.0, 0.0),
         velocity: Vector3::new(3.0, -1.0, 0.0),
         spin: Vector3::new(0.0, 0.0, -2.0),
-        angle: 0.0,
-        force: Vector3::zeros(),
+        ..BodyState::default()
     };
     let grains = Snapshot::of_grains(&scene, 0, 0.0, vec![disc]);
     let snapshot = Snapshot { bodies: vec![body], contacts: Some(Vec::new()), ..grains };
