@@ -13,13 +13,3 @@ pub mod own;
 pub mod race;
 pub mod run_cache;
 pub mod stability;
-
-use grainbench_scene::error::SceneError;
-use grainbench_scene::scene::Scene;
-use grainbench_scene::source::SceneSource;
-use std::path::Path;
-
-/// Reads a scene from the text of a scene file that needs no other file. `name` stands for its path in messages.
-pub(crate) fn scene_from_text(name: &str, text: &str) -> Result<Scene, SceneError> {
-    SceneSource::from_text(name, Path::new(""), text).scene(&grainbench_scene::resolve::no_data_file)
-}

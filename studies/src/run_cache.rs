@@ -226,7 +226,6 @@ impl Wrapper for CachingSolver {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_from_text;
     use grainbench_solver::record::{Cost, Provenance, Series};
 
     /// Solver whose record states the number of its runs.
@@ -252,7 +251,7 @@ mod tests {
     fn runs_with_other_options_share_no_entry() {
         let text = "title = 'one'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1000.0\n[grains.ball]\n\
             material = 'm'\nradius = 0.1\nposition = [0.0, 0.0]\n";
-        let scene = scene_from_text("one", text).unwrap();
+        let scene = Scene::from_text("one", text).unwrap();
         let folder = tempfile::tempdir().unwrap();
         let cache = RunCache::open(folder.path(), u64::MAX, false, |_| Some(String::new())).unwrap();
         let solver = Arc::new(Counting(AtomicU64::new(0)));

@@ -7,7 +7,6 @@
 
 use super::knobs::nominal_seconds;
 use crate::clock::cpu_seconds;
-use crate::scene_from_text;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::load::{Load, TimingDifference};
 use grainbench_scene::error::SceneError;
@@ -142,7 +141,7 @@ fn box_of_discs(edge: u32) -> Result<Scene, SceneError> {
          [output]\nevery = 1.0\n",
         f64::from(edge)
     );
-    scene_from_text("discs in a box", &text)
+    Scene::from_text("discs in a box", &text)
 }
 
 #[cfg(test)]

@@ -8,7 +8,6 @@
 //! timing is the processor time of a long run minus that of a short run.
 
 use crate::clock::cpu_seconds;
-use crate::scene_from_text;
 use grainbench_harness::solvers::Solvers;
 use grainbench_lanes::{Processor, Quad, probe};
 use grainbench_reports::study::step::{Model, Probe, TaskCost};
@@ -220,7 +219,7 @@ fn block() -> Result<Scene, SceneError> {
 
 fn scene(title: &str, text: &str) -> Result<Scene, SceneError> {
     let text = format!("title = '{title}'\n{text}[output]\nevery = 1.0\n");
-    scene_from_text(title, &text)
+    Scene::from_text(title, &text)
 }
 
 #[cfg(test)]

@@ -116,7 +116,6 @@ impl StudyInput<'_> {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::scene_from_text;
     use grainbench_dem::convention::Convention;
     use grainbench_dem::solver::Dem;
 
@@ -131,7 +130,7 @@ mod tests {
     }
 
     fn worth_in(text: &str, effect: Effect, matters: f64) -> EffectResult {
-        let scene = scene_from_text("scene", text).unwrap();
+        let scene = Scene::from_text("scene", text).unwrap();
         let solver = Dem::new(Convention::DEFAULT);
         let resolution = Resolution::CriticalFraction(0.1);
         let asked = StudyInput { name: "rolls".to_owned(), scene: &scene, solver: &solver, resolution, matters };

@@ -4,7 +4,6 @@
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
 use super::*;
-use crate::scene_from_text;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_solver::failure::RunError;
@@ -160,7 +159,7 @@ fn with_study(
     budget: Duration,
     runs: impl FnOnce(&mut Measurement<'_>),
 ) -> SceneCost {
-    let scene = scene_from_text("scene", text).unwrap();
+    let scene = Scene::from_text("scene", text).unwrap();
     let cache = Directory::none();
     let study = SceneStudy {
         name: "drawn".to_owned(),

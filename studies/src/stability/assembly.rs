@@ -21,7 +21,6 @@
 //! more energy than its spring stored if and only if Δt > 2/ω.
 
 use super::failure::{Failure, finite};
-use crate::scene_from_text;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::scene::{Duration, Sampling, Scene};
 use grainbench_solver::record::Record;
@@ -159,7 +158,7 @@ fn finish(
     text: &str,
     judge: Judge,
 ) -> Result<Assembly, SceneError> {
-    let mut scene = scene_from_text(&format!("stability/{name}"), text)?;
+    let mut scene = Scene::from_text(&format!("stability/{name}"), text)?;
     scene.sampling = Sampling::Count(1);
     scene.snapshots = 20;
     let rest = scene.grains.iter().map(|grain| grain.position).collect();

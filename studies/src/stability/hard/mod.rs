@@ -7,7 +7,6 @@ mod many;
 use super::PATIENCE as LIMIT;
 use super::failure::{Failure, confirmed, finite, of_error};
 use crate::cost::knobs::nominal_seconds;
-use crate::scene_from_text;
 use grainbench_harness::conformance::HalfwayCheckpoint;
 use grainbench_harness::solvers::Solvers;
 use grainbench_reports::study::stability::{HardCaseResult, Hardness};
@@ -64,7 +63,7 @@ pub fn all() -> Result<Vec<HardCase>, SceneError> {
 /// Returns a case from the text of its scene.
 fn case(name: impl Into<String>, must: &'static str, text: &str, check: Check) -> Result<HardCase, SceneError> {
     let name = name.into();
-    let scene = scene_from_text(&format!("hard/{name}"), text)?;
+    let scene = Scene::from_text(&format!("hard/{name}"), text)?;
     Ok(HardCase { name, must, scene, check, goes_on: false, asked: &SOLVERS })
 }
 
