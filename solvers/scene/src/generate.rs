@@ -2,7 +2,7 @@
 
 use crate::dimension::Dimension;
 use crate::near::images;
-use crate::packing::filled;
+use crate::packing::{filled, random_position};
 use crate::radii::Radii;
 use crate::scene::Domain;
 use nalgebra::Vector3;
@@ -127,13 +127,8 @@ fn random_within(
 }
 
 fn somewhere(generator: &mut impl Rng, radius: f64, domain: &Domain, dimension: Dimension) -> Vector3<f64> {
-    let mut centre = Vector3::zeros();
-    for axis in 0..dimension.count() {
-        let margin = if domain.periodic[axis] { 0.0 } else { radius };
-        let (low, high) = (domain.low[axis] + margin, domain.high[axis] - margin);
-        centre[axis] = low + (high - low) * generator.random::<f64>();
-    }
-    centre
+    let margin = Vector3::from(domain.periodic.map(|is_periodic| if is_periodic { 0.0 } else { radius }));
+    random_position(generator, domain.low + margin, domain.high - margin, dimension.count())
 }
 
 fn direction(generator: &mut impl Rng, dimension: Dimension) -> Vector3<f64> {

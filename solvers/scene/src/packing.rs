@@ -10,7 +10,7 @@ use crate::dimension::Dimension;
 use crate::near::near_pairs;
 use crate::scene::Domain;
 use nalgebra::Vector3;
-use rand::{RngExt, SeedableRng};
+use rand::{Rng, RngExt, SeedableRng};
 use rand_pcg::Pcg64;
 use std::collections::{BTreeSet, VecDeque};
 use std::f64::consts::PI;
@@ -112,6 +112,20 @@ pub fn reachable(radii: &[f64], seed: u64, domain: &Domain, dimension: Dimension
     (low >= 50).then(|| f64::from(low) / 100.0)
 }
 
+/// Returns a random position in the box between two corners (m), with uniform probability.
+pub(crate) fn random_position(
+    generator: &mut impl Rng,
+    low: Vector3<f64>,
+    high: Vector3<f64>,
+    axes: usize,
+) -> Vector3<f64> {
+    let mut position = Vector3::zeros();
+    for axis in 0..axes {
+        position[axis] = low[axis] + (high[axis] - low[axis]) * generator.random::<f64>();
+    }
+    position
+}
+
 fn made(
     radii: &[f64],
     seed: u64,
@@ -128,16 +142,7 @@ fn made(
         return None;
     }
     let mut generator = Pcg64::seed_from_u64(seed);
-    let centres = radii
-        .iter()
-        .map(|_| {
-            let mut centre = Vector3::zeros();
-            for axis in 0..axes {
-                centre[axis] = domain.low[axis] + (domain.high[axis] - domain.low[axis]) * generator.random::<f64>();
-            }
-            centre
-        })
-        .collect();
+    let centres = radii.iter().map(|_| random_position(&mut generator, domain.low, domain.high, axes)).collect();
     let smallest = radii.iter().copied().fold(f64::INFINITY, f64::min);
     let mut packing = Packing {
         radii,

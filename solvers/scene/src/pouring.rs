@@ -3,9 +3,10 @@
 
 use crate::dimension::Dimension;
 use crate::overlap::nearest_image;
+use crate::packing::random_position;
 use crate::scene::Domain;
 use nalgebra::Vector3;
-use rand::{RngExt, SeedableRng};
+use rand::SeedableRng;
 use rand_pcg::Pcg64;
 use std::collections::VecDeque;
 
@@ -79,10 +80,7 @@ pub fn poured(
             places.iter().all(|place| nearest_image(place - centre, domain).norm_squared() >= reach * reach)
         };
         let centre = (0..TRIES).find_map(|_| {
-            let mut centre = Vector3::zeros();
-            for axis in 0..dimension.count() {
-                centre[axis] = low[axis] + (high[axis] - low[axis]) * generator.random::<f64>();
-            }
+            let centre = random_position(&mut generator, low, high, dimension.count());
             is_free(&centre).then_some(centre)
         });
         let centre = centre.ok_or(PouringError::NoRoom)?;
