@@ -107,12 +107,6 @@ impl Surface {
         self.corners.iter().fold(start, |(low, high), corner| (low.inf(corner), high.sup(corner)))
     }
 
-    /// Returns the numbers of patches, ridges and corners that can be in contact with a sphere.
-    #[must_use]
-    pub fn parts(&self) -> [usize; 3] {
-        self.groups.counts()
-    }
-
     /// Returns the enclosed volume (m³). It is negative if the normals point inwards.
     fn volume(&self) -> f64 {
         let middle = self.corners.iter().sum::<Vector3<f64>>() / self.corners.len() as f64;

@@ -25,19 +25,13 @@ impl std::fmt::Display for Place {
     }
 }
 
-impl Place {
-    /// Returns the position as it follows the name of the file in an error message: a line of text, or the number of a
-    /// triangle in binary form.
-    fn after_name(self) -> String {
-        match self {
-            Self::Line(line) => format!(":{line}"),
-            Self::Byte(byte) => format!(": triangle {}", byte.saturating_sub(HEAD) / EACH + 1),
-        }
-    }
-}
-
-/// Returns an error in a mesh. Its place is the position as it follows the name of the file; empty for the file as a
-/// whole.
+/// Returns an error in a mesh. Its place follows the name of the file in a message: a line of text, or the number of a
+/// triangle in binary form. It is empty for the file as a whole.
 pub(super) fn flaw(place: Option<Place>, expected: &str, found: &str) -> SceneError {
-    SceneError::of_file(place.map(Place::after_name).unwrap_or_default(), expected, found.to_owned())
+    let place = match place {
+        Some(Place::Line(line)) => format!(":{line}"),
+        Some(Place::Byte(byte)) => format!(": triangle {}", byte.saturating_sub(HEAD) / EACH + 1),
+        None => String::new(),
+    };
+    SceneError::of_file(place, expected, found.to_owned())
 }

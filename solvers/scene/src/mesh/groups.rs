@@ -33,7 +33,6 @@ pub(super) struct Groups {
     pub(super) of_face: Vec<u32>,
     pub(super) of_edge: Vec<u32>,
     pub(super) of_corner: Vec<u32>,
-    counts: [usize; 3],
 }
 
 impl Groups {
@@ -76,12 +75,7 @@ impl Groups {
                 }
             }
         }
-        let counts = [patches, ridges, next - patches - ridges].map(|count| count as usize);
-        Self { of_face, of_edge, of_corner, counts }
-    }
-
-    pub(super) fn counts(&self) -> [usize; 3] {
-        self.counts
+        Self { of_face, of_edge, of_corner }
     }
 }
 
