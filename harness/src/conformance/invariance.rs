@@ -73,7 +73,8 @@ pub(super) const PERMUTATION: Property = Property {
             rows,
             |scene| {
                 let count = scene.grains.len();
-                scene.grains = (0..count).map(|place| scene.grains[old_place(place, count)]).collect();
+                let grains: Vec<_> = (0..count).map(|place| scene.grains[old_place(place, count)]).collect();
+                scene.grains = grains.into();
             },
             |_, end| {
                 let grains = end.grains.clone();

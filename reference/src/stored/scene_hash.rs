@@ -214,7 +214,7 @@ mod tests {
                 let (position, velocity, spin) = (vector(0), vector(1), vector(2));
                 Grain { material: 3, radius: 0.1, mass: 2.5e-7, inertia: 1e-17, position, velocity, spin }
             };
-            let grains: Grains = numbers.iter().map(grain).collect();
+            let grains = Grains::from(numbers.iter().map(grain).collect::<Vec<_>>());
             let line = |Grain { material, radius, mass, inertia, position, velocity, spin }: &Grain| {
                 format!("grain {material} {radius:?} {mass:?} {inertia:?} {position:?} {velocity:?} {spin:?}\n")
             };

@@ -51,12 +51,6 @@ impl From<Vec<Grain>> for Grains {
     }
 }
 
-impl FromIterator<Grain> for Grains {
-    fn from_iter<I: IntoIterator<Item = Grain>>(grains: I) -> Self {
-        grains.into_iter().collect::<Vec<_>>().into()
-    }
-}
-
 impl Deref for Grains {
     type Target = Vec<Grain>;
 
