@@ -304,14 +304,8 @@ fn idle_law(scene: &mut Scene, change: impl Fn(&mut ContactLaw)) -> bool {
     let Some(mut law) = scene.laws.iter().flatten().next().copied() else { return false };
     change(&mut law);
     let count = scene.materials.len();
-    let mut laws = vec![None; (count + 1) * (count + 1)];
-    for a in 0..count {
-        for b in 0..count {
-            laws[a * (count + 1) + b] = scene.laws[a * count + b];
-        }
-    }
-    laws[(count + 1) * (count + 1) - 1] = Some(law);
-    scene.laws = laws;
+    let rows = scene.laws.chunks(count).flat_map(|row| row.iter().copied().chain([None]));
+    scene.laws = rows.chain(std::iter::repeat_n(None, count)).chain([Some(law)]).collect();
     scene.materials.push("idle".to_owned());
     if !scene.deformable.is_empty() {
         scene.deformable.push(None);

@@ -118,13 +118,8 @@ impl Course<'_> {
     /// interrupted.
     pub fn drive(self, stepper: &mut dyn Stepper, observer: &mut dyn Observer) -> Result<Record, RunError> {
         let time_step = self.provenance.time_step;
-        let resumed = match self.from {
-            Some(checkpoint) => {
-                let identity = self.identity(stepper);
-                stepper.recall(&identity, checkpoint)?
-            }
-            None => None,
-        };
+        let recall = |checkpoint| stepper.recall(&self.identity(stepper), checkpoint);
+        let resumed = self.from.map(recall).transpose()?.flatten();
         let particles = stepper.particles(self.scene);
         observer.begin(RunOutline { time_step, steps: self.steps, particles });
         let clock = Instant::now();
