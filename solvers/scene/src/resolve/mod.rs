@@ -20,7 +20,6 @@ use std::ops::Range;
 use std::path::Path;
 
 mod bodies;
-mod driven;
 mod grains;
 mod laws;
 mod motion;
