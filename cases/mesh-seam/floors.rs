@@ -1,7 +1,6 @@
 //! Modified floors of the case, rotated or with an error for a negative control.
 
-use grainbench_scene::mesh::Place;
-use grainbench_scene::mesh::stl::Facet;
+use grainbench_scene::mesh::stl::{Facet, Place};
 use grainbench_scene::mesh::{Mesh, Reading, Surface};
 use grainbench_scene::nalgebra::{Rotation3, Unit, Vector3};
 use grainbench_scene::scene::{Scene, WallShape};

@@ -1,10 +1,9 @@
 //! Construction of a surface from the facets of a file. Corners are merged, errors are detected, and the connectivity
 //! is computed.
 
-use super::flaw::flaw;
 use super::geometry::{Part, nearest};
 use super::groups::{Edge, Groups};
-use super::stl::Facet;
+use super::stl::{Facet, flaw};
 use super::tree::Tree;
 use crate::error::SceneError;
 use nalgebra::Vector3;

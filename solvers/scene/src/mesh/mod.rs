@@ -5,7 +5,6 @@
 //! with each patch, ridge and corner (`touch`).
 
 mod build;
-mod flaw;
 mod geometry;
 mod groups;
 pub mod stl;
@@ -13,7 +12,6 @@ mod touch;
 mod tree;
 
 pub use build::{Reading, Surface};
-pub use flaw::Place;
 pub use touch::SphereContact;
 
 use crate::motion::{Displacement, Motion};

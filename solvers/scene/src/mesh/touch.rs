@@ -94,10 +94,9 @@ impl Surface {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::mesh::Place;
     use crate::mesh::Reading;
     use crate::mesh::groups::Groups;
-    use crate::mesh::stl::Facet;
+    use crate::mesh::stl::{Facet, Place};
     use std::collections::BTreeSet;
 
     fn surface(triangles: &[[[f64; 3]; 3]], open: bool) -> Surface {
