@@ -42,40 +42,29 @@ macro_rules! entered {
     };
 }
 
-/// Implementations of serialiser traits for values with several parts.
+/// Implementations of serialiser traits for values with several parts, which may have names.
 macro_rules! parts {
-    ($($part:ident: $($method:ident),*;)*) => {
+    ($($part:ident: $($method:ident($($name:ty)?)),*;)*) => {
         $(impl $part for Search {
             type Ok = ();
             type Error = NonFiniteNumber;
-            $(fn $method<T: ?Sized + Serialize>(&mut self, part: &T) -> FiniteResult { part.serialize(Search) })*
-            fn end(self) -> FiniteResult { Ok(()) }
-        })*
-    };
-}
-
-/// Implementations of serialiser traits for values with named parts.
-macro_rules! named_parts {
-    ($($part:ident),*) => {
-        $(impl $part for Search {
-            type Ok = ();
-            type Error = NonFiniteNumber;
-            fn serialize_field<T: ?Sized + Serialize>(&mut self, _: &'static str, part: &T) -> FiniteResult {
+            $(fn $method<T: ?Sized + Serialize>(&mut self, $(_: $name,)? part: &T) -> FiniteResult {
                 part.serialize(Search)
-            }
+            })*
             fn end(self) -> FiniteResult { Ok(()) }
         })*
     };
 }
 
 parts! {
-    SerializeSeq: serialize_element;
-    SerializeTuple: serialize_element;
-    SerializeTupleStruct: serialize_field;
-    SerializeTupleVariant: serialize_field;
-    SerializeMap: serialize_key, serialize_value;
+    SerializeSeq: serialize_element();
+    SerializeTuple: serialize_element();
+    SerializeTupleStruct: serialize_field();
+    SerializeTupleVariant: serialize_field();
+    SerializeMap: serialize_key(), serialize_value();
+    SerializeStruct: serialize_field(&'static str);
+    SerializeStructVariant: serialize_field(&'static str);
 }
-named_parts!(SerializeStruct, SerializeStructVariant);
 
 impl Serializer for Search {
     type Ok = ();
