@@ -107,7 +107,7 @@ fn is_film(svg: &Path) -> bool {
 }
 
 fn wrong(path: &Path, reason: &str) -> SaveError {
-    SaveError::Convert { path: path.to_owned(), reason: reason.to_owned() }
+    SaveError::Other(format!("{}: {reason}", path.display()))
 }
 
 /// Returns the options for reading SVG, with the fonts.
@@ -122,7 +122,9 @@ fn options(families: Option<&str>) -> Result<Options<'static>, SaveError> {
         let is_there =
             |name: &str| fonts.query(&Query { families: &[Family::Name(name)], ..Query::default() }).is_some();
         if !names.clone().any(is_there) {
-            return Err(SaveError::NoFont { families: families.to_owned() });
+            let found = format!("found none of `{families}`");
+            let expected = "expected the name of an installed family for PDF and PNG";
+            return Err(SaveError::Other(format!("font: {expected}, {found}")));
         }
     }
     for set in [Database::set_sans_serif_family, Database::set_serif_family] {

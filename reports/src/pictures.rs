@@ -1,7 +1,7 @@
 //! Pages that contain figures of records, without results of claims.
 
 use crate::page::{figures, shell, slug, unique};
-use crate::store::{SaveError, add_figure};
+use crate::store::{SaveError, figure_files};
 use grainbench_harness::figure::Figure;
 use grainbench_solver::record::{Provenance, Record};
 use grainbench_store::StagedDir;
@@ -34,7 +34,9 @@ pub(crate) fn write_page(
 ) -> Result<(), SaveError> {
     let mut drawn = Vec::new();
     for (name, figure) in named_figures(figures) {
-        add_figure(out, figure, &name)?;
+        for (path, bytes) in figure_files(figure, &name)? {
+            out.write(path, bytes)?;
+        }
         drawn.push(figures::part(figure, &name, &name)?);
     }
     let body = html! {

@@ -1,7 +1,7 @@
 //! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
 use std::fmt::Display;
-use std::path::{Path, PathBuf};
+use std::path::Path;
 
 use grainbench_harness::figure::{Drawing, Figure, Graph};
 use rayon::prelude::*;
@@ -28,34 +28,15 @@ pub enum SaveError {
     /// A figure cannot be drawn.
     #[error(transparent)]
     Draw(#[from] plot::DrawError),
-    /// A value cannot be written in a file format.
-    #[error("cannot encode {file}: {reason}")]
-    Encode {
-        /// Name of the file.
-        file: &'static str,
-        /// Message of the encoder.
-        reason: String,
-    },
-    /// A figure cannot be converted.
-    #[error("{}: {reason}", path.display())]
-    Convert {
-        /// Path of the figure, or of the directory of figures.
-        path: PathBuf,
-        /// Reason why the figure cannot be converted.
-        reason: String,
-    },
-    /// No font family of a style is installed.
-    #[error("font: expected the name of an installed family for PDF and PNG, found none of `{families}`")]
-    NoFont {
-        /// Font families of the style.
-        families: String,
-    },
+    /// A value cannot be written in a file format, a figure cannot be converted, or no font of a style is installed.
+    #[error("{0}")]
+    Other(String),
 }
 
 impl SaveError {
     /// Returns a function that makes the error of an encoder from its message.
     pub(crate) fn encode<E: Display>(file: &'static str) -> impl FnOnce(E) -> Self {
-        move |error| Self::Encode { file, reason: error.to_string() }
+        move |error| Self::Other(format!("cannot encode {file}: {error}"))
     }
 }
 
@@ -100,19 +81,12 @@ pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
     page::figure_names(report).into_iter().flatten().zip(figures).collect()
 }
 
-/// Adds the files of a figure: the picture as SVG, the data of a graph as CSV, and a film as an animated PNG.
+/// Returns the path and the content of each file of a figure: the picture as SVG, the data of a graph as CSV, and a film
+/// as an animated PNG.
 ///
 /// # Errors
-/// When a file cannot be written or the figure cannot be drawn.
-pub(crate) fn add_figure(out: &mut StagedDir, figure: &Figure, name: &str) -> Result<(), SaveError> {
-    for (path, bytes) in figure_files(figure, name)? {
-        out.write(path, bytes)?;
-    }
-    Ok(())
-}
-
-/// Returns the path and the content of each file of a figure.
-fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
+/// When the figure cannot be drawn.
+pub(crate) fn figure_files(figure: &Figure, name: &str) -> Result<Vec<(String, Vec<u8>)>, SaveError> {
     let mut files = vec![(format!("figures/{name}.svg"), plot::draw(figure)?.into_bytes())];
     if let Drawing::Graph(graph) = &figure.drawing {
         let mut data = Vec::new();
