@@ -16,9 +16,10 @@ use grainbench::reports::plot::style::FigureStyle;
 use grainbench::reports::record_figures::{self, FigureOptions, NamedRecord};
 use grainbench::reports::report::Report;
 use grainbench::reports::store::{REPORT_FILE, named_figures};
-use grainbench::reports::study::{self, STUDY_FILE, load_study, write_study};
+use grainbench::reports::study::{self, STUDY_FILE, write_study};
 use grainbench::reports::{summary_table_within, write_pictures, write_report};
 use grainbench::solver::record::Record;
+use grainbench::store::artifact::read_json;
 use grainbench::store::refuse_mixed;
 use std::borrow::Borrow;
 use std::path::{Path, PathBuf};
@@ -93,7 +94,7 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         refuse!("{there}: expected {RECORD_FILE} of `simulate` for figures");
     }
     if holds(STUDY_FILE) {
-        let study = load_study(&arguments.dir)?;
+        let study = read_json(&arguments.dir.join(STUDY_FILE))?;
         write_study(&arguments.dir, &study)?;
         publish(arguments, &style, &study::named_figures(&study))?;
         return Ok(study_code(&study));

@@ -23,7 +23,7 @@ use grainbench_harness::verdict::Severity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 
-pub use store::{STUDY_FILE, kept_text, load_study, named_figures, points_of, study_json, write_study};
+pub use store::{STUDY_FILE, kept_text, named_figures, points_of, study_json, write_study};
 
 /// Data of a study. With them, all output files can be written again without a solver.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

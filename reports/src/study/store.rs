@@ -126,14 +126,6 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
     serde_json::to_string_pretty(&study).map(|text| text + "\n")
 }
 
-/// Reads the study that [`write_study`] wrote to a directory.
-///
-/// # Errors
-/// When the file is missing or damaged. The message names the position in the file.
-pub fn load_study(dir: impl AsRef<Path>) -> Result<Study, ReadError> {
-    read_json(&dir.as_ref().join(STUDY_FILE))
-}
-
 /// Returns the points in a `results.json` of a study.
 ///
 /// # Errors
