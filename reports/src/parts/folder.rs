@@ -6,7 +6,7 @@ use std::path::{Path, PathBuf};
 
 use grainbench_solver::record::Snapshot;
 
-use super::part::PartReader;
+use super::part::snapshots;
 use crate::export::record_json;
 
 /// Passes every stored snapshot of a run to `look`, in order of time. The snapshots come from the parts in `snapshots/` if
@@ -31,9 +31,9 @@ pub fn each_snapshot<E>(
     // The name of a part begins with its number.
     parts.sort();
     for part in parts {
-        let mut reader = PartReader::open(&part).map_err(|error| failed(&part, error))?;
-        while let Some(snapshot) = reader.next().map_err(|error| failed(&part, error))? {
-            look(snapshot)?;
+        let failed = |error| failed(&part, error);
+        for snapshot in snapshots(&part).map_err(failed)? {
+            look(snapshot.map_err(failed)?)?;
         }
     }
     Ok(())

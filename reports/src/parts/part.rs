@@ -12,7 +12,7 @@ use tempfile::TempDir;
 
 use super::columns::Row;
 use super::rows::{Frame, SnapshotRow};
-use super::table::{TableReader, TableWriter, file_name};
+use super::table::{TableReader, TableWriter, file_name, open_table};
 use grainbench_store::temporary_in;
 
 /// All tables of a part, in a fixed order.
@@ -33,15 +33,8 @@ impl Seal {
     /// Returns true if the part in a folder still has the files that were written when it was closed.
     pub(super) fn fits(&self, folder: &Path) -> bool {
         let hash = |table: &str| -> io::Result<Option<blake3::Hash>> {
-            match fs::File::open(folder.join(file_name(table))) {
-                Ok(file) => {
-                    let mut hasher = blake3::Hasher::new();
-                    hasher.update_reader(file)?;
-                    Ok(Some(hasher.finalize()))
-                }
-                Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
-                Err(error) => Err(error),
-            }
+            let Some(file) = open_table(folder, table)? else { return Ok(None) };
+            Ok(Some(blake3::Hasher::new().update_reader(file)?.finalize()))
         };
         let hashes: io::Result<Vec<_>> = TABLES.into_iter().map(hash).collect();
         hashes.is_ok_and(|hashes| *together(&hashes).as_bytes() == self.hash)
@@ -154,51 +147,35 @@ pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
     (snapshot.grains.len() + snapshot.told_contacts().len() + snapshot.points.len()) as u64
 }
 
-/// Reader of a closed part. It returns one snapshot after another.
-pub(super) struct PartReader {
-    frames: TableReader<SnapshotRow<Frame>>,
-    grains: TableReader<SnapshotRow<GrainState>>,
-    contacts: TableReader<SnapshotRow<ContactState>>,
-    walls: TableReader<SnapshotRow<WallState>>,
-    bodies: TableReader<SnapshotRow<BodyState>>,
-    points: TableReader<SnapshotRow<PointState>>,
-}
-
-impl PartReader {
-    pub(super) fn open(folder: &Path) -> io::Result<Self> {
-        Ok(Self {
-            frames: TableReader::open(folder)?,
-            grains: TableReader::open(folder)?,
-            contacts: TableReader::open(folder)?,
-            walls: TableReader::open(folder)?,
-            bodies: TableReader::open(folder)?,
-            points: TableReader::open(folder)?,
-        })
-    }
-
-    /// Returns the next snapshot; none after the last one.
-    pub(super) fn next(&mut self) -> io::Result<Option<Snapshot>> {
-        fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
-            let mut rows = Vec::new();
-            while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {
-                rows.push(stepped.row);
-            }
-            Ok(rows)
+/// Returns the snapshots of a closed part, one after another.
+pub(super) fn snapshots(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<Snapshot>>> {
+    fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
+        let mut rows = Vec::new();
+        while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {
+            rows.push(stepped.row);
         }
-        let Some(SnapshotRow { snapshot: number, step, time, row: frame }) = self.frames.next_if(|_| true)? else {
+        Ok(rows)
+    }
+    let mut frames = TableReader::open(folder)?;
+    let (mut grains, mut contacts) = (TableReader::open(folder)?, TableReader::open(folder)?);
+    let (mut walls, mut bodies) = (TableReader::open(folder)?, TableReader::open(folder)?);
+    let mut points = TableReader::open(folder)?;
+    let mut next = move || -> io::Result<Option<Snapshot>> {
+        let Some(SnapshotRow::<Frame> { snapshot: number, step, time, row: frame }) = frames.next_if(|_| true)? else {
             return Ok(None);
         };
-        let contacts = all(&mut self.contacts, number)?;
+        let contacts = all(&mut contacts, number)?;
         Ok(Some(Snapshot {
             step,
             time,
-            grains: all(&mut self.grains, number)?,
+            grains: all(&mut grains, number)?,
             contacts: frame.has_contacts.then_some(contacts),
-            walls: all(&mut self.walls, number)?,
-            bodies: all(&mut self.bodies, number)?,
-            points: all(&mut self.points, number)?,
+            walls: all(&mut walls, number)?,
+            bodies: all(&mut bodies, number)?,
+            points: all(&mut points, number)?,
             bounds: frame.bounds,
             periodic: frame.periodic,
         }))
-    }
+    };
+    Ok(iter::from_fn(move || next().transpose()))
 }

@@ -13,7 +13,7 @@ use serde::{Deserialize, Serialize};
 use tempfile::TempDir;
 use thiserror::Error;
 
-use super::part::{OpenPart, PartReader, Seal, files, rows_of};
+use super::part::{OpenPart, Seal, files, rows_of, snapshots};
 use super::rows::left_out;
 use grainbench_store::{WriteError, parent_of, remove_leftovers, temporary_in};
 
@@ -51,6 +51,7 @@ pub enum StoreError {
 }
 
 /// Store of the snapshots of a run, in order of time.
+#[derive(Default)]
 pub struct SnapshotStore {
     /// Folder of the parts or, for scratch, the folder in which a hidden folder is created when it is first needed.
     root: PathBuf,
@@ -87,18 +88,13 @@ impl SnapshotStore {
     #[must_use]
     pub fn for_output(out: &Path) -> Self {
         let beside = if out.is_dir() { out } else { parent_of(out) };
-        Self::at(beside.to_path_buf(), true)
+        Self { root: beside.to_path_buf(), is_scratch: true, ..Self::default() }
     }
 
     /// Returns a store whose parts are in `<checkpoint>.parts`, so that another run can continue from the checkpoint.
     #[must_use]
     pub fn for_checkpoint(checkpoint: &Path) -> Self {
-        Self::at(parts_of(checkpoint), false)
-    }
-
-    fn at(root: PathBuf, is_scratch: bool) -> Self {
-        let (kept, without) = (CheckpointSnapshots::default(), Vec::new());
-        Self { root, is_scratch, scratch: None, kept, waiting_bytes: 0, open: None, in_short: false, without }
+        Self { root: parts_of(checkpoint), ..Self::default() }
     }
 
     /// Sets the grain columns of the run. Columns that its snapshots do not contain are not written.
@@ -278,9 +274,8 @@ impl SnapshotStore {
         mut look: impl FnMut(&Snapshot) -> Result<(), E>,
     ) -> Result<(), E> {
         for seal in &self.kept.closed {
-            let mut reader = PartReader::open(&self.place().join(&seal.name)).map_err(&unreadable)?;
-            while let Some(snapshot) = reader.next().map_err(&unreadable)? {
-                look(&snapshot)?;
+            for snapshot in snapshots(&self.place().join(&seal.name)).map_err(&unreadable)? {
+                look(&snapshot.map_err(&unreadable)?)?;
             }
         }
         self.kept.waiting.iter().try_for_each(look)
@@ -300,14 +295,12 @@ impl SnapshotStore {
         if self.kept.end.as_ref().is_some_and(|&(_, rows)| rows > READABLE) {
             return Ok(None);
         }
-        let mut last = self.kept.waiting.last().cloned();
-        if let (None, Some(seal)) = (&last, self.kept.closed.last()) {
-            let mut reader = PartReader::open(&self.place().join(&seal.name))?;
-            while let Some(snapshot) = reader.next()? {
-                last = Some(snapshot);
+        match (self.kept.waiting.last(), self.kept.closed.last()) {
+            (None, Some(seal)) => {
+                snapshots(&self.place().join(&seal.name))?.try_fold(None, |_, snapshot| snapshot.map(Some))
             }
+            (last, _) => Ok(last.cloned()),
         }
-        Ok(last)
     }
 
     /// Writes all snapshots in memory to disk. Returns the files of all parts: path, and path relative to the folder of

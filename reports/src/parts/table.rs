@@ -96,11 +96,7 @@ pub(super) struct TableReader<R> {
 
 impl<R: Row> TableReader<R> {
     pub(super) fn open(directory: &Path) -> io::Result<Self> {
-        let file = match File::open(directory.join(file_name(R::TABLE))) {
-            Ok(file) => Some(SerializedFileReader::new(file).map_err(io_error)?),
-            Err(error) if error.kind() == io::ErrorKind::NotFound => None,
-            Err(error) => return Err(error),
-        };
+        let file = open_table(directory, R::TABLE)?.map(SerializedFileReader::new).transpose().map_err(io_error)?;
         Ok(Self { file, group: 0, waiting: Vec::new() })
     }
 
@@ -156,6 +152,14 @@ fn absent(name: &str, shape: &Values, count: usize) -> Result<Values, ParquetErr
 
 pub(super) fn file_name(table: &str) -> String {
     format!("{table}.parquet")
+}
+
+/// Opens the file of a table; none if the table has no rows.
+pub(super) fn open_table(directory: &Path, table: &str) -> io::Result<Option<File>> {
+    match File::open(directory.join(file_name(table))) {
+        Err(error) if error.kind() == io::ErrorKind::NotFound => Ok(None),
+        file => file.map(Some),
+    }
 }
 
 /// A table that is written to a file in groups of rows.
