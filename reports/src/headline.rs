@@ -8,22 +8,15 @@ use crate::distinct;
 use crate::section::Section;
 
 /// All outcomes in the order of the headline.
-pub const OUTCOMES: [Outcome; 9] = [
-    Outcome::Pass,
-    Outcome::Fail,
-    Outcome::Broken,
-    Outcome::Stale,
-    Outcome::Known,
-    Outcome::Outdated,
-    Outcome::NoReference,
-    Outcome::Unsupported,
-    Outcome::NotAvailable,
-];
+pub const OUTCOMES: [Outcome; 9] = {
+    use Outcome::{Broken, Fail, Known, NoReference, NotAvailable, Outdated, Pass, Stale, Unsupported};
+    [Pass, Fail, Broken, Stale, Known, Outdated, NoReference, Unsupported, NotAvailable]
+};
 
 /// Counts of results by outcome.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct Headline {
-    /// Numbers of results in the order of [`OUTCOMES`].
+    /// Numbers of results, by outcome.
     outcomes: [usize; OUTCOMES.len()],
     /// Number of negative controls that were run.
     pub controls: usize,
@@ -42,8 +35,7 @@ impl Headline {
     ) -> Self {
         let mut counts = Self::default();
         for verdict in verdicts {
-            let is_it = |outcome: Outcome| usize::from(outcome == verdict.outcome);
-            counts.outcomes.iter_mut().zip(OUTCOMES).for_each(|(count, outcome)| *count += is_it(outcome));
+            counts.outcomes[verdict.outcome as usize] += 1;
             counts.regression +=
                 usize::from(verdict.evidence == Evidence::Regression && verdict.outcome == Outcome::Pass);
         }
@@ -61,13 +53,13 @@ impl Headline {
 
     /// Returns the number of results with an outcome.
     #[must_use]
-    pub fn count(self, outcome: Outcome) -> usize {
-        OUTCOMES.iter().zip(self.outcomes).filter(|(known, _)| **known == outcome).map(|(_, count)| count).sum()
+    pub const fn count(self, outcome: Outcome) -> usize {
+        self.outcomes[outcome as usize]
     }
 
     /// Returns the number of passed results.
     #[must_use]
-    pub fn pass(self) -> usize {
+    pub const fn pass(self) -> usize {
         self.count(Outcome::Pass)
     }
 

@@ -15,25 +15,17 @@ use crate::table::{self, scrolling};
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
 
-/// Returns the rank of an outcome. From high to low, the order is: red, known error, outdated, passed, and outcomes without
-/// a judged value.
-const fn order(outcome: Outcome) -> u8 {
-    match outcome {
-        Outcome::Broken => 6,
-        Outcome::Fail => 5,
-        Outcome::Stale => 4,
-        Outcome::Known => 3,
-        Outcome::Outdated => 2,
-        Outcome::Pass => 1,
-        Outcome::NoReference | Outcome::Unsupported | Outcome::NotAvailable => 0,
-    }
-}
+/// Outcomes from the most important one: red, known error, outdated, passed, and outcomes without a judged value.
+const ORDER: [Outcome; 9] = {
+    use Outcome::{Broken, Fail, Known, NoReference, NotAvailable, Outdated, Pass, Stale, Unsupported};
+    [Broken, Fail, Stale, Known, Outdated, Pass, Unsupported, NotAvailable, NoReference]
+};
 
 /// Counts results by outcome, with the most important outcome first.
 fn counts(outcomes: impl Iterator<Item = Outcome>) -> Vec<(Outcome, usize)> {
-    let mut outcomes: Vec<Outcome> = outcomes.collect();
-    outcomes.sort_by_key(|&outcome| std::cmp::Reverse((order(outcome), outcome.word())));
-    outcomes.chunk_by(|a, b| a == b).filter_map(|same| Some((*same.first()?, same.len()))).collect()
+    let outcomes: Vec<Outcome> = outcomes.collect();
+    let count = |outcome| outcomes.iter().filter(|other| **other == outcome).count();
+    ORDER.map(|outcome| (outcome, count(outcome))).into_iter().filter(|(_, count)| *count > 0).collect()
 }
 
 /// Returns the CSS class of a stripe if a cell has amber results with an outcome other than the one that it shows.
