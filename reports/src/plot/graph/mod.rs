@@ -219,13 +219,7 @@ fn in_order<'a>(curves: &'a [Curve], looks: &'a [CurveStyle]) -> Vec<(&'a Curve,
 
 /// Returns true if markers of a curve would hide each other or those of another curve. If the graph has clouds of
 /// points, which are outlines, returns false, so that markers are filled.
-fn is_any_crowded(curves: &[Curve], x: &Scale, y: &Scale) -> bool {
-    let is_free = curves.iter().all(|curve| curve.stroke != Stroke::Beside);
-    is_free && (0..curves.len()).any(|at| curves[at].stroke == Stroke::Markers && is_crowded(curves, at, x, y))
-}
-
-/// Returns true if the markers of a curve would hide each other, or those of another curve.
-fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
+fn is_crowded(curves: &[Curve], x: &Scale, y: &Scale) -> bool {
     // Approximate size of the plot (drawing units), distances at which markers overlap, and number of markers that
     // counts as many.
     const SIZE: (f64, f64) = (620.0, 410.0);
@@ -238,13 +232,14 @@ fn is_crowded(curves: &[Curve], at: usize, x: &Scale, y: &Scale) -> bool {
     };
     let is_near = |a: &Place, b: &Place, distance: f64| (a.0 - b.0).hypot(a.1 - b.1) < distance;
     let is_most = |count: usize, of: usize| of > 0 && 2 * count > of;
-    let here = places(&curves[at]);
-    let close = here.windows(2).filter(|pair| is_near(&pair[0], &pair[1], BESIDE)).count();
-    let others = curves.iter().enumerate().filter(|(other, curve)| *other != at && curve.stroke == Stroke::Markers);
-    (here.len() >= MANY && is_most(close, here.len()))
-        || others
-            .map(|(_, curve)| places(curve))
-            .any(|there| is_most(here.iter().filter(|a| there.iter().any(|b| is_near(a, b, UPON))).count(), here.len()))
+    let marked: Vec<_> = curves.iter().filter(|curve| curve.stroke == Stroke::Markers).map(places).collect();
+    let is_hidden = |(at, here): (usize, &Vec<Place>)| {
+        let close = here.windows(2).filter(|pair| is_near(&pair[0], &pair[1], BESIDE)).count();
+        let upon = |there: &Vec<Place>| here.iter().filter(|a| there.iter().any(|b| is_near(a, b, UPON))).count();
+        let mut others = marked.iter().enumerate().filter(|(other, _)| *other != at);
+        (here.len() >= MANY && is_most(close, here.len())) || others.any(|(_, there)| is_most(upon(there), here.len()))
+    };
+    curves.iter().all(|curve| curve.stroke != Stroke::Beside) && marked.iter().enumerate().any(is_hidden)
 }
 
 /// Returns the style of each curve. Dashed curves have grey shades; other curves have the colours of their solvers.
@@ -252,7 +247,7 @@ fn looks(curves: &[Curve], x: &Scale, y: &Scale) -> Vec<CurveStyle> {
     let is_coloured = |curve: &&Curve| matches!(curve.stroke, Stroke::Line | Stroke::Markers | Stroke::MarkedLine);
     let labels: Vec<&str> = curves.iter().filter(is_coloured).map(|curve| curve.label.as_str()).collect();
     let mut coloured = palette::places(&labels).into_iter();
-    let is_open = is_any_crowded(curves, x, y);
+    let is_open = is_crowded(curves, x, y);
     let mut dashed = 0..;
     let solid = |place: usize, open: bool| {
         let (colour, marker) = palette::solid(place);
@@ -340,7 +335,7 @@ mod tests {
             let curve = |points: &Vec<(f64, f64)>| Curve::new("", Stroke::Markers, points.clone());
             let curves: Vec<Curve> = all.iter().map(curve).collect();
             let (x, y) = scales(&Graph { x: Axis::linear("x"), y: Axis::linear("y"), curves: curves.clone() });
-            is_any_crowded(&curves, &x, &y)
+            is_crowded(&curves, &x, &y)
         };
         assert!(!is_open(&[points(9, 0.0), points(9, 0.5)]));
         assert!(is_open(&[points(9, 0.0), points(9, 1e-3)]), "on the other curve");
