@@ -1,7 +1,7 @@
 //! One card per solver: passed results, worst error, stability and cost.
 
 use grainbench_harness::evidence::Evidence;
-use grainbench_harness::verdict::{Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
 
 use super::rows::address;
@@ -87,12 +87,8 @@ fn card(report: &Report, lead: &dyn Fn(&Verdict) -> String, solver: &str) -> Mar
     let count = |outcome: Outcome| rows(report, solver).filter(|row| row.outcome == outcome).count();
     let (all, pass) = (rows(report, solver).count(), count(Outcome::Pass));
     let not_judged = rows(report, solver).filter(|row| !row.outcome.is_judged()).count();
-    let class = match rows(report, solver).map(|row| row.outcome.severity()).max() {
-        _ if not_judged == all => "",
-        Some(Severity::Red) => "fail",
-        Some(Severity::Amber) => "amber",
-        Some(Severity::Green) | None => "pass",
-    };
+    let worst = rows(report, solver).map(|row| row.outcome.severity()).max();
+    let class = worst.filter(|_| not_judged < all).map_or("", crate::class);
     let worst = rows(report, solver)
         .filter_map(|row| Some((wrongness(row)?, row)))
         .max_by(|(a, _), (b, _)| a.0.cmp(&b.0).then(a.1.total_cmp(&b.1)));

@@ -2,7 +2,7 @@
 
 use std::collections::BTreeSet;
 
-use grainbench_harness::verdict::{Outcome, Severity, Verdict};
+use grainbench_harness::verdict::{Outcome, Verdict};
 use maud::{Markup, html};
 
 use super::{sign, unique};
@@ -25,13 +25,7 @@ pub(crate) fn address(verdict: &Verdict) -> String {
 /// Otherwise, the order of the claims is kept.
 pub(crate) fn sorted(verdicts: &[Verdict]) -> Vec<&Verdict> {
     let mut rows: Vec<&Verdict> = verdicts.iter().collect();
-    rows.sort_by_key(|verdict| {
-        std::cmp::Reverse(match verdict.outcome.severity() {
-            Severity::Red => (2, verdict.outcome == Outcome::Fail),
-            Severity::Amber => (1, false),
-            Severity::Green => (0, false),
-        })
-    });
+    rows.sort_by_key(|verdict| std::cmp::Reverse((verdict.outcome.severity(), verdict.outcome == Outcome::Fail)));
     rows
 }
 
