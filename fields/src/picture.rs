@@ -129,7 +129,8 @@ fn own_range<'a>(quantity: Quantity, paintings: impl Iterator<Item = &'a Paintin
 }
 
 /// Rounds a value up to two significant digits. Returns 1 if the value is not positive and finite.
-pub(crate) fn two_digits(value: f64) -> f64 {
+#[must_use]
+pub fn two_digits(value: f64) -> f64 {
     if !(value.is_finite() && value > 0.0) {
         return 1.0;
     }

@@ -4,7 +4,7 @@
 //! up and towards the eye. If two objects cover one pixel, the object with the larger p·t is visible.
 
 use crate::number;
-use grainbench_fields::picture::Shot;
+use grainbench_fields::picture::{Shot, two_digits};
 use grainbench_harness::figure::{Field, Figure, Panel, Shades};
 use grainbench_harness::raster::{RIM, Raster, VOID, level, lit};
 use grainbench_solver::record::{ContactState, Partner, Snapshot, WallState};
@@ -310,12 +310,7 @@ fn field(
 
 /// Returns the smallest number with two significant digits that is at least `value`; 1 if `value` is not positive.
 fn readable(value: f64) -> f64 {
-    if value > 0.0 {
-        let unit = 10_f64.powf(value.log10().floor() - 1.0);
-        number::significant((value / unit * (1.0 - 1e-12)).ceil() * unit, 15).parse().unwrap_or(value)
-    } else {
-        1.0
-    }
+    number::significant(two_digits(value), 15).parse().unwrap_or(value)
 }
 
 #[cfg(test)]
