@@ -9,13 +9,8 @@ const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
 /// Columns of forces and torques. Some programs do not report them.
 const FORCES: &str = " fx fy fz tqx tqy tqz";
 
-/// Writes the beginning of a dump. Units are SI.
-///
-/// # Errors
-/// When `out` cannot be written.
-pub(crate) fn begin(out: &mut impl Write) -> io::Result<()> {
-    writeln!(out, "ITEM: UNITS\nsi")
-}
+/// Beginning of a dump. Units are SI.
+pub(crate) const HEAD: &str = "ITEM: UNITS\nsi\n";
 
 /// Adds a snapshot to a dump. `type` is the index of the material in the scene, from 1.
 ///
@@ -66,12 +61,11 @@ mod tests {
 
     #[test]
     fn writes_what_lammps_would() {
-        let mut out = Vec::new();
+        let mut out = Vec::from(HEAD);
         let mut later = sample::snapshot();
         later.step = 20;
         later.time = 0.2;
         later.grains.truncate(1);
-        begin(&mut out).unwrap();
         for snapshot in [sample::snapshot(), later] {
             add(&snapshot, &mut out).unwrap();
         }

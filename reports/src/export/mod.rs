@@ -10,7 +10,7 @@ pub(crate) mod sample;
 
 use std::collections::BTreeSet;
 use std::fs::File;
-use std::io::{self, BufWriter};
+use std::io::{self, BufWriter, Write};
 use std::path::PathBuf;
 
 use grainbench_solver::record::{Record, Series, Snapshot};
@@ -109,7 +109,7 @@ fn write_series(
     }
     if formats.contains(&SnapshotFormat::Dump) {
         out.write_with("snapshots.dump", |file| {
-            dump::begin(file)?;
+            file.write_all(dump::HEAD.as_bytes())?;
             snapshots.each(std::convert::identity, |snapshot| dump::add(snapshot, file))
         })?;
     }
