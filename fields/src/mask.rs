@@ -1,4 +1,4 @@
-//! Masks: cells that are excluded from means, with the reasons.
+//! Masks: cells that are excluded from means, with the reasons, and elements with their masks.
 
 use crate::element::Element;
 use crate::grid::Grid;
@@ -120,6 +120,29 @@ impl Masks {
             words += &format!(", or where |D₀| is below {least}/s");
         }
         words
+    }
+}
+
+/// Elements of one snapshot.
+#[derive(Clone, Debug)]
+pub struct Frame {
+    /// Step number of the frame.
+    pub step: u64,
+    /// Time (s); NaN if unknown.
+    pub time: f64,
+    /// Elements in the order of [`Grid::place`].
+    pub elements: Vec<Element>,
+    /// For each element, the reasons for its exclusion from means, if any.
+    pub masked: Vec<MaskReasons>,
+    /// Number of grains or points whose centre is in no cell.
+    pub outside: usize,
+}
+
+impl Frame {
+    /// Returns the time (s), or the step if the time is unknown.
+    #[must_use]
+    pub fn clock(&self) -> f64 {
+        if self.time.is_finite() { self.time } else { self.step as f64 }
     }
 }
 

@@ -7,7 +7,7 @@ use grainbench_fields::element::{Element, elements, velocity_at};
 use grainbench_fields::grid::Grid;
 use grainbench_fields::motion::{Mover, motion, movers_between};
 use grainbench_fields::tensor;
-use grainbench_fields::tracers::{hencky, tracers};
+use grainbench_fields::trails::{hencky, tracers};
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::scene::Grain;
 use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
