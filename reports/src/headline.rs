@@ -127,11 +127,7 @@ impl Headline {
 
 /// Returns |error|/allowed. It is infinite if a non-zero error has no tolerance, or if there is no finite error.
 pub(crate) fn used_tolerance(verdict: &Verdict) -> f64 {
-    match verdict.error.map(f64::abs) {
-        Some(0.0) => 0.0,
-        Some(error) if error.is_finite() && verdict.allowed > 0.0 => error / verdict.allowed,
-        _ => f64::INFINITY,
-    }
+    if verdict.error == Some(0.0) { 0.0 } else { verdict.closeness().unwrap_or(f64::INFINITY) }
 }
 
 /// Returns the judged result with the largest |error|/allowed. Crashed runs and results with a reference of another scene have

@@ -5,8 +5,7 @@ use serde::{Deserialize, Serialize};
 
 use crate::distinct;
 use crate::headline::{self, Headline};
-use crate::provenance::Provenance;
-use crate::section::Section;
+use crate::section::{Provenance, Section};
 
 /// Results of an external solver.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]

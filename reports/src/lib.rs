@@ -14,11 +14,9 @@ pub mod page;
 pub mod parts;
 pub mod pictures;
 pub mod plot;
-mod provenance;
 pub mod record_figures;
 pub mod report;
 pub mod results;
-mod rows;
 mod section;
 mod series_figures;
 mod solid_figures;
@@ -32,9 +30,10 @@ pub mod trend;
 #[cfg(test)]
 mod sample;
 
+pub use export::record_json::each_snapshot;
 use grainbench_harness::verdict::Severity;
 pub use headline::Headline;
-pub use parts::{SnapshotStore, each_snapshot};
+pub use parts::SnapshotStore;
 pub use pictures::write_pictures;
 pub use report::{Provenance, Report, RunCost, Section};
 pub use store::{SaveError, write_report};

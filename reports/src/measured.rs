@@ -1,7 +1,7 @@
 //! Summaries of stored studies of cost, stability and effects, for the first screen of a page.
 
 use crate::distinct;
-use crate::provenance::Provenance;
+use crate::section::Provenance;
 use crate::study::Study;
 use crate::study::cost::{self, TARGETS, time};
 use crate::study::effects::Entry;

@@ -7,8 +7,7 @@ use std::borrow::Cow;
 use crate::headline::Headline;
 use crate::judged::ExternalResults;
 use crate::measured::Measurements;
-pub use crate::provenance::Provenance;
-pub use crate::section::{RunCost, Section};
+pub use crate::section::{Provenance, RunCost, Section};
 
 /// Report of one run.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]

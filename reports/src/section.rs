@@ -1,4 +1,4 @@
-//! Results of one case: claims, controls, figures and costs.
+//! Results of one case: claims, controls, figures and costs. Origin of results.
 
 use grainbench_harness::case::Physics;
 use grainbench_harness::figure::{Figure, number};
@@ -90,4 +90,32 @@ pub struct RunCost {
     pub time_step: f64,
     /// Time step as a fraction of the critical time step; absent if the method has none.
     pub fraction_of_critical: Option<f64>,
+}
+
+/// Provenance of a run: version, machine, date and options.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Provenance {
+    /// Version of the harness.
+    pub version: String,
+    /// Commit of the harness. A mark shows that the working tree was modified.
+    pub commit: String,
+    /// Date and time of the run.
+    pub date: String,
+    /// Processor and operating system.
+    pub machine: String,
+    /// Version of the Rust compiler.
+    pub rustc: String,
+    /// Options of the run in words.
+    pub options: Vec<String>,
+    /// Wall-clock time of the run (s).
+    #[serde(deserialize_with = "number")]
+    pub wall_seconds: f64,
+}
+
+impl Provenance {
+    /// Returns the date of the run, without the time.
+    #[must_use]
+    pub fn day(&self) -> &str {
+        self.date.split(' ').next().unwrap_or_default()
+    }
 }

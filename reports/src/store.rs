@@ -10,9 +10,9 @@ use thiserror::Error;
 use crate::badge::badge;
 use crate::junit::junit_xml;
 use crate::report::Report;
-use crate::results::{points_table, results_json};
+use crate::results::{points_table, results_json, rows_table};
 use crate::table::{Cell, Column, Table};
-use crate::{page, plot, row, rows};
+use crate::{page, plot, row};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir, WriteError};
 
@@ -52,7 +52,7 @@ pub fn write_report(dir: impl AsRef<Path>, report: &Report, parquet: bool) -> Re
     let mut out = StagedDir::new(dir.as_ref())?;
     out.write("results.json", results_json(report).map_err(SaveError::encode("results.json"))?)?;
     out.write_with("points.csv", |file| points_table(report).csv(file))?;
-    out.write_with("rows.csv", |file| rows::table(report).csv(file))?;
+    out.write_with("rows.csv", |file| rows_table(report).csv(file))?;
     out.write("junit.xml", junit_xml(report).map_err(SaveError::encode("junit.xml"))?)?;
     out.write("badge.svg", badge(report))?;
     let figures = named_figures(report);
@@ -69,7 +69,7 @@ pub fn write_report(dir: impl AsRef<Path>, report: &Report, parquet: bool) -> Re
         out.write(path, bytes)?;
     }
     if parquet {
-        out.write_with("rows.parquet", |file| rows::table(report).parquet(file))?;
+        out.write_with("rows.parquet", |file| rows_table(report).parquet(file))?;
     }
     Ok(out.commit()?)
 }

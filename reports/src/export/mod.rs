@@ -2,7 +2,6 @@
 
 mod dump;
 pub mod record_json;
-mod series;
 pub(crate) mod vtk;
 
 #[cfg(test)]
@@ -16,6 +15,7 @@ use std::path::PathBuf;
 use grainbench_solver::record::{Record, Series, Snapshot};
 
 use crate::parts::{READABLE, SnapshotStore};
+use crate::table::{Cell, Column, Format, Table};
 use grainbench_store::{StagedDir, WriteError};
 
 /// Format of snapshots.
@@ -89,11 +89,9 @@ pub fn write_remains(
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
     snapshots.settle()?;
-    let at = |source| WriteError::new(out.target().join(BROKEN_FILE), source);
     let (step, time) = snapshots.end().map_or((0, 0.0), |end| (end.step, end.time));
     let state = serde_json::json!({ "error": error, "step": step, "time": time });
-    let text = serde_json::to_string_pretty(&state).map_err(|error| at(error.into()))?;
-    out.write(BROKEN_FILE, text + "\n")?;
+    out.write(BROKEN_FILE, format!("{state:#}\n"))?;
     write_series(series, snapshots, formats, out)
 }
 
@@ -103,9 +101,9 @@ fn write_series(
     formats: &BTreeSet<SnapshotFormat>,
     out: &mut StagedDir,
 ) -> Result<(), WriteError> {
-    out.write_with("series.csv", |file| series::table(series).csv(file))?;
+    out.write_with("series.csv", |file| series_table(series).csv(file))?;
     if formats.contains(&SnapshotFormat::Parquet) {
-        out.write_with("series.parquet", |file| series::table(series).parquet(file))?;
+        out.write_with("series.parquet", |file| series_table(series).parquet(file))?;
     }
     if formats.contains(&SnapshotFormat::Dump) {
         out.write_with("snapshots.dump", |file| {
@@ -122,6 +120,17 @@ fn write_series(
         }
     }
     Ok(())
+}
+
+/// Returns the table `step`, `time (s)`, `NAME (unit)`, … with one row per sample. A short column has empty cells.
+fn series_table(series: &Series) -> Table<'_> {
+    let columns = [Column::new("step", Format::Count), Column::number("time").unit("s")].into_iter();
+    let quantities = series.columns.iter().map(|column| Column::number(&column.name).unit(&column.unit));
+    let rows = series.step.iter().zip(&series.time).enumerate().map(|(sample, (step, time))| {
+        let values = series.values.iter().map(|column| Cell::from(column.get(sample).copied()));
+        [Cell::from(*step), Cell::from(*time)].into_iter().chain(values).collect()
+    });
+    Table::new("series", columns.chain(quantities), rows)
 }
 
 fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), WriteError> {
@@ -156,6 +165,8 @@ fn write_vtk(snapshots: &SnapshotStore, out: &mut StagedDir) -> Result<(), Write
 #[cfg(test)]
 mod tests {
     use super::*;
+    use parquet::file::reader::{FileReader, SerializedFileReader};
+    use parquet::record::RowAccessor;
 
     /// Writes a run to a temporary directory. Returns its guard and the output directory.
     fn written(snapshots: &[Snapshot], formats: &[SnapshotFormat]) -> (tempfile::TempDir, PathBuf) {
@@ -170,14 +181,10 @@ mod tests {
     }
 
     #[test]
-    fn material_points_have_files_of_their_own() {
+    fn points_and_contacts_have_files_if_they_are_known() {
         let (_dir, target) = written(&[sample::snapshot(), sample::deformable()], &[SnapshotFormat::Vtk]);
         assert!(target.join("vtk/points-000001.vtp").is_file() && target.join("vtk/points.pvd").is_file());
         assert!(!target.join("vtk/points-000000.vtp").exists() && !target.join("snapshots.dump").exists());
-    }
-
-    #[test]
-    fn contacts_that_nobody_told_have_no_file() {
         let untold = Snapshot { contacts: None, ..sample::snapshot() };
         let (_dir, target) = written(&[untold, sample::snapshot()], &[SnapshotFormat::Vtk]);
         assert!(!target.join("vtk/contacts-000000.vtp").exists() && target.join("vtk/contacts-000001.vtp").is_file());
@@ -198,5 +205,32 @@ mod tests {
         for name in ["snapshots.parquet", "grains.parquet", "contacts.parquet", "walls.parquet"] {
             assert!(parts[0].path().join(name).is_file(), "{name}");
         }
+    }
+
+    #[test]
+    fn keeps_every_digit() {
+        let mut out = Vec::new();
+        series_table(&sample::series()).csv(&mut out).unwrap();
+        assert_eq!(
+            String::from_utf8(out).unwrap(),
+            "step,time (s),disc.x (m),\"a,b (1)\"\n\
+             0,0.0,1.0,-1e-300\n\
+             5,0.30000000000000004,0.3333333333333333,2e20\n"
+        );
+    }
+
+    #[test]
+    fn keeps_every_bit() {
+        let file = tempfile::tempfile().unwrap();
+        series_table(&sample::series()).parquet(&file).unwrap();
+        let file = SerializedFileReader::new(file).unwrap();
+        let rows: Vec<_> = file.get_row_iter(None).unwrap().map(Result::unwrap).collect();
+        assert_eq!(
+            rows[0].get_column_iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>(),
+            ["step", "time (s)", "disc.x (m)", "a,b (1)"]
+        );
+        assert_eq!(rows[1].get_long(0).unwrap(), 5);
+        assert_eq!(rows[1].get_double(1).unwrap(), 0.300_000_000_000_000_04);
+        assert_eq!(rows[0].get_double(3).unwrap(), -1e-300);
     }
 }

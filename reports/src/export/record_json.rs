@@ -1,16 +1,17 @@
-//! Complete record of a run as JSON.
+//! Complete record of a run as JSON, and reader of the output directory of `simulate`.
 
+use std::fs;
 use std::io::{self, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-use grainbench_solver::record::{Cost, Provenance, Record, Series};
+use grainbench_solver::record::{Cost, Provenance, Record, Series, Snapshot};
 use grainbench_store::ReadError;
 use grainbench_store::artifact::read_json;
 use serde::ser::{Error, SerializeSeq};
 use serde::{Serialize, Serializer};
 
 use crate::export::BROKEN_FILE;
-use crate::parts::{READABLE, SnapshotStore};
+use crate::parts::{READABLE, SnapshotStore, snapshots};
 
 /// Name of the file of a record.
 pub const RECORD_FILE: &str = "record.json";
@@ -61,11 +62,40 @@ pub fn load(dir: &Path) -> Result<Record, ReadError> {
     read_json(&path)
 }
 
+/// Passes every stored snapshot of a run to `look`, in order of time. The snapshots come from the parts in `snapshots/` if
+/// this folder exists, otherwise from the record.
+///
+/// # Errors
+/// When the directory contains no run, when a file cannot be read (`unreadable` makes the error), or when `look` fails.
+pub fn each_snapshot<E>(
+    dir: &Path,
+    unreadable: impl Fn(String) -> E,
+    look: &mut impl FnMut(Snapshot) -> Result<(), E>,
+) -> Result<(), E> {
+    let folder = dir.join("snapshots");
+    if !folder.is_dir() {
+        let record = load(dir).map_err(|error| unreadable(error.to_string()))?;
+        return record.snapshots.into_iter().try_for_each(look);
+    }
+    let failed = |path: &Path, error: io::Error| unreadable(format!("{}: cannot be read: {error}", path.display()));
+    let entries = fs::read_dir(&folder).and_then(Iterator::collect::<io::Result<Vec<_>>>);
+    let entries = entries.map_err(|error| failed(&folder, error))?.into_iter();
+    let mut parts: Vec<PathBuf> = entries.map(|entry| entry.path()).filter(|path| path.is_dir()).collect();
+    // The name of a part begins with its number.
+    parts.sort();
+    for part in parts {
+        let failed = |error| failed(&part, error);
+        for snapshot in snapshots(&part).map_err(failed)? {
+            look(snapshot.map_err(failed)?)?;
+        }
+    }
+    Ok(())
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
     use crate::export::sample;
-    use grainbench_solver::record::Snapshot;
 
     #[test]
     fn reads_back_the_same() {

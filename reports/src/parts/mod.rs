@@ -6,13 +6,12 @@
 //! without rounding, and an unreported value is null.
 
 mod columns;
-mod folder;
 mod part;
 mod rows;
 mod store;
 mod table;
 
 pub(crate) use columns::Values;
-pub use folder::each_snapshot;
+pub(crate) use part::snapshots;
 pub use store::{READABLE, SnapshotStore, StoreError};
 pub(crate) use table::GroupedTable;

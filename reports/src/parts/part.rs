@@ -148,7 +148,7 @@ pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
 }
 
 /// Returns the snapshots of a closed part, one after another.
-pub(super) fn snapshots(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<Snapshot>>> {
+pub(crate) fn snapshots(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<Snapshot>>> {
     fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
         let mut rows = Vec::new();
         while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {

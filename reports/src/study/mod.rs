@@ -18,7 +18,7 @@ use self::load::Load;
 use self::point::{Change, Diagram};
 use self::stability::{HardCaseResult, Hardness, Limit};
 use self::step::Model;
-use crate::provenance::Provenance;
+use crate::section::Provenance;
 use grainbench_harness::verdict::Severity;
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;

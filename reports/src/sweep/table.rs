@@ -1,7 +1,7 @@
 //! Table of a sweep, with one row for each point, solver, level and quantity.
 
 use super::{Point, Sweep};
-use crate::rows::expectation;
+use crate::results::expectation;
 use crate::table::{Cell, Column, Table};
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
