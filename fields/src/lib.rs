@@ -3,7 +3,6 @@
 //! Solvers with material points report the stress at each point, and solvers with grains report contact forces. This
 //! crate converts both to the same quantities at the same positions.
 
-pub mod average;
 pub mod column;
 pub mod contact_stress;
 pub mod course;

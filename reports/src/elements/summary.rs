@@ -1,8 +1,7 @@
 //! Summary of granular elements: source, masks, and averages over all elements that are not left out.
 
-use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
-use grainbench_fields::course::Course;
+use grainbench_fields::course::{Course, Frame, Mean};
 use grainbench_harness::statistics::CONFIDENCE;
 use serde::Serialize;
 
@@ -70,7 +69,7 @@ impl Summary {
             Some(ElementMean { quantity: column.name, words: column.words, unit: column.unit, mean, elements })
         };
         let masked = || course.frames.iter().flat_map(|frame| &frame.masked);
-        let time = |at: Option<&grainbench_fields::course::Frame>| at.map_or(f64::NAN, |frame| frame.time);
+        let time = |at: Option<&Frame>| at.map_or(f64::NAN, |frame| frame.time);
         Self {
             source,
             frames: course.frames.len(),

@@ -1,9 +1,8 @@
 //! Tables of granular elements.
 
 use crate::table::{Cell, Column as Head, Format, Table};
-use grainbench_fields::average::Mean;
 use grainbench_fields::column::{COLUMNS, Column};
-use grainbench_fields::course::{Course, Frame, of_means};
+use grainbench_fields::course::{Course, Frame, Mean, of_means};
 use grainbench_fields::trails::Trails;
 
 /// Returns the column of a quantity, with an ending of its name.
