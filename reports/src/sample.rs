@@ -41,19 +41,10 @@ fn without_value(row: Verdict) -> Verdict {
 }
 
 fn control(case: &str, quantity: &str, wrong_physics: &str, turned_red: bool) -> ControlResult {
-    ControlResult {
-        case: case.into(),
-        variant: String::new(),
-        solver: "dem".into(),
-        quantity: quantity.into(),
-        wrong_physics: wrong_physics.into(),
-        error: Some(if turned_red { 0.31 } else { 0.004 }),
-        allowed: 0.02,
-        how: FailureMode::Value,
-        turned_red,
-        detail: None,
-        seconds: 0.01,
-    }
+    let (error, outcome) = if turned_red { (0.31, Outcome::Fail) } else { (0.004, Outcome::Pass) };
+    let row =
+        Verdict { outcome, value: Some(1.0), error: Some(error), allowed: 0.02, ..Verdict::open(case, quantity, "1") };
+    ControlResult::new(Verdict { solver: "dem".into(), ..row }, wrong_physics, FailureMode::Value, 0.01)
 }
 
 fn run(solver: &str, resolution: &str, time_step: f64, steps: u64) -> RunCost {

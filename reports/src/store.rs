@@ -155,19 +155,21 @@ mod tests {
         write_report(dir.path(), &sample::report(), false).unwrap();
         let path = dir.path().join(REPORT_FILE);
         let text = fs::read_to_string(&path).unwrap();
-        fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"many\"", 1)).unwrap();
-        let message = Report::load(dir.path()).unwrap_err().to_string();
+        let message_of = |text: &str| {
+            fs::write(&path, text).unwrap();
+            Report::load(dir.path()).unwrap_err().to_string()
+        };
+        let with_steps = |steps: &str| message_of(&text.replacen("\"steps\":25000", &format!("\"steps\":{steps}"), 1));
+        let message = with_steps("\"many\"");
         assert!(message.contains("report.json, line "), "{message}");
         assert!(message.contains("at `sections[0].runs[0].steps`"), "{message}");
         assert!(message.contains("invalid type: string \"many\", expected u64"), "{message}");
 
         // Terminal control characters are escaped.
-        fs::write(&path, text.replacen("\"steps\":25000", "\"steps\":\"ma\u{7f}ny\"", 1)).unwrap();
-        let message = Report::load(dir.path()).unwrap_err().to_string();
+        let message = with_steps("\"ma\u{7f}ny\"");
         assert!(message.contains("string \"ma\\u{7f}ny\""), "{message:?}");
 
-        fs::write(&path, &text[..text.len() / 2]).unwrap();
-        let message = Report::load(dir.path()).unwrap_err().to_string();
+        let message = message_of(&text[..text.len() / 2]);
         assert!(message.contains("the end of the file"), "{message}");
     }
 }

@@ -361,10 +361,7 @@ fn parts_of(checkpoint: &Path) -> PathBuf {
 }
 
 fn same_place(a: &Path, b: &Path) -> bool {
-    match (fs::canonicalize(a), fs::canonicalize(b)) {
-        (Ok(a), Ok(b)) => a == b,
-        _ => false,
-    }
+    fs::canonicalize(a).is_ok_and(|a| fs::canonicalize(b).is_ok_and(|b| a == b))
 }
 
 fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
@@ -454,9 +451,7 @@ mod tests {
         let checkpoint = folder.path().join("run.checkpoint");
         let snapshots = snapshots(20);
         let mut store = SnapshotStore::for_checkpoint(&checkpoint);
-        for snapshot in &snapshots[..10] {
-            store.add(snapshot.clone()).unwrap();
-        }
+        snapshots[..10].iter().for_each(|snapshot| store.add(snapshot.clone()).unwrap());
         store.spill().unwrap();
         let kept = store.keep().unwrap();
         // The run writes further snapshots after the checkpoint and is then killed.
@@ -468,9 +463,7 @@ mod tests {
 
         let mut resumed = SnapshotStore::for_checkpoint(&checkpoint).resume(&checkpoint, &kept).unwrap();
         assert_eq!(all(&resumed), snapshots[..10]);
-        for snapshot in &snapshots[10..] {
-            resumed.add(snapshot.clone()).unwrap();
-        }
+        snapshots[10..].iter().for_each(|snapshot| resumed.add(snapshot.clone()).unwrap());
         assert_eq!(all(&resumed), snapshots);
         resumed.keep().unwrap();
         resumed.forget_others();

@@ -11,7 +11,6 @@ use crate::report::Provenance;
 use crate::store::SaveError;
 use crate::{page as shared, plot};
 use grainbench_harness::figure::Figure;
-use grainbench_harness::verdict::{ControlResult, Verdict};
 use grainbench_store::artifact::read_json;
 use grainbench_store::{ReadError, StagedDir};
 use serde::{Deserialize, Serialize};
@@ -26,8 +25,8 @@ pub const STUDY_FILE: &str = "study.json";
 struct Results<'a> {
     provenance: &'a Provenance,
     passed: bool,
-    verdicts: [Verdict; 0],
-    controls: [ControlResult; 0],
+    verdicts: [(); 0],
+    controls: [(); 0],
     points: Vec<&'a Point>,
     #[serde(skip_serializing_if = "<[SceneCost]>::is_empty")]
     scenes: &'a [SceneCost],

@@ -74,7 +74,7 @@ pub struct Quantity {
 }
 
 /// A combination of factors, run with one solver at one level.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq)]
 pub struct Point {
     /// Values of the factors, in the order of the factors.
     pub factors: Vec<Value>,
@@ -232,10 +232,8 @@ mod tests {
     fn a_point_that_is_not_judged_is_not_within() {
         let looked = |verdict| QuantityResult { verdict, ..QuantityResult::default() };
         let point = |verdicts: &[Option<Outcome>]| Point {
-            factors: Vec::new(),
-            solver: String::new(),
-            resolution: String::new(),
             left: PointOutput { looked: verdicts.iter().copied().map(looked).collect(), ..PointOutput::default() },
+            ..Point::default()
         };
         for (verdicts, severity) in [
             (&[None][..], None),

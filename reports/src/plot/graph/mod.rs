@@ -287,11 +287,8 @@ mod tests {
 
     fn graph(logarithmic: bool, points: Vec<(f64, f64)>) -> Graph {
         let axis = |label: &str| Axis { label: label.to_owned(), logarithmic };
-        Graph {
-            x: axis("time step Δt (s)"),
-            y: axis("error <&>"),
-            curves: vec![Curve { label: "dem".to_owned(), stroke: Stroke::MarkedLine, points }],
-        }
+        let curves = vec![Curve::new("dem", Stroke::MarkedLine, points)];
+        Graph { x: axis("time step Δt (s)"), y: axis("error <&>"), curves }
     }
 
     #[test]
