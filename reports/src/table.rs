@@ -220,6 +220,47 @@ pub struct Table<'a> {
     rows: Box<dyn Iterator<Item = Row> + 'a>,
 }
 
+/// Columns of a table, each with the function that returns its cell in a row.
+pub(crate) struct Columns<'a, R> {
+    columns: Vec<Column>,
+    cells: Vec<Box<dyn Fn(R) -> Cell + 'a>>,
+}
+
+impl<'a, R: Copy + 'a> Columns<'a, R> {
+    /// Returns the first column.
+    pub(crate) fn new<C: Into<Cell>>(column: Column, cell: impl Fn(R) -> C + 'a) -> Self {
+        Self { columns: Vec::new(), cells: Vec::new() }.and(column, cell)
+    }
+
+    /// Adds a column.
+    pub(crate) fn and<C: Into<Cell>>(mut self, column: Column, cell: impl Fn(R) -> C + 'a) -> Self {
+        self.columns.push(column);
+        self.cells.push(Box::new(move |row| cell(row).into()));
+        self
+    }
+
+    /// Adds a column of texts for each name, such as the name of a solver.
+    pub(crate) fn and_each<C: Into<Cell>>(
+        self,
+        names: impl IntoIterator<Item = &'a str>,
+        cell: impl Fn(R, &'a str) -> C + Copy + 'a,
+    ) -> Self {
+        names.into_iter().fold(self, |columns, name| columns.and(Column::text(name), move |row| cell(row, name)))
+    }
+
+    /// Returns the table of rows, each with a CSS class; empty for none.
+    pub(crate) fn table(
+        self,
+        name: &'a str,
+        rows: impl IntoIterator<Item = R, IntoIter: 'a>,
+        class: impl Fn(R) -> &'static str + 'a,
+    ) -> Table<'a> {
+        let Self { columns, cells } = self;
+        let row = move |row| cells.iter().map(|cell| cell(row)).collect::<Row>().class(class(row));
+        Table::new(name, columns, rows.into_iter().map(row))
+    }
+}
+
 impl<'a> Table<'a> {
     /// Returns a table. Each row has one cell for each column.
     pub fn new(

@@ -10,7 +10,7 @@ use crate::headline::used_tolerance;
 use crate::judged::ExternalResults;
 use crate::number;
 use crate::report::{Report, Section};
-use crate::table::{self, scrolling};
+use crate::table::{Cell, Column, Columns, scrolling};
 
 /// Heading of the column of all solvers with settings for single cases.
 const OTHERS: &str = "mpm+…";
@@ -129,16 +129,14 @@ pub(crate) fn by_physics(report: &Report) -> Markup {
         let error = results.error.map_or("–".to_owned(), percent);
         html! { a class=(class) href="#matrix" title=(title) data-solver=(solver) { (error) } }
     };
-    let heads = columns.iter().map(|(solver, _)| table::Column::text(*solver));
-    let heads = [table::Column::heading("Median error")].into_iter().chain(heads);
-    let row = |(field, physics): (usize, &Physics)| {
-        let cells = columns.iter().map(|(solver, results)| {
-            results[field].as_ref().map_or(table::Cell::from(""), |results| cell(field, solver, results).into())
-        });
-        [physics.title().into()].into_iter().chain(cells).collect()
-    };
-    let table =
-        table::Table::new("Median error by field of physics and solver", heads, fields.iter().enumerate().map(row));
+    let first = Columns::<(usize, Physics)>::new(Column::heading("Median error"), |(_, physics)| physics.title());
+    let all = columns.iter().fold(first, |all, (solver, results)| {
+        all.and(Column::text(*solver), move |(field, _)| {
+            results[field].as_ref().map_or(Cell::from(""), |results| cell(field, solver, results).into())
+        })
+    });
+    let rows = fields.iter().copied().enumerate();
+    let table = all.table("Median error by field of physics and solver", rows, |_| "");
     html! {
         h3 { a href="#matrix" { "Which solver for which physics" } }
         (table.page("physics"))

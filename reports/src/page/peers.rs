@@ -8,7 +8,7 @@ use crate::judged::{self, ExternalResults};
 use crate::number;
 use crate::report::Report;
 use crate::row;
-use crate::table::{Cell, Column, Table};
+use crate::table::{Column, Columns, Table};
 
 /// Renders the section; it is empty if there are no external solvers.
 pub(crate) fn render(report: &Report) -> Markup {
@@ -59,15 +59,12 @@ fn tally(count: Headline) -> Markup {
 }
 
 fn by_case(report: &Report) -> Table<'_> {
-    let programs = report.judged.iter().map(|results| Column::text(&results.program));
-    let row = |case| {
-        let worst = ours(report, case).map(|worst| number::significant(worst, 2));
-        let counts =
-            report.judged.iter().map(|results| Cell::from(cell(results.count(Some(case)), results.worst(case))));
-        [Cell::from(case), worst.into()].into_iter().chain(counts).collect()
-    };
-    let columns = [Column::heading("Case"), Column::text("ours")].into_iter().chain(programs);
-    Table::new("Programs by case", columns, judged::cases(&report.judged).into_iter().map(row))
+    let worst = |case| ours(report, case).map(|worst| number::significant(worst, 2));
+    let columns = Columns::<&str>::new(Column::heading("Case"), |case| case).and(Column::text("ours"), worst);
+    let columns = report.judged.iter().fold(columns, |columns, results| {
+        columns.and(Column::text(&results.program), |case| cell(results.count(Some(case)), results.worst(case)))
+    });
+    columns.table("Programs by case", judged::cases(&report.judged), |_| "")
 }
 
 fn cell(count: Headline, worst: Option<f64>) -> Markup {

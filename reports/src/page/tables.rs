@@ -6,7 +6,7 @@ use maud::{Markup, html};
 use crate::number;
 use crate::report::RunCost;
 use crate::row;
-use crate::table::{Cell, Column, Format, Table};
+use crate::table::{Cell, Column, Columns, Format, Table};
 
 pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
     let columns = [
@@ -35,25 +35,20 @@ pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
 }
 
 pub(crate) fn costs(runs: &[RunCost]) -> Markup {
-    let has_variants = runs.iter().any(|run| !run.variant.is_empty());
-    let columns = [Column::heading("Solver")].into_iter().chain(has_variants.then(|| Column::text("Variant")));
-    let columns = columns.chain([
-        Column::text("Resolution"),
-        Column::new("Δt", Format::Seconds),
-        Column::number("Δt / critical"),
-        Column::new("Steps", Format::Count),
-        Column::new("Particle-steps", Format::Count),
-        Column::new("Contact evaluations", Format::Count),
-        Column::new("Wall time", Format::Seconds),
-    ]);
-    let row = |run: &RunCost| {
-        let names = [Cell::from(&run.solver)].into_iter().chain(has_variants.then(|| Cell::from(&run.variant)));
-        let steps = [Cell::from(&run.resolution), run.time_step.into(), run.fraction_of_critical.into()];
-        let counts = [Cell::from(run.steps), run.particle_steps.into(), run.contact_evaluations.into()];
-        names.chain(steps).chain(counts).chain([Cell::finite(Some(run.wall_seconds))]).collect()
-    };
+    let mut columns = Columns::<&RunCost>::new(Column::heading("Solver"), |run| &run.solver);
+    if runs.iter().any(|run| !run.variant.is_empty()) {
+        columns = columns.and(Column::text("Variant"), |run| &run.variant);
+    }
+    let columns = columns
+        .and(Column::text("Resolution"), |run| &run.resolution)
+        .and(Column::new("Δt", Format::Seconds), |run| run.time_step)
+        .and(Column::number("Δt / critical"), |run| run.fraction_of_critical)
+        .and(Column::new("Steps", Format::Count), |run| run.steps)
+        .and(Column::new("Particle-steps", Format::Count), |run| run.particle_steps)
+        .and(Column::new("Contact evaluations", Format::Count), |run| run.contact_evaluations)
+        .and(Column::new("Wall time", Format::Seconds), |run| Cell::finite(Some(run.wall_seconds)));
     html! {
         p.note { "Counts do not depend on the machine, but the wall time does." }
-        (Table::new("Costs", columns, runs.iter().map(row)).page("sorts"))
+        (columns.table("Costs", runs, |_| "").page("sorts"))
     }
 }

@@ -3,7 +3,7 @@
 use crate::line::scene_name;
 use crate::number;
 use crate::row;
-use crate::table::{Column, Table};
+use crate::table::{Cell, Column, Columns, Table};
 use crate::{class, distinct};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, html};
@@ -150,16 +150,12 @@ pub(crate) fn median(entry: &Entry) -> Option<&Shift> {
 pub(crate) fn heat(ledger: &[Entry]) -> Markup {
     let effects = distinct(ledger.iter().map(|entry| entry.effect.as_str()));
     let scenes = distinct(ledger.iter().map(|entry| (entry.case.as_str(), entry.variant.as_str())));
-    let find = |(case, variant): (&str, &str), effect: &str| {
-        ledger.iter().find(|entry| entry.case == case && entry.variant == variant && entry.effect == effect)
+    let mark = |(case, variant): (&str, &str), effect: &str| {
+        let found = ledger.iter().find(|entry| [&entry.case, &entry.variant, &entry.effect] == [case, variant, effect]);
+        found.map_or_else(|| Cell::from(""), |entry| warmth(entry).into())
     };
-    let columns = [Column::heading("Scene")].into_iter().chain(effects.iter().copied().map(Column::text));
-    let row = |scene: &(&str, &str)| {
-        let marks =
-            effects.iter().map(|effect| find(*scene, effect).map_or_else(|| "".into(), |entry| warmth(entry).into()));
-        [scene_name(scene.0, scene.1).into()].into_iter().chain(marks).collect()
-    };
-    let table = Table::new("Scenes by effects", columns, scenes.iter().map(row));
+    let columns = Columns::new(Column::heading("Scene"), |(case, variant)| scene_name(case, variant));
+    let table = columns.and_each(effects, mark).table("Scenes by effects", scenes, |_| "");
     html! {
         p.note {
             "For an enabled effect: the change of the result without it (median over the claims or probes), and its cost \

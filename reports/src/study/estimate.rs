@@ -5,8 +5,7 @@ use super::stability::Limit;
 use crate::distinct;
 use crate::number;
 use crate::page::{captioned, slug};
-use crate::row;
-use crate::table::{Cell, Column, Format, Table};
+use crate::table::{Cell, Column, Columns, Format};
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use maud::{Markup, html};
@@ -442,7 +441,6 @@ pub(crate) fn render(cost: &SceneCost, limits: &[Limit]) -> Markup {
 
 /// Renders the fastest setting of each solver for an error of 1 %, by quantity.
 fn costs(cost: &SceneCost) -> Markup {
-    let solvers = cost.solvers();
     let cell = |quantity: &Quantity, solver: &str| match (quantity.cheapest(solver, TARGET), least(quantity, solver)) {
         (Some(point), _) => {
             let error = html! { span.fine { (point.setting) ", error " (interval(point)) } };
@@ -451,14 +449,10 @@ fn costs(cost: &SceneCost) -> Markup {
         (None, Some(error)) => format!("at best {}", number::fraction(error)).into(),
         (None, None) => format!("no value: {}", cost.reason(solver)).into(),
     };
-    let row = |quantity: &Quantity| {
-        let cells = solvers.iter().map(|solver| cell(quantity, solver));
-        [breakable(&quantity.name).into()].into_iter().chain(cells).collect()
-    };
-    let columns = [Column::heading("Quantity").class("name")]
-        .into_iter()
-        .chain(solvers.iter().map(|solver| Column::text(*solver)));
-    Table::new("Which solver at 1 %", columns, cost.quantities.iter().map(row)).page("cases")
+    Columns::<&Quantity>::new(Column::heading("Quantity").class("name"), |quantity| breakable(&quantity.name))
+        .and_each(cost.solvers(), cell)
+        .table("Which solver at 1 %", &cost.quantities, |_| "")
+        .page("cases")
 }
 
 /// Renders a name that breaks only after a dot.
@@ -472,31 +466,20 @@ fn interval(point: &EstimatedPoint) -> String {
 }
 
 fn references(cost: &SceneCost) -> Markup {
-    let columns = [
-        Column::heading("Quantity").class("name"),
-        Column::text("Solver"),
-        Column::text("Reference").class("n"),
-        Column::text("Uncertainty").class("n"),
-        Column::new("of the scale", Format::Fraction),
-        Column::new("Order", Format::Digits(2)),
-        Column::text("Estimate"),
-        Column::text("Evidence"),
-    ];
-    let row = |(quantity, estimate): (&Quantity, &Estimate)| {
-        row![
-            breakable(&quantity.name),
-            &estimate.solver,
-            number::with_unit(estimate.value, &quantity.unit),
-            format!("± {}", number::significant(estimate.uncertainty, 2)),
-            estimate.uncertainty / quantity.scale,
-            estimate.order,
-            estimate.basis.word(),
-            estimate.evidence.word(),
-        ]
-    };
-    let estimates =
-        cost.quantities.iter().flat_map(|quantity| quantity.estimates.iter().map(move |row| (quantity, row)));
-    Table::new("Reference values", columns, estimates.map(row)).page("rows")
+    let rows = cost.quantities.iter().flat_map(|quantity| quantity.estimates.iter().map(move |row| (quantity, row)));
+    let name = Column::heading("Quantity").class("name");
+    Columns::<(&Quantity, &Estimate)>::new(name, |(quantity, _)| breakable(&quantity.name))
+        .and(Column::text("Solver"), |(_, row)| &row.solver)
+        .and(Column::text("Reference").class("n"), |(quantity, row)| number::with_unit(row.value, &quantity.unit))
+        .and(Column::text("Uncertainty").class("n"), |(_, row)| {
+            format!("± {}", number::significant(row.uncertainty, 2))
+        })
+        .and(Column::new("of the scale", Format::Fraction), |(quantity, row)| row.uncertainty / quantity.scale)
+        .and(Column::new("Order", Format::Digits(2)), |(_, row)| row.order)
+        .and(Column::text("Estimate"), |(_, row)| row.basis.word())
+        .and(Column::text("Evidence"), |(_, row)| row.evidence.word())
+        .table("Reference values", rows, |_| "")
+        .page("rows")
 }
 
 /// Returns the difference of two solvers in words. Methods agree only if the uncertainty of their difference is small.
@@ -563,22 +546,15 @@ fn softer(cost: &SceneCost) -> Markup {
 }
 
 fn levels(rows: &[Level]) -> Markup {
-    let columns = [
-        Column::heading("Solver"),
-        Column::text("Setting"),
-        Column::text("Run"),
-        Column::new("Wall time", Format::Seconds),
-        Column::new("Repetitions", Format::Count),
-        Column::new("Steps", Format::Count),
-        Column::text("Message").class("wide"),
-    ];
-    let row = |level: &Level| {
-        let message = level.detail.as_deref().unwrap_or_default();
-        let (status, time) = (level.status.word(), level.wall_seconds);
-        row![&level.solver, &level.setting, status, time, level.repetitions, level.steps, message]
-            .class(if level.status == LevelStatus::Measured { "" } else { "amber" })
-    };
-    Table::new("Every run", columns, rows.iter().map(row)).page("rows")
+    Columns::<&Level>::new(Column::heading("Solver"), |level| &level.solver)
+        .and(Column::text("Setting"), |level| &level.setting)
+        .and(Column::text("Run"), |level| level.status.word())
+        .and(Column::new("Wall time", Format::Seconds), |level| level.wall_seconds)
+        .and(Column::new("Repetitions", Format::Count), |level| level.repetitions)
+        .and(Column::new("Steps", Format::Count), |level| level.steps)
+        .and(Column::text("Message").class("wide"), |level| level.detail.as_deref().unwrap_or_default())
+        .table("Every run", rows, |level| if level.status == LevelStatus::Measured { "" } else { "amber" })
+        .page("rows")
 }
 
 #[cfg(test)]

@@ -5,8 +5,7 @@ use super::{Study, cost, effects, estimate, load, stability_page, step};
 use crate::measured::{Costs, Factor, Line};
 use crate::number::{self, TimeUnit};
 use crate::page::{captioned, provenance, shell, slug, summary, unique};
-use crate::row;
-use crate::table::{Cell, Column, Format, Row, Table};
+use crate::table::{Cell, Column, Columns, Format, Table};
 use maud::{Markup, PreEscaped, html};
 use std::collections::BTreeSet;
 
@@ -176,45 +175,26 @@ fn reasons(diagram: &Diagram) -> Markup {
 fn points(diagram: &Diagram) -> Markup {
     let [time, fraction, count] =
         [Format::Seconds, Format::Fraction, Format::Count].map(|format| move |name| Column::new(name, format));
-    let columns = [
-        Column::heading("Solver"),
-        Column::text("Setting"),
-        fraction("Error"),
-        time("Wall time"),
-        fraction("Spread"),
-        time("CPU time"),
-        time("Start-up"),
-        count("Steps"),
-        count("Particle-steps"),
-        count("Contact evaluations"),
-        count("Node updates"),
-        count("Bytes"),
-        Column::text("Parts of the error").class("wide"),
-    ];
-    Table::new("Every point", columns, diagram.points.iter().map(row)).page("rows costs")
-}
-
-fn row(point: &Point) -> Row {
-    let class = match point.standing {
+    let class = |point: &Point| match point.standing {
         PointStatus::Measured => "",
         PointStatus::Failed => "fail",
         PointStatus::Unsupported | PointStatus::NotAvailable => "amber",
     };
-    let Point { error, wall_seconds, wall_spread, cpu_seconds, start_up_seconds, counts, .. } = point;
-    row![
-        &point.solver,
-        point.setting(),
-        *error,
-        *wall_seconds,
-        *wall_spread,
-        *cpu_seconds,
-        *start_up_seconds,
-        counts.steps,
-        counts.particle_steps,
-        counts.contact_evaluations,
-        counts.node_updates,
-        counts.bytes,
-        point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")
-    ]
-    .class(class)
+    Columns::<&Point>::new(Column::heading("Solver"), |point| &point.solver)
+        .and(Column::text("Setting"), Point::setting)
+        .and(fraction("Error"), |point| point.error)
+        .and(time("Wall time"), |point| point.wall_seconds)
+        .and(fraction("Spread"), |point| point.wall_spread)
+        .and(time("CPU time"), |point| point.cpu_seconds)
+        .and(time("Start-up"), |point| point.start_up_seconds)
+        .and(count("Steps"), |point| point.counts.steps)
+        .and(count("Particle-steps"), |point| point.counts.particle_steps)
+        .and(count("Contact evaluations"), |point| point.counts.contact_evaluations)
+        .and(count("Node updates"), |point| point.counts.node_updates)
+        .and(count("Bytes"), |point| point.counts.bytes)
+        .and(Column::text("Parts of the error").class("wide"), |point| {
+            point.floor.as_deref().or(point.detail.as_deref()).unwrap_or("")
+        })
+        .table("Every point", &diagram.points, class)
+        .page("rows costs")
 }

@@ -6,7 +6,7 @@ use crate::measured::{Hold, Stability};
 use crate::number;
 use crate::page::captioned;
 use crate::row;
-use crate::table::{Cell, Column, Format, Table};
+use crate::table::{Cell, Column, Columns, Format, Table};
 use crate::{class, distinct};
 use maud::{Markup, html};
 
@@ -97,23 +97,21 @@ pub(crate) fn sign(row: &HardCaseResult) -> (&'static str, &'static str) {
 
 fn matrix(rows: &[HardCaseResult]) -> Markup {
     let solvers = distinct(rows.iter().map(|row| row.solver.as_str()));
-    let columns =
-        [Column::heading("Case and requirement")].into_iter().chain(solvers.iter().copied().map(Column::text));
-    let row = |case: &str| {
-        let result = |solver: &&str| {
-            let Some(row) = rows.iter().find(|row| row.case == case && row.solver == *solver) else { return "".into() };
-            let (symbol, class) = sign(row);
-            Cell::from(html! {
-                span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
-                @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
-            })
-        };
+    let name = |case: &str| {
         let must = rows.iter().find(|row| row.case == case).map_or("", |row| row.must.as_str());
-        let name = html! { (case) span.title { (must) } };
-        [Cell::from(name)].into_iter().chain(solvers.iter().map(result)).collect()
+        html! { (case) span.title { (must) } }
+    };
+    let result = |case: &str, solver: &str| {
+        let Some(row) = rows.iter().find(|row| row.case == case && row.solver == solver) else { return "".into() };
+        let (symbol, class) = sign(row);
+        Cell::from(html! {
+            span class={ "mark " (class) } { (symbol) " " (row.standing.word()) }
+            @if row.standing == Hardness::HoldsAtASmallerStep { span.fine { (row.resolution) } }
+        })
     };
     let cases = distinct(rows.iter().map(|row| row.case.as_str()));
-    Table::new("Hard cases", columns, cases.into_iter().map(row)).page("cases")
+    let columns = Columns::new(Column::heading("Case and requirement"), name).and_each(solvers, result);
+    columns.table("Hard cases", cases, |_| "").page("cases")
 }
 
 fn details_of(rows: &[HardCaseResult]) -> Markup {
@@ -158,25 +156,19 @@ fn with_parameter(row: &Limit) -> Cell {
 /// Returns a table of largest stable steps. It has exact limits only if at least one is known.
 fn limits<'a>(rows: &'a [Limit], heading: &str, scene: impl Fn(&Limit) -> Cell + 'a) -> Table<'a> {
     let number = |name| Column::new(name, Format::Digits(4));
-    let is_exact = rows.iter().any(|row| row.exact.is_some());
-    let exact = is_exact.then(|| [number("Exact"), Column::new("Error", Format::Error)]);
-    let columns = [Column::heading(heading), Column::text("Solver"), number("Found")].into_iter();
-    let columns = columns.chain(exact.into_iter().flatten()).chain([
-        Column::text("Unit"),
-        number("Default"),
-        number("Margin"),
-        Column::text("How it fails above").class("wide"),
-    ]);
-    let row = move |row: &Limit| {
-        let scene = scene(row);
-        let Limit { solver, found, exact, error, unit, default, margin, detail, .. } = row;
-        if is_exact {
-            row![scene, solver, *found, *exact, *error, unit, *default, *margin, detail]
-        } else {
-            row![scene, solver, *found, unit, *default, *margin, detail]
-        }
-    };
-    Table::new("Largest stable steps", columns, rows.iter().map(row))
+    let mut columns = Columns::<&Limit>::new(Column::heading(heading), scene)
+        .and(Column::text("Solver"), |row| &row.solver)
+        .and(number("Found"), |row| row.found);
+    if rows.iter().any(|row| row.exact.is_some()) {
+        columns = columns.and(number("Exact"), |row| row.exact);
+        columns = columns.and(Column::new("Error", Format::Error), |row| row.error);
+    }
+    columns
+        .and(Column::text("Unit"), |row| &row.unit)
+        .and(number("Default"), |row| row.default)
+        .and(number("Margin"), |row| row.margin)
+        .and(Column::text("How it fails above").class("wide"), |row| &row.detail)
+        .table("Largest stable steps", rows, |_| "")
 }
 
 #[cfg(test)]

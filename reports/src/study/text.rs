@@ -1,11 +1,10 @@
 //! Text of a study for the terminal.
 
-use super::estimate::{SceneCost, difference_words, softer_words};
+use super::estimate::{Estimate, SceneCost, difference_words, softer_words};
 use super::point::Diagram;
 use super::{Study, cost, effects, stability_page};
 use crate::number;
-use crate::row;
-use crate::table::{Column, Format, Table};
+use crate::table::{Column, Columns, Format, Table};
 
 impl Study {
     /// Returns the study as text: sentences about costs and their changes, and tables of estimates, largest stable steps, hard
@@ -44,16 +43,12 @@ impl Study {
         text.extend(cost::TARGETS.map(|target| format!("  {}\n", cost.sentence(target, &self.limits))));
         for quantity in &cost.quantities {
             let digits = |name: &str, digits| Column::new(name, Format::Digits(digits)).unit(&quantity.unit);
-            let columns = [
-                Column::text("Solver"),
-                digits(&quantity.name, 6),
-                digits("Uncertainty", 2),
-                Column::new("Order", Format::Digits(2)),
-                Column::text("Basis"),
-            ];
-            let rows = quantity.estimates.iter();
-            let rows = rows.map(|row| row![&row.solver, row.value, row.uncertainty, row.order, row.basis.word()]);
-            text += &format!("\n{}", Table::new("", columns, rows).text());
+            let columns = Columns::<&Estimate>::new(Column::text("Solver"), |row| &row.solver)
+                .and(digits(&quantity.name, 6), |row| row.value)
+                .and(digits("Uncertainty", 2), |row| row.uncertainty)
+                .and(Column::new("Order", Format::Digits(2)), |row| row.order)
+                .and(Column::text("Basis"), |row| row.basis.word());
+            text += &format!("\n{}", columns.table("", &quantity.estimates, |_| "").text());
             text.extend(quantity.differences().iter().map(|difference| difference_words(difference) + "\n"));
             text += &format!("{}\n", cost.sentence_of(quantity, cost::TARGETS[1], &self.limits));
         }
