@@ -47,8 +47,6 @@ impl View {
         for axis in 0..2 {
             (low[axis], high[axis]) =
                 window(all.iter().map(|(place, reach)| (place[axis] - reach, place[axis] + reach)));
-        }
-        for axis in 0..2 {
             if snapshot.periodic[axis] || low[axis] > high[axis] {
                 (low[axis], high[axis]) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
             }

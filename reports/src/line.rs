@@ -119,31 +119,24 @@ fn within_case(verdict: &Verdict) -> String {
 /// Returns the line of a result without case, variant, solver and resolution: `quantity value, exact expected …`.
 #[must_use]
 pub fn quantity(verdict: &Verdict) -> String {
-    let mut line = verdict.quantity.clone();
+    let Verdict { quantity, unit, source, .. } = verdict;
+    let detail = verdict.detail.as_ref().map_or_else(String::new, |detail| format!("; {detail}"));
     if verdict.outcome == Outcome::Broken {
-        line.push_str(": broken");
-    } else {
-        let value =
-            verdict.value.map_or_else(|| "no value".to_owned(), |value| number::with_unit(value, &verdict.unit));
-        line.push_str(&format!(" {value}"));
-        if let Some(expected) = verdict.expected {
-            line.push_str(&format!(", {} {}", expected_word(verdict.evidence), expected.words(number::value)));
-        }
-        line.push_str(&format!(" ({})", verdict.source));
-        if let Some(error) = verdict.error {
-            line.push_str(&format!(", off {}", number::fraction(error.abs())));
-            if let Some(scale) = scale_note(verdict) {
-                line.push_str(&format!(" {scale}"));
-            }
-        } else {
-            line.push_str(", no finite error");
-        }
-        line.push_str(&format!(", allowed {}", number::fraction(verdict.allowed)));
+        return format!("{quantity}: broken{detail}");
     }
-    if let Some(detail) = &verdict.detail {
-        line.push_str(&format!("; {detail}"));
-    }
-    line
+    let value = verdict.value.map_or_else(|| "no value".to_owned(), |value| number::with_unit(value, unit));
+    let expected = verdict.expected.map_or_else(String::new, |expected| {
+        format!(", {} {}", expected_word(verdict.evidence), expected.words(number::value))
+    });
+    let error = verdict.error.map_or_else(
+        || "no finite error".to_owned(),
+        |error| {
+            let scale = scale_note(verdict).map_or_else(String::new, |scale| format!(" {scale}"));
+            format!("off {}{scale}", number::fraction(error.abs()))
+        },
+    );
+    let allowed = number::fraction(verdict.allowed);
+    format!("{quantity} {value}{expected} ({source}), {error}, allowed {allowed}{detail}")
 }
 
 #[cfg(test)]

@@ -47,14 +47,8 @@ pub(crate) fn error(error: Option<f64>) -> String {
 #[must_use]
 pub fn count(count: u64) -> String {
     let digits = count.to_string();
-    let mut text = String::new();
-    for (place, digit) in digits.chars().enumerate() {
-        if place > 0 && (digits.len() - place).is_multiple_of(3) {
-            text.push(THIN);
-        }
-        text.push(digit);
-    }
-    text
+    let groups = digits.as_bytes().rchunks(3).rev().map(String::from_utf8_lossy);
+    groups.collect::<Vec<_>>().join(&THIN.to_string())
 }
 
 /// Returns a number of things, such as `1 task` or `2 tasks`.

@@ -8,12 +8,7 @@ use crate::headline::{self, Headline};
 use crate::line;
 use crate::number;
 use crate::report::{Report, Section};
-use crate::row;
-use crate::table::{Column, Row, Table};
-
-/// Columns of the table, and the least width of each (characters) on a narrow terminal; 0 if it keeps its width.
-const COLUMNS: [(&str, usize); 6] =
-    [("case", 12), ("solvers", 8), ("passed", 0), ("amber", 0), ("worst, of allowed", 16), ("controls red", 0)];
+use crate::table::{Column, Columns};
 
 /// Largest number of reasons for amber results.
 const REASONS: usize = 6;
@@ -25,9 +20,14 @@ const REASONS: usize = 6;
 pub fn summary_table_within(report: &Report, width: usize) -> String {
     let (counts, all) = (Headline::of_report(report), report);
     let report = &*report.view();
-    let text = |(name, least)| if least == 0 { Column::text(name) } else { Column::text(name).shrinks_to(least) };
-    let columns = COLUMNS.map(text);
-    let mut text = Table::new("", columns, report.sections.iter().map(row)).text_within(width);
+    let controls = |counts: Headline| format!("{}/{}", counts.controls_red, counts.controls);
+    let columns = Columns::<&Section>::new(Column::text("case").shrinks_to(12), |section| &section.name)
+        .and(Column::text("solvers").shrinks_to(8), |section| headline::solvers(section).join(", "))
+        .and(Column::text("passed"), |section| Headline::of_section(section).passed())
+        .and(Column::text("amber"), |section| Headline::of_section(section).amber().to_string())
+        .and(Column::text("worst, of allowed").shrinks_to(16), worst)
+        .and(Column::text("controls red"), |section| controls(Headline::of_section(section)));
+    let mut text = columns.table("", &report.sections, |_| "").text_within(width);
     text.push_str(&format!("\n{}\n", counts.sentence()));
     for lines in [failing_lines(all), amber_lines(all), conclusion(all).into_iter().collect()] {
         if !lines.is_empty() {
@@ -101,23 +101,13 @@ pub fn failing_lines(report: &Report) -> Vec<String> {
     lines.map(|line| format!("✗ {line}")).collect()
 }
 
-fn row(section: &Section) -> Row {
-    let counts = Headline::of_section(section);
-    let worst = headline::worst(&section.verdicts).map(|verdict| {
-        let used = headline::used_tolerance(verdict);
-        // A result outside its tolerance does not read as 1.
-        let shown =
-            if (1.0..1.05).contains(&used) && used > 1.0 { "> 1".to_owned() } else { number::significant(used, 2) };
-        format!("{shown} {}", verdict.quantity)
-    });
-    row![
-        &section.name,
-        headline::solvers(section).join(", "),
-        counts.passed(),
-        counts.amber().to_string(),
-        worst,
-        format!("{}/{}", counts.controls_red, counts.controls),
-    ]
+/// Returns the largest |error|/allowed of a case, with its quantity.
+fn worst(section: &Section) -> Option<String> {
+    let verdict = headline::worst(&section.verdicts)?;
+    let used = headline::used_tolerance(verdict);
+    // A result outside its tolerance does not read as 1.
+    let shown = if (1.0..1.05).contains(&used) && used > 1.0 { "> 1".to_owned() } else { number::significant(used, 2) };
+    Some(format!("{shown} {}", verdict.quantity))
 }
 
 #[cfg(test)]

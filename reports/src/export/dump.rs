@@ -2,7 +2,7 @@
 
 use std::io::{self, Write};
 
-use grainbench_solver::record::Snapshot;
+use grainbench_solver::record::{GrainState, Snapshot};
 
 /// Columns of every snapshot, named as in LAMMPS.
 const COLUMNS: &str = "id type radius mass x y z vx vy vz omegax omegay omegaz";
@@ -42,16 +42,13 @@ pub(crate) fn add(snapshot: &Snapshot, out: &mut impl Write) -> io::Result<()> {
 /// Returns the bounds of the box along an axis (m). These are the bounds of the domain, or of the grains if the domain
 /// is flat or unbounded, or ±0.5 m if both are. Readers reject a box without thickness.
 fn bounds_along(snapshot: &Snapshot, axis: usize) -> (f64, f64) {
-    let (low, high) = (snapshot.bounds.0[axis], snapshot.bounds.1[axis]);
-    if low.is_finite() && high.is_finite() && low < high {
-        return (low, high);
-    }
-    let (mut low, mut high) = (f64::INFINITY, f64::NEG_INFINITY);
-    for grain in &snapshot.grains {
-        low = low.min(grain.position[axis] - grain.radius);
-        high = high.max(grain.position[axis] + grain.radius);
-    }
-    if low < high && low.is_finite() && high.is_finite() { (low, high) } else { (-0.5, 0.5) }
+    let is_thick = |(low, high): &(f64, f64)| low.is_finite() && high.is_finite() && low < high;
+    let around = |(low, high): (f64, f64), grain: &GrainState| {
+        (low.min(grain.position[axis] - grain.radius), high.max(grain.position[axis] + grain.radius))
+    };
+    let of_grains = || snapshot.grains.iter().fold((f64::INFINITY, f64::NEG_INFINITY), around);
+    let of_domain = Some((snapshot.bounds.0[axis], snapshot.bounds.1[axis])).filter(is_thick);
+    of_domain.or_else(|| Some(of_grains()).filter(is_thick)).unwrap_or((-0.5, 0.5))
 }
 
 #[cfg(test)]

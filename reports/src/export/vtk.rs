@@ -1,11 +1,11 @@
 //! Snapshots as VTK PolyData (XML, ASCII) for ParaView and VisIt.
 
 use std::collections::HashMap;
-use std::fmt::{Debug, Write as _};
+use std::fmt::Debug;
 use std::io::{self, Write};
 
 use grainbench_solver::record::{ContactState, GrainState, Owner, Partner, Snapshot};
-use maud::Escaper;
+use maud::html;
 use nalgebra::Vector3;
 
 /// Writes the grains as points with their state. Each grain has a vertex, so that ParaView shows it without a filter.
@@ -94,17 +94,16 @@ pub(crate) fn write_contacts(snapshot: &Snapshot, out: &mut impl Write) -> io::R
 
 /// Returns a ParaView collection (`.pvd`) of files, with the time (s) of each file.
 pub(crate) fn collection(files: &[(f64, String)]) -> String {
-    let mut text = String::from(
+    let line = |(time, file): &(f64, String)| {
+        let file = html! { (file) }.into_string();
+        format!("<DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"{file}\"/>\n")
+    };
+    format!(
         "<?xml version=\"1.0\"?>\n\
-         <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n",
-    );
-    for (time, file) in files {
-        let _ = write!(text, "<DataSet timestep=\"{time:?}\" group=\"\" part=\"0\" file=\"");
-        let _ = Escaper::new(&mut text).write_str(file);
-        text.push_str("\"/>\n");
-    }
-    text.push_str("</Collection>\n</VTKFile>\n");
-    text
+         <VTKFile type=\"Collection\" version=\"0.1\" byte_order=\"LittleEndian\">\n<Collection>\n\
+         {}</Collection>\n</VTKFile>\n",
+        files.iter().map(line).collect::<String>()
+    )
 }
 
 /// Returns both ends of the line of a contact. The second end is computed from the normal, not from the position of the

@@ -38,16 +38,9 @@ pub(crate) fn shell(title: &str, body: &Markup) -> String {
 
 /// Returns a name reduced to lower-case letters, digits and `-`, for anchors and file names.
 pub(crate) fn slug(name: &str) -> String {
-    let mut slug = String::new();
-    for letter in name.chars() {
-        if letter.is_ascii_alphanumeric() {
-            slug.push(letter.to_ascii_lowercase());
-        } else if !slug.is_empty() && !slug.ends_with('-') {
-            slug.push('-');
-        }
-    }
-    let slug = slug.trim_end_matches('-');
-    if slug.is_empty() { "unnamed" } else { slug }.to_owned()
+    let parts = name.split(|letter: char| !letter.is_ascii_alphanumeric()).filter(|part| !part.is_empty());
+    let slug = parts.collect::<Vec<_>>().join("-").to_ascii_lowercase();
+    if slug.is_empty() { "unnamed".to_owned() } else { slug }
 }
 
 /// Returns `stem`, or `stem-2`, `stem-3` and so on if the name is already used.

@@ -52,9 +52,9 @@ pub(crate) fn time(diagram: &Diagram, line: &str, target: f64) -> Option<f64> {
 
 /// Returns true if no other solver reaches the error `target` in less time.
 pub(crate) fn is_cheapest(diagram: &Diagram, line: &str, target: f64) -> bool {
-    let others = || lines([diagram]).into_iter().filter(|other| *other != line);
-    time(diagram, line, target)
-        .is_some_and(|mine| others().filter_map(|other| time(diagram, other, target)).all(|other| mine <= other))
+    let others = lines([diagram]).into_iter().filter(|other| *other != line);
+    let mut others = others.filter_map(|other| time(diagram, other, target));
+    time(diagram, line, target).is_some_and(|mine| others.all(|other| mine <= other))
 }
 
 /// Returns true if a solver reaches the error `target`, but in less time than the variation of its start-up.
