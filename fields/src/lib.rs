@@ -16,7 +16,6 @@ pub mod overlap;
 pub mod packing;
 pub mod paint;
 pub mod picture;
-mod points;
 pub mod profile;
 pub mod quantity;
 pub mod tensor;
