@@ -18,7 +18,6 @@ pub mod record_figures;
 pub mod report;
 pub mod results;
 mod section;
-mod series_figures;
 mod solid_figures;
 pub mod store;
 pub mod study;
@@ -57,4 +56,10 @@ pub(crate) fn distinct<T: PartialEq>(values: impl IntoIterator<Item = T>) -> Vec
         }
     }
     seen
+}
+
+/// Returns the value below which the fraction `part` of the values lies; none for an empty list. Sorts the values.
+pub(crate) fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
+    values.sort_by(f64::total_cmp);
+    values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
 }

@@ -2,16 +2,14 @@
 //! speed, profiles and films. Figures of a three-dimensional scene show lit grains and contact forces. All have the
 //! time series of their probes. Several records are shown side by side at equal times.
 
-use crate::number;
-use crate::series_figures;
-pub use crate::series_figures::NamedRecord;
 use crate::solid_figures::{self, not_recorded};
+use crate::{distinct, number};
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::force_plot::force_plot;
-use grainbench_solver::record::{Record, Snapshot};
+use grainbench_solver::record::{Record, Series, Snapshot};
 
 /// Number of pixels along the longer side of a picture.
 const PIXELS: u32 = 800;
@@ -26,6 +24,25 @@ const FEWEST: usize = 8;
 /// Number of fringes between zero and the 98th percentile of the stress, if the stress f of a fringe is not given.
 const FRINGES: f64 = 3.0;
 const SLICES: usize = 60;
+
+/// Largest number of curves of a graph. More curves would be hard to distinguish.
+const CURVES: usize = 8;
+
+/// Record of a run, with a name that distinguishes it in figures.
+pub struct NamedRecord<'a> {
+    /// Name, which is the title of its panels.
+    pub name: String,
+    /// Record of the run.
+    pub record: &'a Record,
+}
+
+impl NamedRecord<'_> {
+    /// Returns the snapshot nearest to a time (s).
+    fn at(&self, time: f64) -> Option<&Snapshot> {
+        let away = |snapshot: &&Snapshot| (snapshot.time - time).abs();
+        self.record.snapshots.iter().min_by(|a, b| away(a).total_cmp(&away(b)))
+    }
+}
 
 /// Returns true if a record has grains or points and all of them lie in the plane z = 0.
 fn is_plane(record: &Record) -> bool {
@@ -73,7 +90,7 @@ pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure
     } else {
         solid(records, &all, shown)
     };
-    figures.extend(series_figures::figures(records, shown.window));
+    figures.extend(probe_figures(records, shown.window));
     figures
 }
 
@@ -240,6 +257,57 @@ fn words(quantity: Quantity) -> (&'static str, &'static str, String) {
     (name, title, caption.to_owned())
 }
 
+/// Splits the name of a column into probe and quantity: `disc.vx` is the quantity `vx` of the probe `disc`.
+fn parts(name: &str) -> (&str, &str) {
+    name.rsplit_once('.').unwrap_or(("", name))
+}
+
+/// Returns one graph for each quantity of the probes of all records, within a time window (s). Values that are missing
+/// or not finite are not plotted.
+fn probe_figures(records: &[NamedRecord<'_>], window: (f64, f64)) -> Vec<Figure> {
+    let columns = records.iter().flat_map(|named| &named.record.series.columns);
+    let quantities = distinct(columns.map(|column| (parts(&column.name).1, column.unit.as_str())));
+    quantities.into_iter().filter_map(|quantity| probe_figure(records, quantity, window)).collect()
+}
+
+fn probe_figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), window: (f64, f64)) -> Option<Figure> {
+    let mut curves = Vec::new();
+    for named in records {
+        let series = &named.record.series;
+        for (at, column) in series.columns.iter().enumerate() {
+            let (probe, part) = parts(&column.name);
+            if (part, column.unit.as_str()) == (quantity, unit) {
+                let label =
+                    [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
+                let points = points(series, at, window);
+                if points.iter().any(|(_, value)| value.is_finite()) {
+                    curves.push(Curve::new(label, Stroke::Line, points));
+                }
+            }
+        }
+    }
+    let more = curves.len().saturating_sub(CURVES);
+    let left_out = if more > 0 { format!(" The table of probes has {more} more.") } else { String::new() };
+    curves.truncate(CURVES);
+    let words = quantity.replace('_', " ");
+    let label = if unit == "1" { words.clone() } else { format!("{words} ({unit})") };
+    (!curves.is_empty()).then(|| {
+        Figure::graph(
+            &format!("probe-{quantity}"),
+            &format!("Probes: {words}"),
+            &format!("{words} from the probes of the scene.{left_out}"),
+            [Axis::linear("time t (s)"), Axis::linear(&label)],
+            curves,
+        )
+    })
+}
+
+fn points(series: &Series, column: usize, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
+    let values = series.values.get(column).map_or(&[][..], Vec::as_slice);
+    let points = series.time.iter().copied().zip(values.iter().copied());
+    points.filter(|(time, _)| (from..=to).contains(time)).collect()
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;
@@ -305,5 +373,14 @@ mod tests {
         let record = sample::record();
         let none = FigureOptions { window: (1e9, 2e9), ..FigureOptions::default() };
         assert!(figures(&[named("", &record)], &none).is_empty());
+    }
+
+    #[test]
+    fn every_quantity_has_its_graph_and_nothing_stands_for_zero() {
+        let record = sample::record();
+        let named = [named("", &record)];
+        let figures = probe_figures(&named, (f64::NEG_INFINITY, f64::INFINITY));
+        assert!(!figures.is_empty() && figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));
+        assert!(probe_figures(&named, (1e9, 2e9)).is_empty(), "a window without samples shows nothing");
     }
 }

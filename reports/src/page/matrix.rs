@@ -9,6 +9,7 @@ use super::cards::{self, meaning};
 use crate::headline::used_tolerance;
 use crate::judged::ExternalResults;
 use crate::number;
+use crate::quantile;
 use crate::report::{Report, Section};
 use crate::table::{Cell, Column, Columns, scrolling};
 
@@ -88,8 +89,7 @@ impl FieldResults {
         let rows: Vec<&Verdict> = of_solver.filter(|row| row.outcome.is_judged()).collect();
         let errors = rows.iter().filter_map(|row| row.error).map(f64::abs).filter(|error| error.is_finite());
         let mut errors: Vec<f64> = errors.collect();
-        errors.sort_by(f64::total_cmp);
-        let error = errors.get(errors.len() / 2).copied();
+        let error = quantile(&mut errors, 0.5);
         (!rows.is_empty()).then(|| Self { error, counts: counts(rows.iter().map(|row| row.outcome)) })
     }
 

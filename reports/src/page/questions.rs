@@ -4,7 +4,6 @@ use grainbench_harness::figure::{Drawing, Figure};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 
-use crate::distinct;
 use crate::measured::{AT, Costs, Effects, Hold, Line, Measurements, Stability, Stamp};
 use crate::number::{self, TimeUnit};
 use crate::plot::graph::{self, Form};
@@ -17,6 +16,7 @@ use crate::study::stability::{HardCaseResult, Hardness};
 use crate::study::stability_page::{self, sign};
 use crate::study::{cost, effects, stability};
 use crate::table::{Cell, Column, Row, Table};
+use crate::{distinct, quantile};
 
 /// Size of a graph on the first screen (drawing units).
 const FORM: Form = Form { width: 480.0, height: 335.0, legend: false };
@@ -247,9 +247,8 @@ fn needed(entries: &[&Entry]) -> (usize, usize) {
 /// Returns the median ratio of processor times with and without an effect; a dash for fewer than three scenes.
 fn expense(entries: &[&Entry]) -> String {
     let mut times: Vec<f64> = entries.iter().filter_map(|entry| entry.time).collect();
-    times.sort_by(f64::total_cmp);
-    let median = times.get(times.len() / 2).filter(|_| times.len() >= 3);
-    median.map_or_else(|| "—".to_owned(), |time| format!("× {}", number::significant(*time, 2)))
+    let median = quantile(&mut times, 0.5).filter(|_| times.len() >= 3);
+    median.map_or_else(|| "—".to_owned(), |time| format!("× {}", number::significant(time, 2)))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! Figures of a sweep: error against cost over all points.
 
 use super::{Point, Sweep};
-use crate::distinct;
+use crate::{distinct, quantile};
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 
 /// Returns the solvers with their resolution levels and the points of each level, in the order of the points.
@@ -9,12 +9,6 @@ pub(super) fn levels(sweep: &Sweep) -> Vec<(&str, &str, Vec<&Point>)> {
     let points = |level: (&str, &str)| sweep.points.iter().filter(|point| point.level() == level).collect();
     let levels = distinct(sweep.points.iter().map(Point::level)).into_iter();
     levels.map(|(solver, level)| (solver, level, points((solver, level)))).collect()
-}
-
-/// Returns the value below which the fraction `part` of the values lies; none for an empty list. Sorts the values.
-pub(super) fn quantile(values: &mut [f64], part: f64) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(((values.len() as f64 * part) as usize).min(values.len().saturating_sub(1))).copied()
 }
 
 /// Returns the figure of error against particle-steps, with one point for each solver and level.

@@ -1,12 +1,12 @@
 //! Page of a sweep.
 
-use super::figures::{levels, quantile};
+use super::figures::levels;
 use super::{KINDS, Sweep, counts};
-use crate::class;
 use crate::number;
 use crate::page::{provenance, shell};
 use crate::row;
 use crate::table::{Cell, Column, Format, Table};
+use crate::{class, quantile};
 use grainbench_harness::verdict::Severity;
 use maud::{Markup, PreEscaped, html};
 

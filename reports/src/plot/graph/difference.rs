@@ -34,21 +34,15 @@ pub(super) fn from_graph(graph: &Graph, y: &Scale) -> Option<Difference> {
     if !is_all || exact.is_empty() || (exact.len() != 1 && exact.len() != lines.len()) {
         return None;
     }
-    let mut curves = Vec::new();
-    let mut worst = 0.0_f64;
-    for (place, (at, line)) in lines.iter().enumerate() {
+    let difference = |(place, (at, line)): (usize, &(usize, &Curve))| {
         let reference = exact[if exact.len() == 1 { 0 } else { place }];
-        let found: Vec<(f64, f64)> =
-            line.points.iter().filter_map(|&(x, value)| Some((x, value - at_x(reference, x)?))).collect();
-        if found.len() < 8 {
-            return None;
-        }
-        worst = found.iter().map(|(_, off)| (y.position(off.abs()) - y.position(0.0)).abs()).fold(worst, f64::max);
-        curves.push((*at, found));
-    }
-    let is_seen = |(_, off): &&(f64, f64)| off.is_finite();
-    let values: Vec<f64> =
-        curves.iter().flat_map(|(_, points)| points.iter().filter(is_seen)).map(|point| point.1).collect();
+        let points = line.points.iter().filter_map(|&(x, value)| Some((x, value - at_x(reference, x)?)));
+        Some((*at, points.collect::<Vec<_>>())).filter(|(_, points)| points.len() >= 8)
+    };
+    let curves = lines.iter().enumerate().map(difference).collect::<Option<Vec<_>>>()?;
+    let all = || curves.iter().flat_map(|(_, points)| points).map(|(_, off)| *off);
+    let worst = all().map(|off| (y.position(off.abs()) - y.position(0.0)).abs()).fold(0.0, f64::max);
+    let values: Vec<f64> = all().filter(|off| off.is_finite()).collect();
     let scale = Scale::fit(values.iter().copied().chain([0.0]), false, 0.06, 3);
     (worst < TOLD_APART && values.iter().any(|value| *value != 0.0)).then_some(Difference { scale, curves })
 }
