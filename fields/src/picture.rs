@@ -103,13 +103,10 @@ fn of_few_levels(mut raster: Raster, frames: usize) -> Raster {
 
 /// Returns the smallest view that contains the views of all snapshots, with `longest` pixels along the longer side.
 fn common_view(shots: &[Shot<'_>], longest: u32) -> View {
-    let mut corners: Option<([f64; 2], [f64; 2])> = None;
-    for snapshot in shots.iter().flat_map(|shot| &shot.frames) {
-        let view = View::from_snapshot(snapshot, longest);
-        let (low, high) = corners.unwrap_or((view.low, view.high()));
-        let both = |extreme: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [extreme(a[0], b[0]), extreme(a[1], b[1])];
-        corners = Some((both(f64::min, low, view.low), both(f64::max, high, view.high())));
-    }
+    let views = shots.iter().flat_map(|shot| &shot.frames).map(|snapshot| View::from_snapshot(snapshot, longest));
+    let both = |extreme: fn(f64, f64) -> f64, a: [f64; 2], b: [f64; 2]| [extreme(a[0], b[0]), extreme(a[1], b[1])];
+    let corners = views.map(|view| (view.low, view.high()));
+    let corners = corners.reduce(|a, b| (both(f64::min, a.0, b.0), both(f64::max, a.1, b.1)));
     let (low, high) = corners.unwrap_or(([0.0; 2], [1.0; 2]));
     View::new(low, high, longest)
 }

@@ -1,5 +1,6 @@
 //! Output directory of a report. All its files are written together. The report can be read back to write them again.
 
+use std::collections::BTreeSet;
 use std::fmt::Display;
 use std::path::Path;
 
@@ -77,8 +78,9 @@ pub fn write_report(dir: impl AsRef<Path>, report: &Report, parquet: bool) -> Re
 /// Returns the figures of a report with the names of their files.
 #[must_use]
 pub fn named_figures(report: &Report) -> Vec<(String, &Figure)> {
-    let figures = report.sections.iter().flat_map(|section| &section.figures);
-    page::figure_names(report).into_iter().flatten().zip(figures).collect()
+    let mut taken = BTreeSet::new();
+    let named = |section| page::figure_names(section, &mut taken).into_iter().zip(&section.figures);
+    report.sections.iter().flat_map(named).collect()
 }
 
 /// Returns the path and the content of each file of a figure: the picture as SVG, the data of a graph as CSV, and a film

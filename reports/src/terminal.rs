@@ -68,15 +68,16 @@ fn conclusion(report: &Report) -> Option<String> {
     let counts = Headline::of_report(report);
     let (red, amber, judged) = (counts.red(), counts.amber(), counts.conclusive());
     let missed = counts.controls - counts.controls_red;
+    let are = |count: usize| if count == 1 { "is" } else { "are" };
     let (mark, mut text) = match judged {
         _ if counts.rows() == 0 => return None,
         0 => ("▲", "No result is conclusive.".to_owned()),
-        _ if red > 0 => ("✗", format!("{red} of {judged} conclusive results {} red.", verb(red, "is", "are"))),
+        _ if red > 0 => ("✗", format!("{red} of {judged} conclusive results {} red.", are(red))),
         1 => ("✓", "The only conclusive result is within its tolerance.".to_owned()),
         _ => ("✓", format!("All {judged} conclusive results are within their tolerances.")),
     };
     if amber > 0 {
-        text += &format!(" {amber} {} amber: inconclusive, or a documented error.", verb(amber, "is", "are"));
+        text += &format!(" {amber} {} amber: inconclusive, or a documented error.", are(amber));
     }
     text += &match counts.controls {
         0 => String::new(),
@@ -85,11 +86,6 @@ fn conclusion(report: &Report) -> Option<String> {
         all => format!(" All {all} negative controls failed, as they must."),
     };
     Some(format!("{} {text}", if report.passes() { mark } else { "✗" }))
-}
-
-/// Returns the form of a verb for a number.
-const fn verb(count: usize, singular: &'static str, plural: &'static str) -> &'static str {
-    if count == 1 { singular } else { plural }
 }
 
 /// Returns one line for each red result, for each negative control that did not fail as required, and for each further

@@ -28,7 +28,7 @@ use maud::{Render, html};
 use self::section::CaseSection;
 use crate::headline::Headline;
 use crate::plot::DrawError;
-use crate::report::Report;
+use crate::report::{Report, Section};
 
 /// Allowance for the HTML tags around the content of the page (bytes).
 const FRAME: usize = 2_000;
@@ -54,10 +54,9 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     );
     let anchors: Vec<String> = report.sections.iter().map(|section| unique(&slug(&section.name), &mut taken)).collect();
     taken.extend(anchors.iter().map(|anchor| rows_of(anchor)));
-    let names = figure_names(report);
-    let mut sections = Vec::new();
-    for ((section, anchor), names) in report.sections.iter().zip(&anchors).zip(&names) {
-        sections.push(CaseSection::new(section, anchor, names, &mut taken)?);
+    let (mut sections, mut names) = (Vec::new(), BTreeSet::new());
+    for (section, anchor) in report.sections.iter().zip(&anchors) {
+        sections.push(CaseSection::new(section, anchor, &figure_names(section, &mut names), &mut taken)?);
     }
     let contents = overview::contents(report, &anchors);
     let studies = questions::sections(&report.measured);
@@ -83,14 +82,10 @@ pub fn render(report: &Report) -> Result<Page, DrawError> {
     Ok(Page { html: shell(&format!("grainbench · {}", counts.sentence()), &body), beside })
 }
 
-/// Returns the file names of all figures, grouped by section.
-pub(crate) fn figure_names(report: &Report) -> Vec<Vec<String>> {
-    let mut taken = BTreeSet::new();
-    let section_names = |section: &crate::report::Section| {
-        let stem = |figure: &grainbench_harness::figure::Figure| slug(&format!("{}-{}", section.name, figure.name));
-        section.figures.iter().map(|figure| unique(&stem(figure), &mut taken)).collect()
-    };
-    report.sections.iter().map(section_names).collect()
+/// Returns the file names of the figures of a section. `taken` contains the names of all sections so far.
+pub(crate) fn figure_names(section: &Section, taken: &mut BTreeSet<String>) -> Vec<String> {
+    let stems = section.figures.iter().map(|figure| slug(&format!("{}-{}", section.name, figure.name)));
+    stems.map(|stem| unique(&stem, taken)).collect()
 }
 
 #[cfg(test)]

@@ -33,16 +33,14 @@ pub(crate) fn light(field: &Field) -> io::Result<(Field, Option<String>)> {
         // Fast compression makes a film larger by a few tens of percent. It detects films that are much too large
         // in less time than slow compression.
         let far_too_heavy = is_film && reel(&field, Compression::fast())?.len() > 2 * FILM;
-        if far_too_heavy && field.panels[0].frames[0].width >= 2 * ACROSS {
-            field = lighter(&field);
-            continue;
-        }
-        let reel = if is_film { Some(reel(&field, Compression::default())?) } else { None };
-        let stills = || Ok::<usize, io::Error>(field::stills(&field)?.iter().map(Vec::len).sum());
-        let weight = reel.as_ref().map_or_else(stills, |reel| Ok(reel.len()))?;
-        let width = field.panels[0].frames[0].width;
-        if weight <= if is_film { FILM } else { PICTURE } || width < 2 * ACROSS {
-            return Ok((field, reel));
+        let is_narrow = |field: &Field| field.panels[0].frames[0].width < 2 * ACROSS;
+        if !far_too_heavy || is_narrow(&field) {
+            let reel = if is_film { Some(reel(&field, Compression::default())?) } else { None };
+            let stills = || Ok::<usize, io::Error>(field::stills(&field)?.iter().map(Vec::len).sum());
+            let weight = reel.as_ref().map_or_else(stills, |reel| Ok(reel.len()))?;
+            if weight <= if is_film { FILM } else { PICTURE } || is_narrow(&field) {
+                return Ok((field, reel));
+            }
         }
         field = lighter(&field);
     }

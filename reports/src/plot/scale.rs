@@ -156,29 +156,22 @@ impl Scale {
             .flat_map(|decade| [1.0_f64, 2.0, 5.0].map(|multiple| f64::from(decade) + multiple.log10()))
             .filter(|place| is_inside(*place))
             .count();
-        let mut ticks = Vec::new();
-        for decade in first..=last {
-            for multiple in 1..10 {
-                let place = f64::from(decade) + f64::from(multiple).log10();
-                if !is_inside(place) {
-                    continue;
-                }
-                let label = match multiple {
-                    1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
-                    // An axis with few powers of ten also has labels at 2 and 5.
-                    2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
-                    // A very short axis has labels at all multiples.
-                    2..=9 if usual < 2 => Some(format!("{multiple}×{}", power_of_ten(decade))),
-                    _ => None,
-                };
-                // With too many ticks, the grid would be a grey area.
-                let fine = if multiple == 1 { 40.0 } else { 8.0 };
-                if label.is_some() || decades <= fine {
-                    ticks.push(Tick { value: 10_f64.powf(place), label });
-                }
-            }
-        }
-        ticks
+        let tick = |(decade, multiple): (i32, i32)| {
+            let place = f64::from(decade) + f64::from(multiple).log10();
+            let label = match multiple {
+                1 if decade.rem_euclid(stride) == 0 => Some(power_of_ten(decade)),
+                // An axis with few powers of ten also has labels at 2 and 5, and a very short axis at all multiples.
+                2 | 5 if whole < 3.0 => Some(format!("{multiple}×{}", power_of_ten(decade))),
+                2..=9 if usual < 2 => Some(format!("{multiple}×{}", power_of_ten(decade))),
+                _ => None,
+            };
+            // With too many ticks, the grid would be a grey area.
+            let fine = if multiple == 1 { 40.0 } else { 8.0 };
+            let is_drawn = is_inside(place) && (label.is_some() || decades <= fine);
+            is_drawn.then(|| Tick { value: 10_f64.powf(place), label })
+        };
+        let multiples = |decade: i32| (1..10).map(move |multiple| (decade, multiple));
+        (first..=last).flat_map(multiples).filter_map(tick).collect()
     }
 }
 

@@ -11,36 +11,28 @@ use std::collections::BTreeSet;
 
 pub(crate) fn render(study: &Study) -> String {
     let mut taken = BTreeSet::from(["summary".to_owned(), "provenance".to_owned()]);
-    let mut sections = Vec::new();
-    if !study.diagrams.is_empty() {
-        sections.push(cost_summary(study));
-    }
-    for diagram in &study.diagrams {
-        let anchor = unique(&slug(&format!("cost-{}-{}", diagram.case, diagram.variant)), &mut taken);
-        sections.push(cost_section(diagram, &anchor));
-    }
-    sections.extend(study.scenes.iter().map(|cost| estimate::render(cost, &study.limits)));
     let is_cost = !(study.diagrams.is_empty() && study.scenes.is_empty());
-    let mut title = "what accuracy costs";
-    if !(study.limits.is_empty() && study.hard.is_empty()) {
-        title = if is_cost { title } else { "what stays stable" };
-        sections.push(if study.scenes.is_empty() {
-            stability_page::render(study)
-        } else {
-            stability_page::largest_steps(&study.limits)
-        });
-    }
-    if !study.ledger.is_empty() {
-        title = if is_cost { title } else { "influence of each effect" };
-        sections.push(if study.scenes.is_empty() {
-            effects::render(&study.ledger)
-        } else {
-            effects::important(&study.ledger)
-        });
-    }
+    let has_limits = !(study.limits.is_empty() && study.hard.is_empty());
+    let title = match (is_cost, study.ledger.is_empty()) {
+        (false, false) => "influence of each effect",
+        (false, true) if has_limits => "what stays stable",
+        _ => "what accuracy costs",
+    };
     let body = html! {
         main.alone {
-            @for section in &sections { (section) }
+            @if !study.diagrams.is_empty() { (cost_summary(study)) }
+            @for diagram in &study.diagrams {
+                (cost_section(diagram, &unique(&slug(&format!("cost-{}-{}", diagram.case, diagram.variant)), &mut taken)))
+            }
+            @for cost in &study.scenes { (estimate::render(cost, &study.limits)) }
+            @if has_limits {
+                @if study.scenes.is_empty() { (stability_page::render(study)) }
+                @else { (stability_page::largest_steps(&study.limits)) }
+            }
+            @if !study.ledger.is_empty() {
+                @if study.scenes.is_empty() { (effects::render(&study.ledger)) }
+                @else { (effects::important(&study.ledger)) }
+            }
             (provenance::render(&study.provenance))
         }
     };

@@ -135,10 +135,7 @@ impl Point {
 
     /// Returns the error and the wall-clock time (s); none if one of them is missing.
     pub(crate) fn place(&self) -> Option<(f64, f64)> {
-        match (self.standing, self.error, self.wall_seconds) {
-            (PointStatus::Measured, Some(error), Some(wall)) => Some((error, wall)),
-            _ => None,
-        }
+        self.error.zip(self.wall_seconds).filter(|_| self.standing == PointStatus::Measured)
     }
 }
 
