@@ -20,4 +20,3 @@ pub mod profile;
 pub mod quantity;
 pub mod tensor;
 pub mod trails;
-pub mod view;
