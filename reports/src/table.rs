@@ -6,6 +6,7 @@
 use crate::number::{self, TimeUnit};
 use crate::parts::{GroupedTable, Values};
 use maud::{Markup, html};
+use parquet::file::properties::WriterProperties;
 use std::io::{self, Write};
 
 /// Number of rows that are in memory at the same time when Parquet is written.
@@ -291,7 +292,7 @@ impl<'a> Table<'a> {
     pub fn parquet(mut self, out: impl Write + Send) -> io::Result<()> {
         let mut group: Vec<Row> = self.rows.by_ref().take(GROUP).collect();
         let mut values = self.values(&group);
-        let mut file = GroupedTable::new(self.name, &values, out)?;
+        let mut file = GroupedTable::new(self.name, &values, WriterProperties::builder(), out)?;
         while !group.is_empty() {
             file.add(&values)?;
             group = self.rows.by_ref().take(GROUP).collect();

@@ -1,8 +1,6 @@
 //! Size limit of a page. Parts are moved to files beside the page until the remaining page is small enough. The least
 //! important parts are moved first and, among equally important ones, the largest.
 
-#[cfg(test)]
-use maud::PreEscaped;
 use maud::{Markup, Render, html};
 
 /// Largest size of a page (bytes).
@@ -90,6 +88,7 @@ pub(crate) fn fit(parts: &mut [&mut Part], weight: usize, limit: usize) -> Vec<(
 #[cfg(test)]
 mod tests {
     use super::*;
+    use maud::PreEscaped;
 
     fn text(parts: &[Part]) -> String {
         html! { @for part in parts { (part) } }.into_string()

@@ -176,7 +176,7 @@ fn limits(lines: &[&Hold]) -> String {
 fn changes(effects: &Effects) -> Markup {
     const ROW: f64 = 36.0;
     const FRAME: [f64; 2] = [150.0, 400.0];
-    let names = distinct(effects.ledger.iter().map(|entry| entry.effect.as_str()));
+    let mut names = distinct(effects.ledger.iter().map(|entry| entry.effect.as_str()));
     let entries_of = |name: &str| effects.ledger.iter().filter(move |entry| entry.effect == name).collect::<Vec<_>>();
     let scale = Scale::fit(CHANGES.into_iter(), true, 0.03, 7);
     let across = |value: f64| FRAME[0] + (FRAME[1] - FRAME[0]) * scale.position(value);
@@ -188,9 +188,8 @@ fn changes(effects: &Effects) -> Markup {
         let places = shifts.filter(|shift| shift.red == fails).filter_map(change);
         places.map(|change| format!("M{:.1} {y}v16", across(change.clamp(CHANGES[0], CHANGES[1])))).collect()
     };
-    let mut order = names.clone();
-    order.sort_by_key(|name| std::cmp::Reverse(needed(&entries_of(name)).0));
-    let most = order.iter().take(3).map(|name| {
+    names.sort_by_key(|name| std::cmp::Reverse(needed(&entries_of(name)).0));
+    let most = names.iter().take(3).map(|name| {
         let (count, all) = needed(&entries_of(name));
         format!("without {name} in {count} of {all}")
     });
@@ -210,7 +209,7 @@ fn changes(effects: &Effects) -> Markup {
                     }
                 }
                 path d=(format!("M{} {bottom}H{}", FRAME[0], FRAME[1])) stroke="#222" {}
-                @for (at, name) in order.iter().enumerate() {
+                @for (at, name) in names.iter().enumerate() {
                     @let (y, entries) = (34.0 + ROW * at as f64, entries_of(name));
                     text x="0" y=(y + 9.0) { (name) }
                     text x="0" y=(y + 24.0) font-size="12" fill="#666" {

@@ -5,32 +5,30 @@ use maud::{Markup, html};
 
 use crate::number;
 use crate::report::RunCost;
-use crate::row;
-use crate::table::{Cell, Column, Columns, Format, Table};
+use crate::table::{Cell, Column, Columns, Format};
 
 pub(crate) fn controls(controls: &[ControlResult]) -> Markup {
-    let columns = [
-        Column::text("Result"),
-        Column::heading("Quantity"),
-        Column::text("Solver"),
-        Column::text("Wrong physics"),
-        Column::new("Error found, allowed", Format::Error),
-    ];
-    let row = |control: &ControlResult| {
-        let (class, result) = if control.turned_red { ("pass", "✓ turned red") } else { ("fail", "✗ not red") };
-        let variant = html! { @if !control.variant.is_empty() { span.fine { (control.variant) } } };
-        let allowed = html! { span.fine { "allowed " (number::fraction(control.allowed)) } };
-        let error = Cell::Page(
-            html! { (number::error(control.error)) (allowed) },
-            control.error.map(|error| error.abs().to_string()),
-        );
-        let result = html! { span class={ "mark " (class) } { (result) } " by " (control.how.word()) };
-        let quantity = html! { (control.quantity) (variant) };
-        row![result, quantity, &control.solver, &control.wrong_physics, error].class(class)
+    let class = |control: &ControlResult| if control.turned_red { "pass" } else { "fail" };
+    let result = |control: &ControlResult| {
+        let result = if control.turned_red { "✓ turned red" } else { "✗ not red" };
+        html! { span class={ "mark " (class(control)) } { (result) } " by " (control.how.word()) }
     };
+    let quantity = |control: &ControlResult| {
+        html! { (control.quantity) @if !control.variant.is_empty() { span.fine { (control.variant) } } }
+    };
+    let error = |control: &ControlResult| {
+        let allowed = html! { span.fine { "allowed " (number::fraction(control.allowed)) } };
+        let key = control.error.map(|error| error.abs().to_string());
+        Cell::Page(html! { (number::error(control.error)) (allowed) }, key)
+    };
+    let columns = Columns::<&ControlResult>::new(Column::text("Result"), result)
+        .and(Column::heading("Quantity"), quantity)
+        .and(Column::text("Solver"), |control| &control.solver)
+        .and(Column::text("Wrong physics"), |control| &control.wrong_physics)
+        .and(Column::new("Error found, allowed", Format::Error), error);
     html! {
         p.note { "Each claim is evaluated with wrong physics and must fail." }
-        (Table::new("", columns, controls.iter().map(row)).page("rows sorts"))
+        (columns.table("", controls, class).page("rows sorts"))
     }
 }
 

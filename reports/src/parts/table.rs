@@ -9,7 +9,7 @@ use parquet::basic::{Compression, Encoding, LogicalType, Repetition, Type as Phy
 use parquet::column::reader::get_typed_column_reader;
 use parquet::data_type::{BoolType, ByteArray, ByteArrayType, DataType, DoubleType, Int64Type};
 use parquet::errors::ParquetError;
-use parquet::file::properties::WriterProperties;
+use parquet::file::properties::{WriterProperties, WriterPropertiesBuilder};
 use parquet::file::reader::{FileReader, SerializedFileReader};
 use parquet::file::writer::{SerializedFileWriter, SerializedRowGroupWriter};
 use parquet::schema::types::{ColumnPath, Type};
@@ -36,8 +36,7 @@ impl TableWriter {
     /// Creates a file for the table of a type of row, without the columns in `without`.
     pub(super) fn new<R: Row>(directory: &Path, without: &[&'static str]) -> io::Result<Self> {
         let file = HashedFile { file: File::create(directory.join(file_name(R::TABLE)))?, hash: blake3::Hasher::new() };
-        let mut properties =
-            WriterProperties::builder().set_compression(Compression::SNAPPY).set_dictionary_enabled(false);
+        let mut properties = WriterProperties::builder().set_dictionary_enabled(false);
         for name in REPEATED {
             properties = properties.set_column_dictionary_enabled(ColumnPath::from(name), true);
         }
@@ -53,7 +52,7 @@ impl TableWriter {
             };
             properties = properties.set_column_encoding(ColumnPath::from(*name), encoding);
         }
-        let table = GroupedTable::with_properties(R::TABLE, &columns, properties.build(), file)?;
+        let table = GroupedTable::new(R::TABLE, &columns, properties, file)?;
         Ok(Self { table, without: without.to_vec() })
     }
 
@@ -168,18 +167,14 @@ pub(crate) struct GroupedTable<W: Write + Send> {
 }
 
 impl<W: Write + Send> GroupedTable<W> {
-    /// Begins a table with the names and types of the columns in `like`.
-    pub(crate) fn new(table: &str, like: &[(impl AsRef<str>, Values)], file: W) -> io::Result<Self> {
-        let properties = WriterProperties::builder().set_compression(Compression::SNAPPY).build();
-        Self::with_properties(table, like, properties, file)
-    }
-
-    fn with_properties(
+    /// Begins a compressed table with the names and types of the columns in `like`.
+    pub(crate) fn new(
         table: &str,
         like: &[(impl AsRef<str>, Values)],
-        properties: WriterProperties,
+        properties: WriterPropertiesBuilder,
         file: W,
     ) -> io::Result<Self> {
+        let properties = properties.set_compression(Compression::SNAPPY).build();
         let fields = like.iter().map(|(name, values)| field(name.as_ref(), values)).collect::<Result<_, _>>();
         let schema = fields.and_then(|fields| Type::group_type_builder(table).with_fields(fields).build());
         let schema = schema.map(Arc::new).map_err(io_error)?;

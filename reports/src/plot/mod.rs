@@ -29,16 +29,11 @@ pub(crate) const FONTS: &str =
 
 /// Error when a figure cannot be drawn.
 #[derive(Debug, Error)]
-#[error("cannot draw figure `{figure}`: {reason}")]
-pub struct DrawError {
-    /// Name of the figure.
-    pub figure: String,
-    /// Reason why the figure cannot be drawn.
-    pub reason: String,
-}
+#[error("{0}")]
+pub struct DrawError(String);
 
 fn wrong(figure: &Figure) -> impl Fn(std::io::Error) -> DrawError {
-    |reason| DrawError { figure: figure.name.clone(), reason: reason.to_string() }
+    |reason| DrawError(format!("cannot draw figure `{}`: {reason}", figure.name))
 }
 
 /// Draws a figure as a complete SVG document.
