@@ -63,15 +63,11 @@ impl Grid {
     /// Returns the index of the cell that contains a point (m), or `None` if the point is outside the grid.
     #[must_use]
     pub fn find(&self, point: Vector3<f64>) -> Option<usize> {
-        let mut at = [0; 3];
-        for axis in 0..3 {
+        let along = |axis: usize| {
             let cell = ((point[axis] - self.low[axis]) / self.cell[axis]).floor();
-            if !(0.0..self.count[axis] as f64).contains(&cell) {
-                return None;
-            }
-            at[axis] = cell as usize;
-        }
-        Some(self.place(at))
+            (0.0..self.count[axis] as f64).contains(&cell).then_some(cell as usize)
+        };
+        Some(self.place([along(0)?, along(1)?, along(2)?]))
     }
 }
 

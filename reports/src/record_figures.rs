@@ -270,19 +270,20 @@ fn probe_figures(records: &[NamedRecord<'_>], window: (f64, f64)) -> Vec<Figure>
     quantities.into_iter().filter_map(|quantity| probe_figure(records, quantity, window)).collect()
 }
 
-fn probe_figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), window: (f64, f64)) -> Option<Figure> {
+fn probe_figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), (from, to): (f64, f64)) -> Option<Figure> {
     let mut curves = Vec::new();
-    for named in records {
-        let series = &named.record.series;
-        for (at, column) in series.columns.iter().enumerate() {
+    for NamedRecord { name, record } in records {
+        let Series { time, columns, values, .. } = &record.series;
+        for (column, values) in columns.iter().zip(values) {
             let (probe, part) = parts(&column.name);
-            if (part, column.unit.as_str()) == (quantity, unit) {
-                let label =
-                    [probe, &named.name].into_iter().filter(|word| !word.is_empty()).collect::<Vec<_>>().join(", ");
-                let points = points(series, at, window);
-                if points.iter().any(|(_, value)| value.is_finite()) {
-                    curves.push(Curve::new(label, Stroke::Line, points));
-                }
+            if (part, column.unit.as_str()) != (quantity, unit) {
+                continue;
+            }
+            let points = time.iter().copied().zip(values.iter().copied());
+            let points: Vec<_> = points.filter(|(time, _)| (from..=to).contains(time)).collect();
+            if points.iter().any(|(_, value)| value.is_finite()) {
+                let words = [probe, name].into_iter().filter(|word| !word.is_empty());
+                curves.push(Curve::new(words.collect::<Vec<_>>().join(", "), Stroke::Line, points));
             }
         }
     }
@@ -300,12 +301,6 @@ fn probe_figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), win
             curves,
         )
     })
-}
-
-fn points(series: &Series, column: usize, (from, to): (f64, f64)) -> Vec<(f64, f64)> {
-    let values = series.values.get(column).map_or(&[][..], Vec::as_slice);
-    let points = series.time.iter().copied().zip(values.iter().copied());
-    points.filter(|(time, _)| (from..=to).contains(time)).collect()
 }
 
 #[cfg(test)]

@@ -348,16 +348,14 @@ impl<'a> Table<'a> {
             *line = head.chars().count().min(*line);
         }
         rows.insert(1, lines.iter().map(|width| "─".repeat(*width)).collect());
-        let mut text = String::new();
-        for row in rows {
+        let line = |row: &Vec<String>| {
             let cells = row.iter().zip(&widths).zip(&is_number).map(|((cell, &width), is_number)| {
                 let cell = cut(cell, width);
                 if *is_number { format!("{cell:>width$}") } else { format!("{cell:<width$}") }
             });
-            text.push_str(cells.collect::<Vec<_>>().join("  ").trim_end());
-            text.push('\n');
-        }
-        text
+            cells.collect::<Vec<_>>().join("  ").trim_end().to_owned() + "\n"
+        };
+        rows.iter().map(line).collect()
     }
 
     /// Returns the table as Markdown.

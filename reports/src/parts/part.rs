@@ -150,11 +150,8 @@ pub(crate) fn rows_of(snapshot: &Snapshot) -> u64 {
 /// Returns the snapshots of a closed part, one after another.
 pub(crate) fn snapshots(folder: &Path) -> io::Result<impl Iterator<Item = io::Result<Snapshot>>> {
     fn all<R: Row>(table: &mut TableReader<SnapshotRow<R>>, number: u64) -> io::Result<Vec<R>> {
-        let mut rows = Vec::new();
-        while let Some(stepped) = table.next_if(|row| row.snapshot == number)? {
-            rows.push(stepped.row);
-        }
-        Ok(rows)
+        let rows = iter::from_fn(|| table.next_if(|row| row.snapshot == number).transpose());
+        rows.map(|row| Ok(row?.row)).collect()
     }
     let mut frames = TableReader::open(folder)?;
     let (mut grains, mut contacts) = (TableReader::open(folder)?, TableReader::open(folder)?);

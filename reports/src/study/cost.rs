@@ -122,14 +122,9 @@ pub(crate) fn figure(diagram: &Diagram) -> Figure {
         bars.extend(floors(diagram, line));
     }
     curves.push(Curve::new("floor: error that refinement does not reduce", Stroke::Bars, bars));
-    let all = front(&diagram.points);
-    let mut stairs = Vec::new();
-    for pair in all.windows(2) {
-        if let (Some(a), Some(b)) = (drawn(pair[0]), drawn(pair[1])) {
-            stairs.extend([a, (b.0, a.1), b]);
-        }
-    }
-    curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs));
+    let all: Vec<(f64, f64)> = front(&diagram.points).into_iter().filter_map(drawn).collect();
+    let stairs = all.windows(2).flat_map(|pair| [pair[0], (pair[1].0, pair[0].1), pair[1]]);
+    curves.push(Curve::new("Pareto front", Stroke::Dashed, stairs.collect()));
     // The legend names each solver, also without points.
     curves.retain(|curve| curve.stroke == Stroke::MarkedLine || !curve.points.is_empty());
     let failures = diagram.points.iter().any(|point| point.standing == PointStatus::Failed);

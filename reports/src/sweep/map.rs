@@ -181,17 +181,13 @@ fn panel(
 
 /// Returns the line on a panel. It has several pieces if it leaves the panel and returns.
 fn line(sweep: &Sweep, axes: &[Marks; 2], [left, top]: [f64; 2], size: [f64; 2]) -> Vec<String> {
-    let mut runs: Vec<Vec<String>> = vec![Vec::new()];
-    for (x, y) in sweep.line.iter().flat_map(|line| &line.points) {
-        match (axes[0].along(*x), axes[1].along(*y)) {
-            (Some(column), Some(row)) => {
-                let at = [left + column * size[0], top + HIGH - row * size[1]];
-                runs[0].push(format!("{},{}", px(at[0]), px(at[1])));
-            }
-            _ => runs.insert(0, Vec::new()),
-        }
-    }
-    runs.into_iter().filter(|run| run.len() > 1).map(|run| run.join(" ")).collect()
+    let place = |(x, y): &(f64, f64)| {
+        let (column, row) = (axes[0].along(*x)?, axes[1].along(*y)?);
+        Some(format!("{},{}", px(left + column * size[0]), px(top + HIGH - row * size[1])))
+    };
+    let places: Vec<_> = sweep.line.iter().flat_map(|line| &line.points).map(place).collect();
+    let runs = places.rsplit(Option::is_none).filter(|run| run.len() > 1);
+    runs.map(|run| run.iter().flatten().map(String::as_str).collect::<Vec<_>>().join(" ")).collect()
 }
 
 /// Returns the index of the colour of a cell, from its numbers of points within, outside, amber and not judged; none for a

@@ -157,8 +157,7 @@ pub(super) fn thin(points: Vec<Place>) -> Vec<Place> {
         return points;
     }
     let column = |point: &Place| (0.5 * point.0).floor() as i64;
-    let mut kept = Vec::new();
-    for run in points.chunk_by(|a, b| column(a) == column(b)) {
+    let extremes = |run: &[Place]| {
         let lowest = run.iter().enumerate().min_by(|a, b| a.1.1.total_cmp(&b.1.1));
         let highest = run.iter().enumerate().max_by(|a, b| a.1.1.total_cmp(&b.1.1));
         let mut picks = vec![0, run.len() - 1];
@@ -166,9 +165,9 @@ pub(super) fn thin(points: Vec<Place>) -> Vec<Place> {
         picks.extend(highest.map(|(place, _)| place));
         picks.sort_unstable();
         picks.dedup();
-        kept.extend(picks.into_iter().map(|place| run[place]));
-    }
-    kept
+        picks.into_iter().map(|place| run[place]).collect::<Vec<_>>()
+    };
+    points.chunk_by(|a, b| column(a) == column(b)).flat_map(extremes).collect()
 }
 
 #[cfg(test)]
