@@ -56,27 +56,21 @@ fn is_plane(record: &Record) -> bool {
 }
 
 /// Options of the figures of records.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, Default)]
 pub struct FigureOptions {
     /// Stress f of a photoelastic fringe (Pa). With none, about three fringes are shown.
     pub fringe: Option<f64>,
-    /// First and last time of the figures (s).
-    pub window: (f64, f64),
-    /// Largest number of frames of a film.
-    pub frames: usize,
-}
-
-impl Default for FigureOptions {
-    fn default() -> Self {
-        Self { fringe: None, window: (f64::NEG_INFINITY, f64::INFINITY), frames: FRAMES }
-    }
+    /// First and last time of the figures (s). With none, all times are shown.
+    pub window: Option<(f64, f64)>,
+    /// Largest number of frames of a film. With none, it is 60.
+    pub frames: Option<usize>,
 }
 
 /// Returns all figures for which the records have data, at times of the first record, and the time series of the
 /// probes. Three-dimensional records are shown in one view, obliquely from the front, the right and above.
 #[must_use]
 pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure> {
-    let (from, to) = shown.window;
+    let (from, to) = shown.window.unwrap_or((f64::NEG_INFINITY, f64::INFINITY));
     let Some(first) = records.first() else { return Vec::new() };
     let mut all: Vec<&Snapshot> =
         first.record.snapshots.iter().filter(|snapshot| (from..=to).contains(&snapshot.time)).collect();
@@ -90,7 +84,7 @@ pub fn figures(records: &[NamedRecord<'_>], shown: &FigureOptions) -> Vec<Figure
     } else {
         solid(records, &all, shown)
     };
-    figures.extend(probe_figures(records, shown.window));
+    figures.extend(probe_figures(records, (from, to)));
     figures
 }
 
@@ -120,7 +114,7 @@ fn solid(records: &[NamedRecord<'_>], all: &[&Snapshot], shown: &FigureOptions) 
     let mut figures: Vec<Figure> =
         [solid_figures::grains(&end, &[0.0]), solid_figures::forces(&end)].into_iter().flatten().collect();
     if all.len() >= FEWEST {
-        let clock: Vec<f64> = spread(all, shown.frames).map(|snapshot| snapshot.time).collect();
+        let clock: Vec<f64> = spread(all, shown.frames.unwrap_or(FRAMES)).map(|snapshot| snapshot.time).collect();
         figures.extend(solid_figures::grains(&film_of(records, &clock), &clock));
     }
     figures
@@ -142,7 +136,7 @@ fn plane(records: &[NamedRecord<'_>], all: &[&Snapshot], options: &FigureOptions
         let caption = caption + &not_recorded(mute.iter().map(|named| named.name.as_str()));
         figures.push(Figure::field(name, title, &caption, picture));
         if all.len() >= FEWEST && !matches!(quantity, Quantity::Speed) {
-            let clock: Vec<f64> = spread(all, options.frames).map(|snapshot| snapshot.time).collect();
+            let clock: Vec<f64> = spread(all, options.frames.unwrap_or(FRAMES)).map(|snapshot| snapshot.time).collect();
             let shots = film_of(telling.iter().copied(), &clock);
             // All frames of a film have the range of the pictures, so that a colour means the same value at all times.
             let moving = film(quantity, &shots, ("time t (s)", &clock), FILM_PIXELS, Some(range));
@@ -366,7 +360,7 @@ mod tests {
     #[test]
     fn a_window_shows_what_is_in_it() {
         let record = sample::record();
-        let none = FigureOptions { window: (1e9, 2e9), ..FigureOptions::default() };
+        let none = FigureOptions { window: Some((1e9, 2e9)), ..FigureOptions::default() };
         assert!(figures(&[named("", &record)], &none).is_empty());
     }
 

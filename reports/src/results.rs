@@ -136,11 +136,7 @@ mod tests {
 
     #[test]
     fn points_have_a_header_even_without_runs() {
-        let text = |report: &Report| {
-            let mut text = Vec::new();
-            points_table(report).csv(&mut text).unwrap();
-            String::from_utf8(text).unwrap()
-        };
+        let text = |report: &Report| points_table(report).csv_text();
         let mut report = sample::report();
         assert_eq!(text(&report).lines().nth(1).unwrap(), "backspin,,dem,dt=.1,2e-5,0.1,25000,25000,25000,0.001");
         report.sections.clear();
@@ -155,9 +151,8 @@ mod tests {
     fn a_table_has_every_row() {
         let report = sample::report();
         let rows: Vec<&Verdict> = report.verdicts().collect();
-        let mut text = Vec::new();
-        rows_table(&report).csv(&mut text).unwrap();
-        let mut table = csv::Reader::from_reader(&*text);
+        let text = rows_table(&report).csv_text();
+        let mut table = csv::Reader::from_reader(text.as_bytes());
         let lines: Vec<csv::StringRecord> = table.records().map(Result::unwrap).collect();
         let file = tempfile::tempfile().unwrap();
         rows_table(&report).parquet(&file).unwrap();

@@ -285,6 +285,13 @@ impl<'a> Table<'a> {
         table.flush()
     }
 
+    #[cfg(test)]
+    pub(crate) fn csv_text(self) -> String {
+        let mut text = Vec::new();
+        self.csv(&mut text).unwrap();
+        String::from_utf8(text).unwrap()
+    }
+
     /// Writes the table as Parquet. Empty cells of numbers are null.
     ///
     /// # Errors
@@ -476,12 +483,11 @@ mod tests {
 
     #[test]
     fn parquet_says_what_the_lines_say() {
-        let (mut text, file) = (Vec::new(), tempfile::tempfile().unwrap());
-        table().csv(&mut text).unwrap();
+        let (text, file) = (table().csv_text(), tempfile::tempfile().unwrap());
         table().parquet(&file).unwrap();
         let reader = SerializedFileReader::new(file).unwrap();
         assert_eq!(reader.num_row_groups(), 2);
-        let mut lines = csv::Reader::from_reader(&text[..]);
+        let mut lines = csv::Reader::from_reader(text.as_bytes());
         let heads: Vec<String> = lines.headers().unwrap().iter().map(str::to_owned).collect();
         let mut lines = lines.records();
         let mut nulls = 0;
@@ -521,10 +527,10 @@ mod tests {
         };
         let rows = || [row!["dem|a", 0.25, 12_000_usize, 1.0 / 3.0], row!["=b", 0.5, 7_u64, Cell::Missing]];
         let table = || Table::new("", columns(), rows());
-        let mut lines = Vec::new();
-        table().csv(&mut lines).unwrap();
-        let lines = String::from_utf8(lines).unwrap();
-        assert_eq!(lines, "solver,time,steps,mass (kg)\ndem|a,0.25,12000,0.3333333333333333\n'=b,0.5,7,\n");
+        assert_eq!(
+            table().csv_text(),
+            "solver,time,steps,mass (kg)\ndem|a,0.25,12000,0.3333333333333333\n'=b,0.5,7,\n"
+        );
         let plain = |text: String| text.replace('\u{202f}', " ");
         let text = plain(table().text());
         let lines: Vec<&str> = text.lines().collect();

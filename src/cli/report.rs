@@ -137,12 +137,8 @@ fn pictures(arguments: &Arguments) -> Result<Vec<Figure>, Fault> {
     let records = dirs.map(|dir| record_json::load(dir)).collect::<Result<Vec<Record>, _>>()?;
     let named: Vec<NamedRecord<'_>> =
         records.iter().map(|record| NamedRecord { name: name(record, &records), record }).collect();
-    let plain = FigureOptions::default();
-    let shown = FigureOptions {
-        fringe: arguments.fringe_stress,
-        window: arguments.window.unwrap_or(plain.window),
-        frames: arguments.frames.map_or(plain.frames, usize::from),
-    };
+    let &Arguments { fringe_stress: fringe, window, frames, .. } = arguments;
+    let shown = FigureOptions { fringe, window, frames: frames.map(usize::from) };
     let figures = record_figures::figures(&named, &shown);
     if figures.is_empty() {
         let file = arguments.dir.join(RECORD_FILE);

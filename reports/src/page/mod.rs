@@ -14,7 +14,6 @@ mod questions;
 mod rows;
 mod section;
 pub(crate) mod summary;
-mod tables;
 
 pub use cards::meaning;
 use layout::{CSS, SCRIPT};

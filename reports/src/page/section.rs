@@ -3,14 +3,17 @@
 
 use std::collections::BTreeSet;
 
+use grainbench_harness::verdict::ControlResult;
 use maud::{Markup, Render, html};
 
 use super::budget::{Part, Rank};
-use super::{figures, prose, rows, tables};
+use super::{figures, prose, rows};
 use crate::headline::Headline;
 use crate::line;
+use crate::number;
 use crate::plot::DrawError;
-use crate::report::Section;
+use crate::report::{RunCost, Section};
+use crate::table::{Cell, Column, Columns, Format};
 
 /// Section of a case. Its figures, tables and derivations are parts that can be moved out of the page.
 pub(crate) struct CaseSection<'a> {
@@ -53,12 +56,12 @@ impl<'a> CaseSection<'a> {
             let red = section.controls.iter().filter(|control| control.turned_red).count();
             let summary =
                 html! { "Negative controls " span.of { "(" (red) " of " (section.controls.len()) " turned red)" } };
-            let table = tables::controls(&section.controls);
+            let table = controls_table(&section.controls);
             add(None, "aside", summary, (Rank::Controls, "controls", "negative controls"), table);
         }
         if !section.runs.is_empty() {
             let summary = html! { "Costs " span.of { "(" (section.runs.len()) " runs)" } };
-            add(None, "aside", summary, (Rank::Costs, "costs", "costs"), tables::costs(&section.runs));
+            add(None, "aside", summary, (Rank::Costs, "costs", "costs"), costs_table(&section.runs));
         }
         for (heading, text) in headed(&section.derivation) {
             let text = html! { div.prose { (prose::render(text)) } };
@@ -113,4 +116,48 @@ fn headed(derivation: &str) -> impl Iterator<Item = (&str, &str)> {
     let parts = rest.split(HEADING).filter(|part| !part.is_empty());
     let parts = parts.map(|part| part.split_once('\n').unwrap_or((part, "")));
     Some(("Derivation", first)).filter(|(_, text)| !text.trim().is_empty()).into_iter().chain(parts)
+}
+
+fn controls_table(controls: &[ControlResult]) -> Markup {
+    let class = |control: &ControlResult| if control.turned_red { "pass" } else { "fail" };
+    let result = |control: &ControlResult| {
+        let result = if control.turned_red { "✓ turned red" } else { "✗ not red" };
+        html! { span class={ "mark " (class(control)) } { (result) } " by " (control.how.word()) }
+    };
+    let quantity = |control: &ControlResult| {
+        html! { (control.quantity) @if !control.variant.is_empty() { span.fine { (control.variant) } } }
+    };
+    let error = |control: &ControlResult| {
+        let allowed = html! { span.fine { "allowed " (number::fraction(control.allowed)) } };
+        let key = control.error.map(|error| error.abs().to_string());
+        Cell::Page(html! { (number::error(control.error)) (allowed) }, key)
+    };
+    let columns = Columns::<&ControlResult>::new(Column::text("Result"), result)
+        .and(Column::heading("Quantity"), quantity)
+        .and(Column::text("Solver"), |control| &control.solver)
+        .and(Column::text("Wrong physics"), |control| &control.wrong_physics)
+        .and(Column::new("Error found, allowed", Format::Error), error);
+    html! {
+        p.note { "Each claim is evaluated with wrong physics and must fail." }
+        (columns.table("", controls, class).page("rows sorts"))
+    }
+}
+
+fn costs_table(runs: &[RunCost]) -> Markup {
+    let mut columns = Columns::<&RunCost>::new(Column::heading("Solver"), |run| &run.solver);
+    if runs.iter().any(|run| !run.variant.is_empty()) {
+        columns = columns.and(Column::text("Variant"), |run| &run.variant);
+    }
+    let columns = columns
+        .and(Column::text("Resolution"), |run| &run.resolution)
+        .and(Column::new("Δt", Format::Seconds), |run| run.time_step)
+        .and(Column::number("Δt / critical"), |run| run.fraction_of_critical)
+        .and(Column::new("Steps", Format::Count), |run| run.steps)
+        .and(Column::new("Particle-steps", Format::Count), |run| run.particle_steps)
+        .and(Column::new("Contact evaluations", Format::Count), |run| run.contact_evaluations)
+        .and(Column::new("Wall time", Format::Seconds), |run| Cell::finite(Some(run.wall_seconds)));
+    html! {
+        p.note { "Counts do not depend on the machine, but the wall time does." }
+        (columns.table("Costs", runs, |_| "").page("sorts"))
+    }
 }

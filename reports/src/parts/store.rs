@@ -365,10 +365,7 @@ fn same_place(a: &Path, b: &Path) -> bool {
 }
 
 fn link_or_copy(from: &Path, to: &Path) -> io::Result<()> {
-    match fs::remove_file(to) {
-        Err(error) if error.kind() != io::ErrorKind::NotFound => return Err(error),
-        _ => {}
-    }
+    fs::remove_file(to).or_else(|error| if error.kind() == io::ErrorKind::NotFound { Ok(()) } else { Err(error) })?;
     fs::hard_link(from, to).or_else(|_| fs::copy(from, to).map(drop))
 }
 

@@ -240,10 +240,7 @@ fn read<T: DataType>(
 /// Returns a Parquet error as an I/O error. If its cause is an I/O error, such as a full disk, that error is returned.
 fn io_error(error: ParquetError) -> io::Error {
     match error {
-        ParquetError::External(inner) => match inner.downcast::<io::Error>() {
-            Ok(error) => *error,
-            Err(other) => io::Error::other(other),
-        },
+        ParquetError::External(inner) => inner.downcast().map_or_else(io::Error::other, |error| *error),
         other => io::Error::other(other),
     }
 }

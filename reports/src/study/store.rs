@@ -113,14 +113,13 @@ pub fn kept_text(study: &Study) -> Result<String, serde_json::Error> {
         entry.shifts = effects::median(entry).cloned().into_iter().collect();
     }
     for diagram in &mut study.diagrams {
-        let mut kept: Vec<Point> = Vec::new();
-        for line in cost::lines([&*diagram]) {
+        let kept = |line| {
             let front = cost::front(cost::of_line(diagram, line));
             // If a solver has no point on the front, its first point is stored, because it states the reason.
             let first = cost::of_line(diagram, line).take(usize::from(front.is_empty()));
-            kept.extend(front.into_iter().chain(first).map(|point| Point { repetitions: Vec::new(), ..point.clone() }));
-        }
-        diagram.points = kept;
+            front.into_iter().chain(first).map(|point| Point { repetitions: Vec::new(), ..point.clone() })
+        };
+        diagram.points = cost::lines([&*diagram]).into_iter().flat_map(kept).collect();
     }
     serde_json::to_string_pretty(&study).map(|text| text + "\n")
 }

@@ -16,6 +16,8 @@ const MOST: usize = 50;
 /// Renders the page. `drawings` contains name, caption and SVG of each drawing.
 pub(super) fn render(sweep: &Sweep, drawings: &[(&str, String, String)]) -> String {
     let counts = KINDS.into_iter().zip(counts(&sweep.points));
+    let factors = sweep.factors.iter().map(|factor| factor.label.as_str()).collect::<Vec<_>>().join(", ");
+    let factors = if sweep.factors.is_empty() { "nothing: one point" } else { &factors };
     let body = html! {
         main.alone {
             header id="summary" {
@@ -30,7 +32,7 @@ pub(super) fn render(sweep: &Sweep, drawings: &[(&str, String, String)]) -> Stri
                         li.amber { b { (number::count(sweep.missing as u64)) } " " span { "not finished" } }
                     }
                 }
-                p { "Scene " code { (sweep.scene) } ", over " (factors(sweep)) ". Every row is in " code { "rows.csv" } " and "
+                p { "Scene " code { (sweep.scene) } ", over " (factors) ". Every row is in " code { "rows.csv" } " and "
                     code { "rows.parquet" } "." }
             }
             @for (_, caption, svg) in drawings {
@@ -42,11 +44,6 @@ pub(super) fn render(sweep: &Sweep, drawings: &[(&str, String, String)]) -> Stri
         }
     };
     shell(&format!("grainbench · {}", sweep.title), &body)
-}
-
-fn factors(sweep: &Sweep) -> String {
-    let words: Vec<&str> = sweep.factors.iter().map(|factor| factor.label.as_str()).collect();
-    if words.is_empty() { "nothing: one point".to_owned() } else { words.join(", ") }
 }
 
 /// Renders a table with one row per solver and level: numbers of points by status, and errors.
