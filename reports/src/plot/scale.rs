@@ -32,18 +32,12 @@ impl Scale {
     /// Returns an axis that contains all `values`. `margin` is a margin at both ends, as a fraction of the range, and
     /// `room` is the approximate number of labels. Values that the axis cannot show are ignored.
     pub(crate) fn fit(values: impl Iterator<Item = f64>, logarithmic: bool, margin: f64, room: u32) -> Self {
-        let mut scale = Self {
-            logarithmic,
-            low: f64::INFINITY,
-            high: f64::NEG_INFINITY,
-            room: f64::from(room.max(2)),
-            levels: Vec::new(),
-        };
+        let (low, high, room) = (f64::INFINITY, f64::NEG_INFINITY, f64::from(room.max(2)));
+        let mut scale = Self { logarithmic, low, high, room, levels: Vec::new() };
         for value in values {
             if scale.shows(value) {
                 let place = scale.place(value);
-                scale.low = scale.low.min(place);
-                scale.high = scale.high.max(place);
+                (scale.low, scale.high) = (scale.low.min(place), scale.high.max(place));
             }
         }
         if scale.low > scale.high {

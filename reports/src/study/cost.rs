@@ -198,25 +198,28 @@ fn bias(points: &[&Point]) -> Option<(f64, f64)> {
     (!logs.is_empty()).then(|| (mean.exp(), variance.sqrt()))
 }
 
+/// Returns the dashed line y = x over the range of the horizontal coordinates of curves.
+pub(super) fn diagonal(label: &str, curves: &[Curve]) -> Curve {
+    let all = || curves.iter().flat_map(|curve| &curve.points).map(|point| point.0);
+    let ends = [all().fold(f64::INFINITY, f64::min), all().fold(0.0, f64::max)];
+    Curve::new(label, Stroke::Dashed, ends.map(|end| (end, end)).to_vec())
+}
+
 fn scatter(diagrams: &[Diagram], unit: &str) -> Option<Figure> {
     let mut curves = Vec::new();
-    let mut span = (f64::INFINITY, 0.0_f64);
     for line in lines(diagrams) {
         let points = best(diagrams, unit, line);
         let Some((factor, spread)) = bias(&points) else { continue };
         let [factor, spread] = [factor - 1.0, spread].map(number::fraction);
         let label = format!("{line}: bias {factor}, spread {spread}");
         let places = points.iter().filter_map(|point| Some((point.expected?.abs(), point.value?.abs())));
-        let places: Vec<_> = places.filter(|(expected, value)| *expected > 0.0 && *value > 0.0).collect();
-        for (expected, _) in &places {
-            span = (span.0.min(*expected), span.1.max(*expected));
-        }
-        curves.push(Curve::new(label, Stroke::Markers, places));
+        let places = places.filter(|(expected, value)| *expected > 0.0 && *value > 0.0);
+        curves.push(Curve::new(label, Stroke::Markers, places.collect()));
     }
-    if curves.is_empty() || span.1 == 0.0 {
+    if curves.iter().all(|curve| curve.points.is_empty()) {
         return None;
     }
-    curves.push(Curve::new("measured = expected", Stroke::Dashed, vec![(span.0, span.0), (span.1, span.1)]));
+    curves.push(diagonal("measured = expected", &curves));
     let words = if unit == "1" { "pure numbers".to_owned() } else { format!("quantities in {unit}") };
     Some(Figure::graph(
         &format!("measured-expected-{}", if unit == "1" { "ratio" } else { unit }),

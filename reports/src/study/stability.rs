@@ -1,5 +1,6 @@
 //! Study of stability: largest stable time steps and hard cases, with figures.
 
+use super::cost::diagonal;
 use crate::distinct;
 use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
 use grainbench_harness::verdict::Severity;
@@ -157,19 +158,14 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
 /// Returns the figure of the largest stable time step against the exact limit.
 fn against_exact(limits: &[Limit]) -> Option<Figure> {
     let limits: Vec<&Limit> = limits.iter().filter(|row| row.unit == "√(m/k)").collect();
-    let mut curves = Vec::new();
-    let mut ends = (f64::INFINITY, 0.0_f64);
-    for solver in distinct(limits.iter().map(|row| row.solver.as_str())) {
+    let curve = |solver: &str| {
         let mine = limits.iter().filter(|row| row.solver == solver);
-        let points: Vec<(f64, f64)> = mine.filter_map(|row| Some((row.exact?, row.found?))).collect();
-        for (exact, _) in &points {
-            ends = (ends.0.min(*exact), ends.1.max(*exact));
-        }
-        if !points.is_empty() {
-            curves.push(Curve::new(solver, Stroke::Markers, points));
-        }
-    }
-    curves.push(Curve::new("exact", Stroke::Dashed, vec![(ends.0, ends.0), (ends.1, ends.1)]));
+        Curve::new(solver, Stroke::Markers, mine.filter_map(|row| Some((row.exact?, row.found?))).collect())
+    };
+    let mut curves: Vec<Curve> =
+        distinct(limits.iter().map(|row| row.solver.as_str())).into_iter().map(curve).collect();
+    curves.retain(|curve| !curve.points.is_empty());
+    curves.push(diagonal("exact", &curves));
     (curves.len() > 1).then(|| {
         Figure::graph(
             "found-exact",

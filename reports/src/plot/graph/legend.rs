@@ -14,13 +14,10 @@ pub(super) fn lines(curves: &[Curve]) -> Vec<Vec<String>> {
     curves.iter().map(|curve| wrap(&curve.label, TICK, 150.0)).collect()
 }
 
-/// Returns true if a curve has an entry: a label, or another style than the previous curve.
-fn is_told(curve: &Curve) -> bool {
-    !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed))
-}
-
 /// Draws the legend to the right of a panel.
 pub(super) fn draw(graph: &Graph, looks: &[CurveStyle], legend: &[Vec<String>], panel: &Panel) -> Markup {
+    // A curve has an entry if it has a label, or another style than the previous curve.
+    let is_told = |curve: &Curve| !(curve.label.is_empty() && matches!(curve.stroke, Stroke::Beside | Stroke::Failed));
     let labelled: Vec<usize> = (0..legend.len()).filter(|&at| is_told(&graph.curves[at])).collect();
     let left = panel.frame.right + 18.0;
     let entries = tops(graph, legend, panel, &labelled);
