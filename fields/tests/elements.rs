@@ -63,10 +63,7 @@ fn lattice(deformation: &Matrix3<f64>, stiffness: f64) -> (Snapshot, Vec<Vector3
 /// Returns the mean stress over the cell in the middle of a block, whose grains have all their contacts.
 fn middle_cell(snapshot: &Snapshot, first: &[Vector3<f64>], deformation: &Matrix3<f64>) -> Matrix3<f64> {
     let root = 2.0_f64.sqrt();
-    let inside = |id: u32| {
-        let at = first[id as usize - 1] / root;
-        at.iter().all(|along| (2.0..3.0).contains(along))
-    };
+    let inside = |id: u32| (first[id as usize - 1] / root).iter().all(|along| (2.0..3.0).contains(along));
     // Grains of other cells are moved far away, so that their share of the contacts is not counted.
     let mut alone = snapshot.clone();
     alone.grains.iter_mut().filter(|grain| !inside(grain.id)).for_each(|grain| grain.position.x = 1e6);

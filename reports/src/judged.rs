@@ -61,11 +61,8 @@ impl ExternalResults {
     pub fn otherwise(&self, sections: &[Section]) -> Vec<String> {
         let now = Self::new([const { String::new() }; 3], &self.provenance, sections);
         let words = |row: &ExternalResult| {
-            let control = match row.control_red {
-                Some(true) => ", its control red",
-                Some(false) => ", its control not red",
-                None => "",
-            };
+            let control =
+                row.control_red.map_or("", |red| if red { ", its control red" } else { ", its control not red" });
             format!("{}{control}", row.result.outcome.word())
         };
         let key = |row: &Verdict| [&row.case, &row.variant, &row.resolution, &row.quantity].map(String::clone);

@@ -320,10 +320,9 @@ mod tests {
         {
             assert!(names.contains(&name), "{name}: {names:?}");
         }
-        let panels = figures.iter().filter_map(|figure| match &figure.drawing {
-            Drawing::Field(field) => Some(field.panels.len()),
-            Drawing::Graph(_) | Drawing::Forces(_) | Drawing::Lines(_) => None,
-        });
+        let count =
+            |figure: &Figure| if let Drawing::Field(field) = &figure.drawing { Some(field.panels.len()) } else { None };
+        let panels = figures.iter().filter_map(count);
         // Only material points have plastic strain.
         assert!(panels.clone().count() > 5 && panels.clone().filter(|count| *count == 2).count() > 4);
         assert!(figures.iter().all(|figure| crate::plot::draw(figure).is_ok()));

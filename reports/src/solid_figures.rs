@@ -335,8 +335,7 @@ mod tests {
     #[test]
     fn the_nearer_grain_hides_the_one_behind() {
         let snapshot = snapshot();
-        let shot = Shot { title: String::new(), frames: vec![&snapshot] };
-        let figure = grains(&[shot], &[0.0]).unwrap();
+        let figure = grains(&[Shot::new("", &snapshot)], &[0.0]).unwrap();
         let grainbench_harness::figure::Drawing::Field(field) = figure.drawing else { unreachable!() };
         let raster = &field.panels[0].frames[0];
         let middle = raster.levels[(raster.height / 2 * raster.width + raster.width / 2) as usize];
@@ -348,12 +347,9 @@ mod tests {
     fn contacts_that_nobody_told_are_not_drawn_as_none() {
         let mut snapshot = snapshot();
         snapshot.contacts = None;
-        assert!(forces(&[Shot { title: "dump".to_owned(), frames: vec![&snapshot] }]).is_none());
+        assert!(forces(&[Shot::new("dump", &snapshot)]).is_none());
         let with_contacts = Snapshot { contacts: sample::snapshot().contacts, ..snapshot.clone() };
-        let both = [
-            Shot { title: "dump".to_owned(), frames: vec![&snapshot] },
-            Shot { title: "dem".to_owned(), frames: vec![&with_contacts] },
-        ];
+        let both = [Shot::new("dump", &snapshot), Shot::new("dem", &with_contacts)];
         let figure = forces(&both).unwrap();
         assert!(figure.caption.contains("Not recorded by dump"));
     }

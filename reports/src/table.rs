@@ -454,15 +454,12 @@ fn harmless(text: String) -> String {
 
 /// Returns a text with its Markdown characters escaped and its line breaks replaced by spaces.
 pub(crate) fn escaped(text: &str) -> String {
-    let mut escaped = String::with_capacity(text.len());
-    for character in text.chars() {
-        match character {
-            '\n' | '\r' => escaped.push(' '),
-            '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '!' => escaped.extend(['\\', character]),
-            _ => escaped.push(character),
-        }
-    }
-    escaped
+    let pair = |character| match character {
+        '\n' | '\r' => [None, Some(' ')],
+        '\\' | '`' | '*' | '_' | '[' | ']' | '<' | '>' | '|' | '#' | '!' => [Some('\\'), Some(character)],
+        _ => [None, Some(character)],
+    };
+    text.chars().flat_map(pair).flatten().collect()
 }
 
 #[cfg(test)]

@@ -77,15 +77,9 @@ pub(crate) fn deformable() -> Snapshot {
 }
 
 pub(crate) fn series() -> Series {
-    Series {
-        step: vec![0, 5],
-        time: vec![0.0, 0.1 + 0.2],
-        columns: vec![
-            Column { name: "disc.x".into(), unit: "m".into() },
-            Column { name: "a,b".into(), unit: "1".into() },
-        ],
-        values: vec![vec![1.0, 1.0 / 3.0], vec![-1e-300, 2e20]],
-    }
+    let columns = [("disc.x", "m"), ("a,b", "1")].map(|(name, unit)| Column { name: name.into(), unit: unit.into() });
+    let values = vec![vec![1.0, 1.0 / 3.0], vec![-1e-300, 2e20]];
+    Series { step: vec![0, 5], time: vec![0.0, 0.1 + 0.2], columns: columns.into(), values }
 }
 
 pub(crate) fn record() -> Record {

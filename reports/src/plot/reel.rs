@@ -59,14 +59,10 @@ fn lighter(field: &Field) -> Field {
 fn reel(field: &Field, compression: Compression) -> io::Result<String> {
     let Frames { width, height, levels } = field::frames(field)?;
     let mut packed = ZlibEncoder::new(Vec::new(), compression);
-    let mut before: Option<&Vec<u8>> = None;
-    for frame in &levels {
-        let differences: Vec<u8> = match before {
-            None => frame.clone(),
-            Some(before) => frame.iter().zip(before).map(|(now, then)| now.wrapping_sub(*then)).collect(),
-        };
+    let zero = vec![0; levels.first().map_or(0, Vec::len)];
+    for (now, then) in levels.iter().zip(std::iter::once(&zero).chain(&levels)) {
+        let differences: Vec<u8> = now.iter().zip(then).map(|(now, then)| now.wrapping_sub(*then)).collect();
         packed.write_all(&differences)?;
-        before = Some(frame);
     }
     let palette = STANDARD.encode(field::palette(field.shades));
     Ok(format!("{width} {height} {} {palette} {}", levels.len(), STANDARD.encode(packed.finish()?)))

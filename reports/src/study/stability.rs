@@ -56,15 +56,20 @@ pub enum Hardness {
 }
 
 impl Hardness {
-    pub(crate) const fn word(self) -> &'static str {
+    /// Returns the symbol and the name of the outcome.
+    pub(crate) const fn sign(self) -> (&'static str, &'static str) {
         match self {
-            Self::Holds => "holds",
-            Self::HoldsAtASmallerStep => "holds at a smaller step",
-            Self::TypedFailure => "typed failure",
-            Self::QuietlyWrong => "wrong without an error",
-            Self::Unsupported => "cannot express it",
-            Self::NotAvailable => "not installed",
+            Self::Holds => ("✓", "holds"),
+            Self::HoldsAtASmallerStep => ("↓", "holds at a smaller step"),
+            Self::TypedFailure => ("!", "typed failure"),
+            Self::QuietlyWrong => ("✗", "wrong without an error"),
+            Self::Unsupported => ("–", "cannot express it"),
+            Self::NotAvailable => ("–", "not installed"),
         }
+    }
+
+    pub(crate) const fn word(self) -> &'static str {
+        self.sign().1
     }
 }
 

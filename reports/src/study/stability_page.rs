@@ -85,14 +85,7 @@ pub(crate) fn tables(stability: &Stability) -> Markup {
 
 /// Returns the symbol and the CSS class of a result.
 pub(crate) fn sign(row: &HardCaseResult) -> (&'static str, &'static str) {
-    let symbol = match row.standing {
-        Hardness::Holds => "✓",
-        Hardness::HoldsAtASmallerStep => "↓",
-        Hardness::TypedFailure => "!",
-        Hardness::QuietlyWrong => "✗",
-        Hardness::Unsupported | Hardness::NotAvailable => "–",
-    };
-    (symbol, row.severity().map_or("", class))
+    (row.standing.sign().0, row.severity().map_or("", class))
 }
 
 fn matrix(rows: &[HardCaseResult]) -> Markup {

@@ -112,13 +112,9 @@ impl Marks {
     fn cell(&self, value: &Value) -> Option<usize> {
         let value = value.as_f64()?;
         let after = self.values.partition_point(|mark| *mark < value);
-        let near = |at: usize| self.values.get(at).map(|mark| (mark - value).abs());
-        match (after.checked_sub(1).and_then(near), near(after)) {
-            (Some(before), Some(behind)) if before < behind => Some(after - 1),
-            (_, Some(_)) => Some(after),
-            (Some(_), None) => Some(after - 1),
-            (None, None) => None,
-        }
+        let away = |at: usize| Some((at, (self.values.get(at)? - value).abs()));
+        let near = [Some(after), after.checked_sub(1)].into_iter().flatten().filter_map(away);
+        near.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(at, _)| at)
     }
 }
 

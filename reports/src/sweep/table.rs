@@ -3,6 +3,7 @@
 use super::{Point, Sweep};
 use crate::results::expectation;
 use crate::table::{Cell, Column, Table};
+use grainbench_harness::statistics::range;
 use grainbench_harness::verdict::Outcome;
 use serde_json::Value;
 use std::io::{self, Write};
@@ -52,10 +53,7 @@ pub(super) fn table(sweep: &Sweep) -> Table<'_> {
 /// Returns the median wall-clock time of the repetitions (s), or the wall-clock time of the single run.
 fn wall(point: &Point) -> Option<f64> {
     let walls: Vec<f64> = point.left.timings.iter().map(|timing| timing.wall).collect();
-    if walls.is_empty() {
-        return point.left.ran.map(|ran| ran.wall_seconds);
-    }
-    Some(grainbench_harness::statistics::median(&walls))
+    range(&walls).map(|[_, median, _]| median).or(point.left.ran.map(|ran| ran.wall_seconds))
 }
 
 /// Writes `results.json`, whose keys are a public interface, with one entry per result and the cost of each run. The
