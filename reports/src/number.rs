@@ -100,14 +100,12 @@ pub(crate) fn power_of_ten(exponent: i32) -> String {
 /// Returns a value with `digits` significant digits, including trailing zeros. A value below 10⁴ keeps all digits before
 /// the decimal point.
 fn fixed(value: f64, digits: usize) -> String {
-    if value.is_nan() {
-        return "not a number".to_owned();
-    }
-    if value.is_infinite() {
-        return if value > 0.0 { "∞" } else { "−∞" }.to_owned();
-    }
-    if value == 0.0 {
-        return "0".to_owned();
+    match value {
+        _ if value.is_nan() => return "not a number".to_owned(),
+        f64::INFINITY => return "∞".to_owned(),
+        f64::NEG_INFINITY => return "−∞".to_owned(),
+        0.0 => return "0".to_owned(),
+        _ => {}
     }
     let places = i32::try_from(digits).unwrap_or(i32::MAX).saturating_sub(1);
     // The exponent is that of the rounded value.

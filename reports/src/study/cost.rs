@@ -85,16 +85,15 @@ pub fn sentence(diagram: &Diagram, target: f64) -> String {
     if parts.is_empty() {
         parts.push("no solver reaches it".to_owned());
     }
-    for line in lines {
+    let unreached = |line: &str| {
         if is_hidden(diagram, line, target) {
-            parts.push(format!("{line} in less time than the variation of its start-up"));
-            continue;
+            return Some(format!("{line} in less time than the variation of its start-up"));
         }
-        let best = of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp);
-        if let (Some(best), None) = (best, cheapest(diagram, line, target)) {
-            parts.push(format!("{line} does not reach it (at best {})", number::fraction(best)));
-        }
-    }
+        let best = of_line(diagram, line).filter_map(|point| point.error).min_by(f64::total_cmp)?;
+        let is_reached = cheapest(diagram, line, target).is_some();
+        (!is_reached).then(|| format!("{line} does not reach it (at best {})", number::fraction(best)))
+    };
+    parts.extend(lines.into_iter().filter_map(unreached));
     format!("{}: {}.", number::fraction(target), parts.join("; "))
 }
 

@@ -37,9 +37,7 @@ const WORDS: [&str; 4] =
 /// Returns the caption and the SVG of the map; none without two factors or without an error.
 pub(super) fn draw(sweep: &Sweep) -> Option<(String, String)> {
     let [x, y] = sweep.map.or_else(|| usual(sweep))?;
-    if sweep.points.iter().all(|point| point.error().is_none()) {
-        return None;
-    }
+    sweep.points.iter().find_map(Point::error)?;
     let axes = [Marks::from_sweep(sweep, x), Marks::from_sweep(sweep, y)];
     let panels = levels(sweep);
     let columns = panels.len().clamp(1, ACROSS);
@@ -81,7 +79,6 @@ fn usual(sweep: &Sweep) -> Option<[usize; 2]> {
 struct Marks {
     values: Vec<f64>,
     words: Vec<String>,
-    label: String,
 }
 
 impl Marks {
@@ -95,7 +92,7 @@ impl Marks {
             values = (0..slices).map(|slice| values[(2 * slice + 1) * values.len() / (2 * slices)]).collect();
         }
         let words = values.iter().map(|value| number::significant(*value, 3)).collect();
-        Self { values, words, label: sweep.factors[place].label.clone() }
+        Self { values, words }
     }
 
     /// Returns the position of a value along the axis, in cells. A mark is at the middle of its cell, and values
@@ -167,11 +164,11 @@ fn panel(
                 fill="#222" { (word) }
         }
         text x=(px(left + 0.5 * wide)) y=(px(top + HIGH + 32.0)) text-anchor="middle" font-size="12" fill="#666" {
-            (axes[0].label)
+            (sweep.factors[x].label)
         }
         @let middle = [left - 44.0, top + 0.5 * HIGH];
         text x=(px(middle[0])) y=(px(middle[1])) text-anchor="middle" font-size="12" fill="#666"
-            transform=(format!("rotate(-90 {} {})", px(middle[0]), px(middle[1]))) { (axes[1].label) }
+            transform=(format!("rotate(-90 {} {})", px(middle[0]), px(middle[1]))) { (sweep.factors[y].label) }
     }
 }
 
