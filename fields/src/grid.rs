@@ -96,11 +96,6 @@ pub(crate) fn image_shifts(snapshot: &Snapshot, dimension: usize) -> Vec<Vector3
     let along = |axis: usize| -> &[f64] {
         if axis < dimension && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
     };
-    let mut shifts = Vec::new();
-    for &i in along(0) {
-        for &j in along(1) {
-            shifts.extend(along(2).iter().map(|&k| Vector3::new(i, j, k).component_mul(&length)));
-        }
-    }
-    shifts
+    let plane = along(0).iter().flat_map(|&i| along(1).iter().map(move |&j| (i, j)));
+    plane.flat_map(|(i, j)| along(2).iter().map(move |&k| Vector3::new(i, j, k).component_mul(&length))).collect()
 }

@@ -67,7 +67,8 @@ pub fn write_elements(dir: &Path, course: &Course, summary: &Summary, parquet: b
     Ok(out.commit()?)
 }
 
-/// Writes the elements of a frame as VTK image data (XML, ASCII) for ParaView and VisIt, with one value per cell. Unknown values are NaN. The array `masked` is 1 for a cell that is left out of averages.
+/// Writes the elements of a frame as VTK image data (XML, ASCII) for ParaView and VisIt, with one value per cell.
+/// Unknown values are NaN. The array `masked` is 1 for a cell that is left out of averages.
 fn write_image(course: &Course, frame: &Frame, mut out: impl Write) -> io::Result<()> {
     let grid = &course.grid;
     let [across, deep, up] = grid.count;
