@@ -169,23 +169,18 @@ fn spread<'a>(snapshots: &'a [&'a Snapshot], count: usize) -> impl Iterator<Item
 /// Returns the quantities to plot: speed, stress if known, and plastic strain and rotation if they are not zero.
 fn quantities(records: &[NamedRecord<'_>], fringe: Option<f64>, end: f64) -> Vec<Quantity> {
     let ends: Vec<&Snapshot> = records.iter().filter_map(|named| named.at(end)).collect();
-    let mut quantities = Vec::new();
     let stressed = ends.iter().any(|snapshot| !snapshot.points.is_empty() || !snapshot.told_contacts().is_empty());
-    if stressed {
-        quantities.push(Quantity::StressDifference);
-        let own = fringe_constant(ends.iter().copied(), FRINGES);
-        quantities.extend(Some(fringe.unwrap_or(own)).filter(|&constant| constant > 0.0).map(Quantity::Fringes));
-    }
-    if ends.iter().any(|snapshot| snapshot.points.iter().any(|point| point.plastic_strain > 0.0)) {
-        quantities.push(Quantity::PlasticStrain);
-    }
-    let turned =
-        |snapshot: &&Snapshot| snapshot.grains.iter().any(|grain| grain.angle.is_some_and(|angle| angle.abs() > 1e-6));
-    if ends.iter().any(turned) {
-        quantities.push(Quantity::Rotation);
-    }
-    quantities.push(Quantity::Speed);
-    quantities
+    let constant = || fringe.unwrap_or_else(|| fringe_constant(ends.iter().copied(), FRINGES));
+    let mut points = ends.iter().flat_map(|snapshot| &snapshot.points);
+    let mut angles = ends.iter().flat_map(|snapshot| &snapshot.grains).filter_map(|grain| grain.angle);
+    let quantities = [
+        stressed.then_some(Quantity::StressDifference),
+        stressed.then(constant).filter(|&constant| constant > 0.0).map(Quantity::Fringes),
+        points.any(|point| point.plastic_strain > 0.0).then_some(Quantity::PlasticStrain),
+        angles.any(|angle| angle.abs() > 1e-6).then_some(Quantity::Rotation),
+        Some(Quantity::Speed),
+    ];
+    quantities.into_iter().flatten().collect()
 }
 
 fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {

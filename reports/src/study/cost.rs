@@ -156,17 +156,15 @@ fn floors(diagram: &Diagram, line: &str) -> Vec<(f64, f64)> {
         .filter_map(|point| point.floor.as_deref().map(|floor| (floor, point.knobs.as_str())))
         .collect();
     names.dedup();
-    let mut bars = Vec::new();
-    for (floor, knobs) in names {
+    let bar = |(floor, knobs): (&str, &str)| {
         let on = |point: &&Point| point.floor.as_deref() == Some(floor) && point.knobs == knobs;
         let places: Vec<(f64, f64)> = of_line(diagram, line).filter(on).filter_map(Point::place).collect();
         let times = || places.iter().map(|(_, time)| *time);
         let (first, last) = (times().fold(f64::INFINITY, f64::min), times().fold(0.0, f64::max));
-        if let Some((error, _)) = places.iter().max_by(|a, b| a.1.total_cmp(&b.1)) {
-            bars.extend([(first, error.max(LEAST)), (last, error.max(LEAST))]);
-        }
-    }
-    bars
+        let (error, _) = places.iter().max_by(|a, b| a.1.total_cmp(&b.1))?;
+        Some([(first, error.max(LEAST)), (last, error.max(LEAST))])
+    };
+    names.into_iter().filter_map(bar).flatten().collect()
 }
 
 /// Returns figures of measured against expected values over all cases, one for each unit. For each quantity, a solver
