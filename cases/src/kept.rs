@@ -10,7 +10,6 @@ use grainbench_harness::claim::Claim;
 use grainbench_harness::control::WrongPhysics;
 use grainbench_harness::reading::Table;
 use grainbench_harness::run::{FinishedRun, ResultOrigin, Run, Set};
-use grainbench_harness::solvers::StoredResult;
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::stored::{compressed, csv_of, is_scene_of, probe_series, scene_hash_by_bits};
 use grainbench_scene::scene::Scene;
@@ -21,6 +20,7 @@ use grainbench_store::artifact::{hashes, read_listed, read_toml};
 use serde::{Deserialize, Serialize};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
+use std::sync::Arc;
 
 const PROVENANCE: &str = "provenance.toml";
 const SERIES: &str = "series";
@@ -103,7 +103,7 @@ impl StorableRun {
 
     /// Returns true if there is a readable stored result for this scene and the time step and evaluation of the run.
     #[must_use]
-    pub fn is_there(&self, given: &Scene) -> bool {
+    pub fn is_there(&self, given: &Arc<Scene>) -> bool {
         let control = self.wrong.then_some(self.claim.control.name);
         matches!(load(self.case, &self.run, given, control), Some(Ok(_)))
     }
@@ -155,9 +155,9 @@ fn folder(case: &Case, id: &str) -> PathBuf {
 pub(crate) fn load(
     case: &Case,
     run: &Run,
-    scene: &Scene,
+    scene: &Arc<Scene>,
     control: Option<&str>,
-) -> Option<Result<StoredResult, RunError>> {
+) -> Option<Result<FinishedRun, RunError>> {
     let folder = folder(case, &id(run, control));
     if !folder.is_dir() {
         return None;
@@ -165,7 +165,7 @@ pub(crate) fn load(
     Some(read(&folder, run, scene))
 }
 
-fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, RunError> {
+fn read(folder: &Path, run: &Run, scene: &Arc<Scene>) -> Result<FinishedRun, RunError> {
     let solver = run.solver.to_owned();
     let broken = |error: ReadError| {
         let failure = Failure::Output(error.to_string());
@@ -193,11 +193,9 @@ fn read(folder: &Path, run: &Run, scene: &Scene) -> Result<StoredResult, RunErro
     let series = probe_series(scene, |name| series.column(name).map(<[f64]>::to_vec));
     let words = format!("{} ({}, {})", provenance.date, provenance.program, provenance.commit);
     let is_current = is_program(run.solver) || provenance.sources == sources(run.solver);
-    Ok(StoredResult {
-        record: Record { provenance: provenance.run, series, snapshots: Vec::new(), cost: provenance.cost },
-        tables,
-        made: ResultOrigin { words, is_current },
-    })
+    let record = Record { provenance: provenance.run, series, snapshots: Vec::new(), cost: provenance.cost };
+    let (tables, kept) = (Arc::new(tables), Some(ResultOrigin { words, is_current }));
+    Ok(FinishedRun { tables, kept, ..FinishedRun::new(Arc::clone(scene), Arc::new(record)) })
 }
 
 /// Reads a table from a file that `list` lists with this hash. An empty field becomes NaN.

@@ -6,9 +6,9 @@ use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
-use grainbench_harness::run::Run;
+use grainbench_harness::run::{FinishedRun, Run};
 use grainbench_harness::runner::Runner;
-use grainbench_harness::solvers::{References, Solvers, StoredResult};
+use grainbench_harness::solvers::{References, Solvers};
 use grainbench_mpm::solver::Mpm;
 use grainbench_reference::data::missing;
 use grainbench_reference::deck::Program;
@@ -112,9 +112,9 @@ impl References for Registry {
         &self,
         case: &Case,
         run: &Run,
-        scene: &Scene,
+        scene: &Arc<Scene>,
         control: Option<&str>,
-    ) -> Option<Result<StoredResult, RunError>> {
+    ) -> Option<Result<FinishedRun, RunError>> {
         kept::load(case, run, scene, control)
     }
 

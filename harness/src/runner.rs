@@ -7,7 +7,7 @@ use crate::data::SceneDataError;
 use crate::expect::Measurement;
 use crate::reading::{self, Table};
 use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, Set};
-use crate::solvers::{Solvers, StoredResult};
+use crate::solvers::Solvers;
 use crate::tolerance;
 use crate::uncertainty::{Estimate, of_finest};
 use crate::verdict::{ControlResult, Outcome, Verdict};
@@ -259,11 +259,8 @@ impl Runner {
     /// Returns the stored result of a run.
     fn read_back(&self, run: &Run, by: SolverChoice<'_>, scene: &Arc<Scene>) -> Result<FinishedRun, RunError> {
         let of_control = by.control.map(|control| control.name);
-        let none = || self.unreadable(run, "no result is stored; `grainbench reference keep` makes it".to_owned());
-        let kept = self.solvers.references().kept(self.case, run, scene, of_control).ok_or_else(none)?;
-        let StoredResult { record, tables, made } = kept?;
-        let done = FinishedRun::new(Arc::clone(scene), Arc::new(record));
-        Ok(FinishedRun { tables: Arc::new(tables), kept: Some(made), ..done })
+        let none = || Err(self.unreadable(run, "no result is stored; `grainbench reference keep` makes it".to_owned()));
+        self.solvers.references().kept(self.case, run, scene, of_control).unwrap_or_else(none)
     }
 
     /// Returns true if the stored result of a run is used, because its tier is larger than the tiers that are repeated

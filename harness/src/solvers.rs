@@ -2,24 +2,13 @@
 
 use crate::case::Case;
 use crate::claim::Claim;
-use crate::reading::Table;
-use crate::run::{ResultOrigin, Run};
+use crate::run::{FinishedRun, Run};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
 use grainbench_solver::{Defect, Solver};
 use std::sync::Arc;
 use std::time::Duration;
-
-/// Stored result of a run.
-pub struct StoredResult {
-    /// Record without snapshots.
-    pub record: Record,
-    /// Tables read from the snapshots.
-    pub tables: Vec<Table>,
-    /// Date, program and commit of the result.
-    pub made: ResultOrigin,
-}
 
 /// External solver, with the resolutions of its runs.
 #[derive(Clone, Debug, PartialEq)]
@@ -82,15 +71,15 @@ pub trait References: Send + Sync {
         None
     }
 
-    /// Returns the stored result of a run whose snapshots are read; none if no result is stored. `_scene` is the scene
-    /// that the solver got, and `_control` names the negative control that changed it.
+    /// Returns the stored result of a run whose snapshots are read, without snapshots; none if no result is stored. `_scene` is
+    /// the scene that the solver got, and `_control` names the negative control that changed it.
     fn kept(
         &self,
         _case: &Case,
         _run: &Run,
-        _scene: &Scene,
+        _scene: &Arc<Scene>,
         _control: Option<&str>,
-    ) -> Option<Result<StoredResult, RunError>> {
+    ) -> Option<Result<FinishedRun, RunError>> {
         None
     }
 

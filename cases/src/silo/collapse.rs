@@ -54,10 +54,8 @@ impl ComparedFlow {
         let case = by_name(self.case).ok_or("there is no such case")?;
         let mut runs = (case.claims)().into_iter().flat_map(|claim| claim.runs);
         let run = runs.find(|run| run.kept && run.variant == self.variant).ok_or("none is read")?;
-        let scene = case.variant(run.variant).map_err(|error| error.to_string())?;
-        let left = kept::load(case, &run, &scene, None).ok_or("nothing is kept")?.map_err(|error| error.to_string())?;
-        let (scene, record, tables) = (Arc::new(scene), Arc::new(left.record), Arc::new(left.tables));
-        Ok(FinishedRun { scene, record, tables, kept: Some(left.made) })
+        let scene = Arc::new(case.variant(run.variant).map_err(|error| error.to_string())?);
+        kept::load(case, &run, &scene, None).ok_or("nothing is kept")?.map_err(|error| error.to_string())
     }
 }
 
