@@ -118,26 +118,19 @@ struct Side {
 
 /// Contact with its history.
 struct Contact {
-    first: usize,
-    partner: Partner,
+    /// State after the last step, without the contact point.
+    state: ContactState,
     /// Tangential spring force on the first grain (N).
     spring: V,
     /// Rolling angle (rad).
     rolled: V,
-    normal: V,
-    overlap: f64,
     seen: u64,
-    normal_force: f64,
-    shear: V,
-    slipping: bool,
 }
 
 struct Body {
+    /// Grain with its present position, velocity and spin.
     grain: Grain,
     before: V,
-    position: V,
-    velocity: V,
-    spin: V,
     force: V,
     torque: V,
 }
@@ -176,13 +169,13 @@ impl State<'_> {
         };
         let (after, gone) = at(now);
         let (before, was) = at(now - self.step);
-        let (spot, past) = (nearest(&after, body.position)?, nearest(&before, body.before)?);
+        let (spot, past) = (nearest(&after, body.grain.position)?, nearest(&before, body.before)?);
         let (spin, speed) =
             ((gone.rotation - was.rotation) / self.step, (gone.translation - was.translation) / self.step);
         let centre = wall.motion.centre + (gone.translation + was.translation) * 0.5;
-        let middle = nearest(&at(now - 0.5 * self.step).0, (body.before + body.position) * 0.5)?;
+        let middle = nearest(&at(now - 0.5 * self.step).0, (body.before + body.grain.position) * 0.5)?;
         Some(Side {
-            between: [past - body.before, spot - body.position],
+            between: [past - body.before, spot - body.grain.position],
             velocity: speed + spin.cross(&(middle - centre)),
             spin,
             radius: None,
@@ -194,9 +187,9 @@ impl State<'_> {
     fn sides(&self, first: usize) -> Vec<Side> {
         let body = &self.bodies[first];
         let later = self.bodies.iter().enumerate().skip(first + 1).map(|(id, other)| Side {
-            between: [other.before - body.before, other.position - body.position],
-            velocity: other.velocity,
-            spin: other.spin,
+            between: [other.before - body.before, other.grain.position - body.grain.position],
+            velocity: other.grain.velocity,
+            spin: other.grain.spin,
             radius: Some(other.grain.radius),
             mass: other.grain.mass,
             partner: Partner::Grain(id as u32 + 1),
@@ -234,20 +227,12 @@ impl State<'_> {
             return;
         };
         let normal = side.between[1] / distance;
-        let found = self.contacts.iter().position(|old| old.first == first && old.partner == side.partner);
+        let (grain, partner) = (first as u32 + 1, side.partner);
+        let found = self.contacts.iter().position(|old| old.state.grain == grain && old.state.partner == partner);
         let place = found.unwrap_or_else(|| {
-            self.contacts.push(Contact {
-                first,
-                partner: side.partner,
-                spring: V::zeros(),
-                rolled: V::zeros(),
-                normal,
-                overlap,
-                seen: 0,
-                normal_force: 0.0,
-                shear: V::zeros(),
-                slipping: false,
-            });
+            let (point, normal_force, shear_force, slipping) = (V::zeros(), 0.0, V::zeros(), false);
+            let state = ContactState { grain, partner, point, normal, overlap, normal_force, shear_force, slipping };
+            self.contacts.push(Contact { state, spring: V::zeros(), rolled: V::zeros(), seen: 0 });
             self.contacts.len() - 1
         });
         let contact = &mut self.contacts[place];
@@ -275,20 +260,20 @@ impl State<'_> {
     fn advance(&mut self) {
         let (scene, step, time) = (self.scene, self.step, self.time());
         for body in &mut self.bodies {
-            body.before = body.velocity;
-            body.velocity += (body.force / body.grain.mass + scene.gravity) * step;
-            body.spin += body.torque / body.grain.inertia * step;
+            body.before = body.grain.velocity;
+            body.grain.velocity += (body.force / body.grain.mass + scene.gravity) * step;
+            body.grain.spin += body.torque / body.grain.inertia * step;
         }
         for driven in scene.driven.iter().filter(|driven| driven.is_moved_at(time)) {
             for &grain in &driven.grains {
-                self.bodies[grain].velocity = driven.velocity_over(time, step);
-                self.bodies[grain].spin = driven.spin;
+                self.bodies[grain].grain.velocity = driven.velocity_over(time, step);
+                self.bodies[grain].grain.spin = driven.spin;
             }
         }
         for body in &mut self.bodies {
-            let velocity = if self.solver.has(MethodMistake::OldVelocity) { body.before } else { body.velocity };
-            body.before = body.position;
-            body.position += velocity * step;
+            let velocity = if self.solver.has(MethodMistake::OldVelocity) { body.before } else { body.grain.velocity };
+            body.before = body.grain.position;
+            body.grain.position += velocity * step;
         }
         self.count += 1;
         self.evaluate(step);
@@ -301,9 +286,8 @@ impl State<'_> {
             let is_old = self.solver.has(MethodMistake::HalfStepOld);
             let free = if is_driven(id) || is_old { 0.0 } else { half };
             GrainState {
-                position: body.position,
-                velocity: body.velocity + (body.force / body.grain.mass + self.scene.gravity) * free,
-                spin: body.spin + body.torque / body.grain.inertia * free,
+                velocity: body.grain.velocity + (body.force / body.grain.mass + self.scene.gravity) * free,
+                spin: body.grain.spin + body.torque / body.grain.inertia * free,
                 force: Some(body.force),
                 torque: Some(body.torque),
                 ..GrainState::start(id as u32 + 1, &body.grain)
@@ -313,16 +297,8 @@ impl State<'_> {
         for (wall, force) in snapshot.walls.iter_mut().zip(&self.wall_forces) {
             wall.force = Some(*force);
         }
-        let shown = self.contacts.iter().map(|contact| ContactState {
-            grain: contact.first as u32 + 1,
-            partner: contact.partner,
-            point: self.bodies[contact.first].position,
-            normal: contact.normal,
-            overlap: contact.overlap,
-            normal_force: contact.normal_force,
-            shear_force: contact.shear,
-            slipping: contact.slipping,
-        });
+        let place = |state: &ContactState| self.bodies[state.grain as usize - 1].grain.position;
+        let shown = self.contacts.iter().map(|Contact { state, .. }| ContactState { point: place(state), ..*state });
         snapshot.contacts = Some(shown.collect());
         let driven =
             self.scene.driven.iter().map(|group| group.grains.iter().map(|&grain| self.bodies[grain].force).sum());
@@ -397,8 +373,8 @@ impl SmallDem {
             Some(MethodMistake::NoSpin) => 0.0,
             _ => 1.0,
         };
-        let relative =
-            body.velocity - side.velocity + (body.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
+        let relative = body.grain.velocity - side.velocity
+            + (body.grain.spin * moving[0] + second_spin * moving[1]).cross(&middle) * sign;
         let slip = relative - middle * relative.dot(&middle);
         let (stiff, _) = law.springs.stiffness(overlap, effective);
         let ratio =
@@ -406,13 +382,13 @@ impl SmallDem {
         let damped_share = if law.is_hertz() { 5.0 / 6.0 } else { 1.0 };
         let damping = law.normal_damping * mass + 2.0 * ratio * (stiff * mass * damped_share).sqrt();
         let secant = law.springs.secant_stiffness(overlap, effective);
-        let push = secant * overlap + damping * (body.velocity - side.velocity).dot(&normal);
+        let push = secant * overlap + damping * (body.grain.velocity - side.velocity).dot(&normal);
         let push = if self.has(MethodMistake::Pulls) { push } else { push.max(0.0) };
         let base = if self.has(MethodMistake::LimitOfElastic) { secant * overlap } else { push.max(0.0) };
         let limit = law.friction * base + law.cohesion;
-        self.shear(law, [effective, overlap, elapsed, limit], (slip, normal, [body.spin, side.spin]), contact);
+        self.shear(law, [effective, overlap, elapsed, limit], (slip, normal, [body.grain.spin, side.spin]), contact);
         let dashpot = slip * (law.tangential_damping * mass);
-        contact.shear = if self.has(MethodMistake::LimitOnSpring) {
+        contact.state.shear_force = if self.has(MethodMistake::LimitOnSpring) {
             contact.spring - dashpot
         } else {
             (contact.spring - dashpot).cap_magnitude(limit)
@@ -421,10 +397,11 @@ impl SmallDem {
             contact.spring = V::zeros();
         }
         let spin = if wall && self.has(MethodMistake::WallSpinDropped) { V::zeros() } else { side.spin };
-        let moment = self.roll(law, [effective, secant, elapsed, push], (body.spin - spin, normal), contact);
-        (contact.normal, contact.overlap, contact.normal_force) = (normal, overlap, push);
-        let force = contact.shear - normal * push;
-        let lever = normal.cross(&contact.shear);
+        let moment = self.roll(law, [effective, secant, elapsed, push], (body.grain.spin - spin, normal), contact);
+        let state = &mut contact.state;
+        (state.normal, state.overlap, state.normal_force) = (normal, overlap, push);
+        let force = state.shear_force - normal * push;
+        let lever = normal.cross(&state.shear_force);
         [force, lever * first + moment, lever * second - moment]
     }
 
@@ -440,14 +417,14 @@ impl SmallDem {
         let half = self.turn(normal, normal, spins, 0.5 * elapsed);
         let along = half * slip * elapsed;
         let along = along - normal * along.dot(&normal);
-        let turned = self.turn(contact.normal, normal, spins, elapsed) * contact.spring;
+        let turned = self.turn(contact.state.normal, normal, spins, elapsed) * contact.spring;
         let stiffness = |overlap: f64| law.springs.stiffness(overlap, effective).1;
-        let (was, is) = (contact.overlap, overlap);
+        let (was, is) = (contact.state.overlap, overlap);
         let is_rescaled =
             is < was && !self.has(MethodMistake::NotRescaled) || was > 0.0 && self.has(MethodMistake::SecantSpring);
         let kept = if law.is_hertz() && is_rescaled { (is / was).sqrt() } else { 1.0 };
         contact.spring = turned * kept - along * stiffness(0.5 * (was + is));
-        contact.slipping = contact.spring.norm() > limit;
+        contact.state.slipping = contact.spring.norm() > limit;
         if !self.has(MethodMistake::SpringNotCut) {
             contact.spring = contact.spring.cap_magnitude(limit);
         }
@@ -492,12 +469,10 @@ impl Solver for SmallDem {
             return Err(refuse("it has no rolling dashpot".to_owned()));
         }
         let (step, steps) = resolution.steps(scene).map_err(refuse)?;
+        let spin = |grain: &Grain| if self.has(MethodMistake::SpinsDropped) { V::zeros() } else { grain.spin };
         let bodies = scene.grains.iter().map(|grain| Body {
-            grain: *grain,
+            grain: Grain { spin: spin(grain), ..*grain },
             before: grain.position,
-            position: grain.position,
-            velocity: grain.velocity,
-            spin: if self.has(MethodMistake::SpinsDropped) { V::zeros() } else { grain.spin },
             force: V::zeros(),
             torque: V::zeros(),
         });
@@ -506,8 +481,8 @@ impl Solver for SmallDem {
         let mut state = State { scene, solver, step, count: 0, bodies, contacts: Vec::new(), wall_forces: walls };
         state.evaluate(0.0);
         for body in &mut state.bodies {
-            body.velocity -= (body.force / body.grain.mass + scene.gravity) * (0.5 * step);
-            body.spin -= body.torque / body.grain.inertia * (0.5 * step);
+            body.grain.velocity -= (body.force / body.grain.mass + scene.gravity) * (0.5 * step);
+            body.grain.spin -= body.torque / body.grain.inertia * (0.5 * step);
         }
         let mut recorder = Recorder::new(scene, step, steps);
         for count in 0..=steps {
