@@ -59,22 +59,13 @@ fn asked(mut claim: Claim) -> Claim {
     claim.fair_to_any_springs()
 }
 
-/// Returns the scene of a run; `None` if the scene is invalid, which occurs in no claim.
-fn scene(run: &Run) -> Option<Scene> {
-    let mut scene = CASE.variant(run.variant).ok()?;
-    if let Some((_, change)) = &run.adjustment {
-        change(&mut scene);
-    }
-    Some(scene)
-}
-
 /// Returns the largest overlap over the smallest radius, the relative difference of lever arms of friction.
 fn depth(run: &Run) -> f64 {
     let relative_depth = |scene: &Scene| {
         let radius = scene.grains.iter().map(|grain| grain.radius).fold(f64::INFINITY, f64::min);
         hertz(scene).0 / radius
     };
-    scene(run).as_ref().map_or(0.0, relative_depth)
+    crate::runner(&CASE).scene(run).map_or(0.0, |scene| relative_depth(&scene))
 }
 
 /// Returns the overlap (m) at each sample, from the displacement of one or of two equal spheres since first contact.
@@ -173,7 +164,7 @@ fn wrong_inertia() -> Control {
 /// contact sticks until Mindlin's spring is displaced, which reduces the impulse slightly. The reduction is largest if
 /// ζ gives e with a release at zero force and the spring is incremental.
 fn coulomb(run: Run) -> Claim {
-    let given = scene(&run).as_ref().map(ImpactParameters::from_scene);
+    let given = crate::runner(&CASE).scene(&run).map(|scene| ImpactParameters::from_scene(&scene));
     let [low, high] = given.map_or([0.0; 2], |meeting| {
         [1.0 + meeting.restitution - meeting.latest_start(), 1.0 + 2.0 * meeting.early - meeting.restitution]
     });

@@ -10,6 +10,7 @@
 //!
 //! and the energy is k/2 times their squares. A wall is a disc that does not move, here without shear.
 
+use crate::exact::bisection;
 use grainbench_scene::scene::{Scene, WallShape};
 use nalgebra::{DMatrix, DVector, Vector2};
 
@@ -119,11 +120,7 @@ fn first_above(value: impl Fn(f64) -> f64, threshold: f64, until: f64) -> f64 {
     const SCAN: usize = 1000;
     let time = |step: usize| until * step as f64 / SCAN as f64;
     let Some(first) = (1..=SCAN).find(|&step| value(time(step)) > threshold) else { return f64::NAN };
-    let (mut before, mut after) = (time(first - 1), time(first));
-    for _ in 0..50 {
-        let middle = 0.5 * (before + after);
-        if value(middle) > threshold { after = middle } else { before = middle }
-    }
+    let [before, after] = bisection([time(first - 1), time(first)], 50, |time| value(time) <= threshold);
     0.5 * (before + after)
 }
 

@@ -1,5 +1,6 @@
 //! Breathing mode of a ring: the exact frequency at any thickness.
 
+use crate::exact::bisection;
 use crate::rows::elastic::stiffen;
 use grainbench_harness::prelude::*;
 use std::f64::consts::{FRAC_1_SQRT_2, TAU};
@@ -70,15 +71,12 @@ impl Mode {
             let [[ja, ya], [jb, yb]] = self.radii.map(|radius| self.traction(wave_number, radius));
             ja * yb - jb * ya
         };
-        let [mut low, mut high] = [0.5 * guess, 1.5 * guess];
-        let below = free(low);
-        if below * free(high) > 0.0 {
+        let ends = [0.5 * guess, 1.5 * guess];
+        let below = free(ends[0]);
+        if below * free(ends[1]) > 0.0 {
             return None;
         }
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if free(middle) * below > 0.0 { low = middle } else { high = middle }
-        }
+        let [low, high] = bisection(ends, 60, |wave_number| free(wave_number) * below > 0.0);
         Some(0.5 * (low + high))
     }
 

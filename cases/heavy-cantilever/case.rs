@@ -1,5 +1,6 @@
 //! Large deflection of a cantilever under its own weight.
 
+use crate::exact::bisection;
 use grainbench_harness::prelude::*;
 
 const POINTS: u32 = 3;
@@ -34,11 +35,7 @@ struct Elastica {
 impl Elastica {
     /// Solves for γ = w L³/EI by bisection of the curvature at the clamp.
     fn under(weight: f64) -> Self {
-        let (mut low, mut high) = (0.0, weight);
-        for _ in 0..60 {
-            let middle = 0.5 * (low + high);
-            if Self::shot(weight, middle).left > 0.0 { high = middle } else { low = middle }
-        }
+        let [low, high] = bisection([0.0, weight], 60, |curvature| Self::shot(weight, curvature).left <= 0.0);
         Self::shot(weight, 0.5 * (low + high))
     }
 

@@ -1,5 +1,6 @@
 //! Coefficient of restitution of a contact with a dashpot, and its error due to the time step.
 
+use super::bisection;
 use std::f64::consts::PI;
 
 /// Returns the relative decrease of the restitution coefficient e per phase of a step, (Δe/e)/(ωΔt), if the dashpot
@@ -26,12 +27,7 @@ fn arc(damping_ratio: f64) -> f64 {
 
 /// Returns the damping ratio that gives a restitution with a release at zero force, by bisection.
 pub(crate) fn no_tension_ratio(restitution: f64) -> f64 {
-    let (mut low, mut high) = (0.0, 1.0 / restitution);
-    for _ in 0..80 {
-        let middle = 0.5 * (low + high);
-        if no_tension_restitution(middle) > restitution { low = middle } else { high = middle }
-    }
-    low
+    bisection([0.0, 1.0 / restitution], 80, |ratio| no_tension_restitution(ratio) > restitution)[0]
 }
 
 /// Returns [`lag`] for a contact that ends when its force is zero: dln e/dζ = −2 [acos ζ/(1 − ζ²)^{3/2} − ζ/(1 − ζ²)].

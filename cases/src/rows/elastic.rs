@@ -1,6 +1,7 @@
 //! Elastic grains: relaxation of one grain on a plane before the run, stiffening of a grain towards the rigid limit,
 //! and the closed form of a disc that is compressed across its diameter.
 
+use crate::exact::bisection;
 use crate::exact::one_grain::{OneGrain, last, normal_axis};
 use crate::rows::on_plane::touching;
 use grainbench_harness::prelude::*;
@@ -79,12 +80,8 @@ impl PressedDisc {
 
     /// Returns the force (N per metre) that shortens each compressed diameter by `shortening` (m), by bisection.
     pub(crate) fn force(&self, shortening: f64) -> f64 {
-        let (mut low, mut high) = (1e-12, 0.05);
-        for _ in 0..200 {
-            let middle = 0.5 * (low + high);
-            if middle * self.compliance(middle) < shortening / self.radius { low = middle } else { high = middle }
-        }
-        low * self.modulus * self.radius
+        let [p, _] = bisection([1e-12, 0.05], 200, |p| p * self.compliance(p) < shortening / self.radius);
+        p * self.modulus * self.radius
     }
 
     /// Returns the displacements due to a small increase ΔF of the force at one contact, in units of ΔF/(πE'). Before
