@@ -13,8 +13,7 @@ const VARIANTS: [&str; 2] = ["disc", "sphere"];
 const RIGID: &[Plane] =
     &[Plane { variant: "disc", rolls: true, lifts: None }, Plane { variant: "sphere", rolls: true, lifts: None }];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BACKSPIN };
+pub(crate) static CASE: Case = crate::heads::BACKSPIN.with(LEVELS, 2, &claims).drawn_by(figures);
 
 const SOURCE: Source =
     Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");

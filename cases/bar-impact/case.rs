@@ -15,8 +15,7 @@ const VELOCITY: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::BAR_IMPACT };
+pub(crate) static CASE: Case = crate::heads::BAR_IMPACT.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Impact velocity (m/s), wave speed (m/s), length (m) and density (kg/m³).
 struct Impact {

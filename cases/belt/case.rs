@@ -18,8 +18,7 @@ const SOURCE: Source = Source::Derived("a rigid grain slides on the belt, then r
 const STOPPED: Source =
     Source::Derived("no angular momentum about the belt: at rest after the displacement f V T (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::BELT };
+pub(crate) static CASE: Case = crate::heads::BELT.with(LEVELS, 2, &claims).drawn_by(figures);
 
 struct Belt {
     grain: OneGrain,

@@ -7,8 +7,7 @@ use grainbench_harness::prelude::*;
 /// Time step of the impact in the paper (Dosta et al. 2024).
 const LEVELS: &[Level] = &[time_step("dt=5e-7 s", 5e-7)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::BULK_PAIRS };
+pub(crate) static CASE: Case = crate::heads::BULK_PAIRS.with(LEVELS, 0, &claims);
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];

@@ -7,8 +7,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[2];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::CARRIED_GRAIN };
+pub(crate) static CASE: Case = crate::heads::CARRIED_GRAIN.with(LEVELS, 2, &claims);
 
 /// Parameters of motion, springs and run that determine the exact position of the carried grain.
 struct Motion {

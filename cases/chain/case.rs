@@ -21,8 +21,7 @@ const CONVERGENCE: ClaimFigure = ClaimFigure {
     logarithmic: true,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::CHAIN };
+pub(crate) static CASE: Case = crate::heads::CHAIN.with(LEVELS, 3, &claims).drawn_by(figures);
 
 fn run(level: Level) -> Run {
     Run::new(PLAIN, "dem", level.resolution)

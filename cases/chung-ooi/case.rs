@@ -24,8 +24,7 @@ const HERTZ: Source = Source::Derived("energy and a quadrature of F = kδ^{3/2} 
 const RESTITUTION: Source = Source::Derived("damped oscillator in δ^{5/4}: v′/v = −e (derivation)");
 const SLIDING: Source = Source::Derived("a contact that slides throughout has the impulse μ(1+e) m v_n (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::CHUNG_OOI };
+pub(crate) static CASE: Case = crate::heads::CHUNG_OOI.with(LEVELS, 2, &claims).drawn_by(figures);
 
 fn claims() -> Vec<Claim> {
     let mut claims = [elastic(), restitution(), oblique(), rigid(), turning::claims(), fair::claims()].concat();

@@ -10,8 +10,7 @@ const STRENGTH: Source = Source::Derived(
     "rolls iff m g sin θ/3 ≤ μ m g cos θ + c (derivation; the strength is Cundall & Strack 1979, eq. 19)",
 );
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::COHESIVE_DISC };
+pub(crate) static CASE: Case = crate::heads::COHESIVE_DISC.with(LEVELS, 2, &claims).drawn_by(figures);
 
 /// Returns the cohesion at which the disc just rolls (N).
 fn threshold(scene: &Scene) -> f64 {

@@ -12,8 +12,7 @@ const LEVELS: &[Level] =
 const FINEST: Level = LEVELS[3];
 const DAMPED: [&str; 4] = ["gamma-zeta.1", "gamma-zeta.2", "beta-zeta.1", "beta-zeta.2"];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[3], claims: &claims, figures, ..crate::heads::COLLISION };
+pub(crate) static CASE: Case = crate::heads::COLLISION.with(LEVELS, 3, &claims).drawn_by(figures);
 
 fn claims() -> Vec<Claim> {
     let mut claims = Vec::new();

@@ -15,8 +15,7 @@ const DISPLACEMENT: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::COLUMN };
+pub(crate) static CASE: Case = crate::heads::COLUMN.with(LEVELS, 1, &claims);
 
 /// Height (m), density (kg/m³), modulus (Pa) and gravity (m/s²).
 struct Column {

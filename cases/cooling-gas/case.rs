@@ -6,8 +6,7 @@ use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::COOLING_GAS };
+pub(crate) static CASE: Case = crate::heads::COOLING_GAS.with(LEVELS, 0, &claims).drawn_by(figures);
 
 const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.

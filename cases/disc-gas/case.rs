@@ -5,8 +5,7 @@ use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", FINEST)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::DISC_GAS };
+pub(crate) static CASE: Case = crate::heads::DISC_GAS.with(LEVELS, 2, &claims).drawn_by(figures);
 
 /// Time steps of the runs in the figure, as fractions of the critical time step.
 const FRACTIONS: [f64; 3] = [0.1, 0.03, FINEST];

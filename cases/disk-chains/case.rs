@@ -25,8 +25,7 @@ const SOONER: f64 = 0.99;
 const SMOOTH: &str = "zig-zag-smooth";
 const GLUED: &str = "zig-zag-glued";
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::DISK_CHAINS };
+pub(crate) static CASE: Case = crate::heads::DISK_CHAINS.with(LEVELS, 2, &claims).drawn_by(figures);
 
 /// Returns the two discs of a contact between neighbours as indices in the scene, which lists discs of odd number first.
 fn pair(scene: &Scene, first: usize) -> [usize; 2] {

@@ -16,8 +16,7 @@ use zones::{COUNTED, ZONES};
 
 const LEVELS: &[Level] = &[time_step("dt=3e-6 s", 3e-6)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::DRUM_MIXING };
+pub(crate) static CASE: Case = crate::heads::DRUM_MIXING.with(LEVELS, 0, &claims).drawn_by(figures);
 
 /// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
 const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];

@@ -22,8 +22,7 @@ const RADIAL: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::EXPANDING_RING };
+pub(crate) static CASE: Case = crate::heads::EXPANDING_RING.with(LEVELS, 1, &claims);
 
 /// Breathing mode of a ring, U(r) = σ_Y(b) J₁(kr) − σ_J(b) Y₁(kr). σ_J(b) and σ_Y(b) are the stresses σ_rr of J₁(kr)
 /// and Y₁(kr) at the outer radius b.

@@ -16,8 +16,7 @@ const SINKING: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::HEAVY_CANTILEVER };
+pub(crate) static CASE: Case = crate::heads::HEAVY_CANTILEVER.with(LEVELS, 0, &claims);
 
 /// Elastica under its own weight, in units of its length.
 #[derive(Clone, Copy, Debug)]

@@ -12,8 +12,7 @@ const SPEEDS: [f64; 4] = [0.3, 1.0, 3.0, 10.0];
 /// Number of beads between the two probed contacts.
 const BEADS: f64 = 40.0;
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::HERTZ_CHAIN };
+pub(crate) static CASE: Case = crate::heads::HERTZ_CHAIN.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Returns the run for a speed of the striker (m/s). The duration scales with the travel time of the wave, the time step
 /// with the stiffness at the overlap of the wave, Δt ∝ v^{-1/5}. The critical time step refers to the overlap R/100.

@@ -17,8 +17,7 @@ const SOLVER: &str = "mpm+apic";
 const SOURCE: Source =
     Source::Derived("Hertz: b = √(4PR/πE*), p₀ = 2P/πb; Johnson, Contact Mechanics, §4.2 (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::HERTZ_CYLINDER };
+pub(crate) static CASE: Case = crate::heads::HERTZ_CYLINDER.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Half-width (m) and peak pressure (Pa) of a contact between half-spaces.
 #[derive(Clone, Copy, Debug)]

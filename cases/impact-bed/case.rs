@@ -24,14 +24,8 @@ const DERIVATION: &str = {
     }
 };
 
-pub(crate) static CASE: Case = Case {
-    derivation: DERIVATION,
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures,
-    ..crate::heads::IMPACT_BED
-};
+pub(crate) static CASE: Case =
+    Case { derivation: DERIVATION, ..crate::heads::IMPACT_BED }.with(LEVELS, 0, &claims).drawn_by(figures);
 
 /// Time step of most claims.
 const STEP: Resolution = LEVELS[0].resolution;

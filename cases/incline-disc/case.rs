@@ -7,8 +7,7 @@ use crate::rows::on_plane::Plane;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::INCLINE_DISC };
+pub(crate) static CASE: Case = crate::heads::INCLINE_DISC.with(LEVELS, 2, &claims).drawn_by(figures);
 
 static INCLINE: Incline = Incline {
     case: &CASE,

@@ -7,14 +7,10 @@ use crate::rows::on_plane::Plane;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = Case {
-    derivation: include_str!("../incline-disc/derivation.md"),
-    levels: LEVELS,
-    default_level: LEVELS[2],
-    claims: &claims,
-    figures,
-    ..crate::heads::INCLINE_SPHERE
-};
+pub(crate) static CASE: Case =
+    Case { derivation: include_str!("../incline-disc/derivation.md"), ..crate::heads::INCLINE_SPHERE }
+        .with(LEVELS, 2, &claims)
+        .drawn_by(figures);
 
 static INCLINE: Incline = Incline {
     case: &CASE,

@@ -11,8 +11,7 @@ use grainbench_harness::statistics::{BLOCKS, difference};
 
 const LEVELS: &[Level] = &[time_step("dt=6e-4 s", 6e-4), time_step("dt=3e-4 s", 3e-4)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::JANSSEN };
+pub(crate) static CASE: Case = crate::heads::JANSSEN.with(LEVELS, 0, &claims).drawn_by(figures);
 
 const JANSSEN: Source =
     Source::Derived("dσ/dx = w/A − (4/D) μ K σ, with μ K from the middle of the column (derivation)");

@@ -13,8 +13,7 @@ const STEP: Resolution = Resolution::TimeStep(1e-4);
 const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::MESH_SEAM };
+pub(crate) static CASE: Case = crate::heads::MESH_SEAM.with(LEVELS, 1, &claims);
 
 fn claims() -> Vec<Claim> {
     let mut claims: Vec<Claim> =

@@ -18,8 +18,7 @@ const POINTS_OF_GIMP: u32 = 4;
 const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::MMS_AXIS_ALIGNED };
+pub(crate) static CASE: Case = crate::heads::MMS_AXIS_ALIGNED.with(LEVELS, 1, &claims).drawn_by(figures);
 
 fn runs(solver: &'static str, points: u32) -> Vec<Run> {
     CELLS.map(|cells| Run::new(PLAIN, solver, Resolution::grid(cells, points))).to_vec()

@@ -19,8 +19,7 @@ const fn level(name: &'static str, cells: f64) -> Level {
     Level { name, resolution: Resolution::Grid { cells, points: 3, courant: 0.1 } }
 }
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::MMS_VORTEX };
+pub(crate) static CASE: Case = crate::heads::MMS_VORTEX.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Returns the run up to 0.5 s, when the rotation is largest.
 fn run(solver: &'static str, level: Level) -> Run {

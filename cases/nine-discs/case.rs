@@ -23,13 +23,7 @@ const MODAL: [&str; 3] = ["kappa-0", "kappa-2_3", "kappa-1"];
 const MODES: Source =
     Source::Derived("modal solution of the nine discs without slip (derivation), of Cundall & Strack 1979, Fig. 5");
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: figures::figures,
-    ..crate::heads::NINE_DISCS
-};
+pub(crate) static CASE: Case = crate::heads::NINE_DISCS.with(LEVELS, 0, &claims).drawn_by(figures::figures);
 
 fn claims() -> Vec<Claim> {
     [

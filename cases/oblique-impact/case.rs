@@ -9,8 +9,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];
 const VARIANTS: [&str; 2] = ["elastic", "damped"];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[2], claims: &claims, figures, ..crate::heads::OBLIQUE_IMPACT };
+pub(crate) static CASE: Case = crate::heads::OBLIQUE_IMPACT.with(LEVELS, 2, &claims).drawn_by(figures);
 
 /// Velocities after the impact.
 struct Exit {

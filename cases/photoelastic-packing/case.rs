@@ -14,13 +14,7 @@ const LEVELS: &[Level] = &[fraction("dt=.2", 0.2), fraction("dt=.1", 0.1), cells
 /// Time step of the comparisons with LAMMPS and LIGGGHTS: 5 ms. The walls stop at the end of a step.
 const STEP: Resolution = Resolution::TimeStep(5e-3);
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: figures::figures,
-    ..crate::heads::PHOTOELASTIC_PACKING
-};
+pub(crate) static CASE: Case = crate::heads::PHOTOELASTIC_PACKING.with(LEVELS, 0, &claims).drawn_by(figures::figures);
 
 /// Packings with the parameters of each table of the paper. Eleven packings were tried for each table. The lists
 /// contain those that reach F_H/F_V of stage A (derivation).

@@ -13,8 +13,7 @@ use grainbench_scene::scene::Piston;
 
 const LEVELS: &[Level] = &[time_step("dt=2e-3 s", 2e-3), time_step("dt=1e-3 s", 1e-3)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::PLANE_SHEAR_PRESSURE };
+pub(crate) static CASE: Case = crate::heads::PLANE_SHEAR_PRESSURE.with(LEVELS, 0, &claims).drawn_by(figures);
 
 /// Variants, each with its approximate inertial number.
 const RATES: [(&str, &str); 5] =

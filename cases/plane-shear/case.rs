@@ -10,8 +10,7 @@ use grainbench_solver::perturbed::move_one;
 
 const LEVELS: &[Level] = &[time_step("dt=1e-3 s", 1e-3), time_step("dt=1e-4 s", 1e-4)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::PLANE_SHEAR };
+pub(crate) static CASE: Case = crate::heads::PLANE_SHEAR.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Column of the kinetic energy of translation.
 const ENERGY: &str = "all.kinetic_energy";

@@ -20,13 +20,7 @@ const fn grid(cells: f64) -> Resolution {
 const LEVELS: &[Level] =
     &[fraction("dt=.05", 0.05), cells("L/75", 75.0, 2), cells("L/150", 150.0, 2), cells("L/300", 300.0, 2)];
 
-pub(crate) static CASE: Case = Case {
-    levels: LEVELS,
-    default_level: LEVELS[0],
-    claims: &claims,
-    figures: figures::figures,
-    ..crate::heads::POLYDISPERSE_SHEAR
-};
+pub(crate) static CASE: Case = crate::heads::POLYDISPERSE_SHEAR.with(LEVELS, 0, &claims).drawn_by(figures::figures);
 
 fn claims() -> Vec<Claim> {
     [coarse::claims(), springs::claims(), paper::claims(), yielding::claims()].concat()

@@ -21,8 +21,7 @@ const SPEED: f64 = 0.001;
 /// Duration of the run (s).
 const TIME: f64 = 20.0;
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::PRESSED_BLOCK };
+pub(crate) static CASE: Case = crate::heads::PRESSED_BLOCK.with(LEVELS, 0, &claims);
 
 /// Means over the points in the middle half of the block at the end. All points have the same mass.
 #[derive(Default)]

@@ -6,7 +6,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case = Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROCKING };
+pub(crate) static CASE: Case = crate::heads::ROCKING.with(LEVELS, 1, &claims);
 
 /// Parameters of a sphere that rolls to rest.
 struct RollToRest {

@@ -5,8 +5,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::ROLLING_OFF };
+pub(crate) static CASE: Case = crate::heads::ROLLING_OFF.with(LEVELS, 1, &claims);
 
 /// Fixed ball and rolling ball.
 struct Balls {

@@ -5,8 +5,7 @@ use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/16", 16.0, 3)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::ROLLING_ON_BLOCK };
+pub(crate) static CASE: Case = crate::heads::ROLLING_ON_BLOCK.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// One slope with its reference.
 #[derive(Clone, Copy)]

@@ -12,8 +12,7 @@ const STEP: Level = LEVELS[2];
 const FLAT: [&str; 2] = ["sphere", "disc"];
 const SLOPE: [&str; 2] = ["sphere-slope", "disc-slope"];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, figures, ..crate::heads::ROLLING_RESISTANCE };
+pub(crate) static CASE: Case = crate::heads::ROLLING_RESISTANCE.with(LEVELS, 2, &claims).drawn_by(figures);
 
 fn rolling_friction(scene: &Scene) -> f64 {
     scene.laws.iter().flatten().map(|law| law.rolling_friction).fold(0.0, f64::max)

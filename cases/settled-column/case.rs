@@ -7,8 +7,7 @@ use grainbench_harness::statistics::spread;
 
 const LEVELS: &[Level] = &[fraction("dt=.2", 0.2)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SETTLED_COLUMN };
+pub(crate) static CASE: Case = crate::heads::SETTLED_COLUMN.with(LEVELS, 0, &claims).drawn_by(figures);
 
 /// Variants with columns from different random seeds. The spread between them gives the tolerances.
 const COLUMNS: [&str; 4] = [PLAIN, "seed-12", "seed-13", "seed-14"];

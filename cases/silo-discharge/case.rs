@@ -7,8 +7,7 @@ use grainbench_reference::round_robin::{EARLY, SILO, STEADY, course};
 
 const LEVELS: &[Level] = &[time_step("dt=6e-6 s", 6e-6), time_step("dt=3e-6 s", 3e-6)];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SILO_DISCHARGE };
+pub(crate) static CASE: Case = crate::heads::SILO_DISCHARGE.with(LEVELS, 0, &claims).drawn_by(figures);
 
 /// Variant with the small orifice.
 const SMALL: &str = "small";

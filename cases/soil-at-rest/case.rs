@@ -5,8 +5,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[cells("H/4", 4.0, 3), cells("H/8", 8.0, 3), cells("H/10", 10.0, 3)];
 const SOURCE: Source = Source::Derived("∂σ_yy/∂y = ρg carries the weight (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::SOIL_AT_REST };
+pub(crate) static CASE: Case = crate::heads::SOIL_AT_REST.with(LEVELS, 1, &claims);
 
 /// Returns the height of the soil (m), and the settlement of its top, ρgH²/2M (m), if the soil starts without stress.
 fn soil(scene: &Scene) -> Option<[f64; 2]> {

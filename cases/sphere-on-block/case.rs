@@ -15,8 +15,7 @@ const AT_REST: f64 = 1.0;
 const FLAT: &str = "nodal contact acts before surfaces touch and supports the sphere over a width of about √(2Rh), along each \
                     body's own normal";
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::SPHERE_ON_BLOCK };
+pub(crate) static CASE: Case = crate::heads::SPHERE_ON_BLOCK.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// One slope with its references.
 #[derive(Clone, Copy)]

@@ -6,8 +6,7 @@ const LEVELS: &[Level] = &[cells("t/4", 4.0, 3)];
 const LAWS: [&str; 3] = ["hypoelastic", "metal", "rubber"];
 const SOURCE: Source = Source::Derived("Lamé's rotating annulus in plane strain (derivation)");
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, ..crate::heads::SPINNING_RING };
+pub(crate) static CASE: Case = crate::heads::SPINNING_RING.with(LEVELS, 0, &claims);
 
 /// Ring that rotates about its centre.
 #[derive(Clone, Copy, Debug)]

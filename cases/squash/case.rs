@@ -20,8 +20,7 @@ const FORCES: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[0], claims: &claims, figures, ..crate::heads::SQUASH };
+pub(crate) static CASE: Case = crate::heads::SQUASH.with(LEVELS, 0, &claims).drawn_by(figures);
 
 fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)

@@ -15,8 +15,7 @@ const SOURCE: Source = Source::Derived(
     "Johnson, Contact Mechanics, line contact, with the expansion by the transverse pair of forces (derivation)",
 );
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::SQUEEZED_DISCS };
+pub(crate) static CASE: Case = crate::heads::SQUEEZED_DISCS.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Returns the distance by which each wall moves in (m).
 fn squeeze(scene: &Scene) -> f64 {

@@ -7,8 +7,7 @@ use std::f64::consts::TAU;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.05", 0.05), fraction("dt=.02", 0.02)];
 const STEP: Level = LEVELS[1];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: STEP, claims: &claims, ..crate::heads::TURNING_WALLS };
+pub(crate) static CASE: Case = crate::heads::TURNING_WALLS.with(LEVELS, 1, &claims);
 
 /// Returns the angular velocity of the walls (rad/s).
 fn spin(scene: &Scene) -> Vector3<f64> {

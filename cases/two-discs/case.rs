@@ -8,8 +8,7 @@ const LEVELS: &[Level] = &[cells("R/4", 4.0, 3), cells("R/8", 8.0, 3), cells("R/
 /// Time of first contact of the discs of the Sulsky variant (s): 3 − √2.
 const TOUCH: f64 = 3.0 - SQRT_2;
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, figures, ..crate::heads::TWO_DISCS };
+pub(crate) static CASE: Case = crate::heads::TWO_DISCS.with(LEVELS, 1, &claims).drawn_by(figures);
 
 /// Courant number, smaller than usual because of the contact springs and the waves of an impact.
 const COURANT: f64 = 0.3;

@@ -7,8 +7,7 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.02", 0.02), fraction("dt=.005", 0.005)];
 const VARIANTS: [&str; 3] = ["spheres", "discs", "hertz"];
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::UNEQUAL_IMPACT };
+pub(crate) static CASE: Case = crate::heads::UNEQUAL_IMPACT.with(LEVELS, 1, &claims);
 
 /// Parameters and exact values of the impact.
 struct Impact {

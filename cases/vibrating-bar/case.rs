@@ -40,8 +40,7 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     ..VELOCITY
 };
 
-pub(crate) static CASE: Case =
-    Case { levels: LEVELS, default_level: LEVELS[1], claims: &claims, ..crate::heads::VIBRATING_BAR };
+pub(crate) static CASE: Case = crate::heads::VIBRATING_BAR.with(LEVELS, 1, &claims);
 
 /// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
 pub(crate) fn mode(scene: &Scene) -> (f64, f64) {

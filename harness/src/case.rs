@@ -138,6 +138,23 @@ pub type SceneCache = Mutex<Vec<(&'static str, String, Scene)>>;
 const MANY: usize = 1000;
 
 impl Case {
+    /// Sets the levels, coarse to fine, the index of the level that most claims use, and the claims.
+    #[must_use]
+    pub const fn with(
+        self,
+        levels: &'static [Level],
+        default: usize,
+        claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
+    ) -> Self {
+        Self { levels, default_level: levels[default], claims, ..self }
+    }
+
+    /// Sets the figures that are not part of a claim.
+    #[must_use]
+    pub const fn drawn_by(self, figures: fn(&Runner) -> Result<Vec<Figure>, RunError>) -> Self {
+        Self { figures, ..self }
+    }
+
     /// Returns the folder of the case.
     #[must_use]
     pub fn directory(&self) -> PathBuf {

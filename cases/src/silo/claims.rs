@@ -40,7 +40,7 @@ pub(crate) const fn case(
     claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
     figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
 ) -> Case {
-    Case { weakness: WEAKNESS, levels: LEVELS, default_level: LEVELS[0], claims, figures, ..head }
+    Case { weakness: WEAKNESS, ..head }.with(LEVELS, 0, claims).drawn_by(figures)
 }
 
 /// Levels of resolution of silos. The claims use the first.
