@@ -80,9 +80,9 @@ fn claims() -> Vec<Claim> {
         [
             claim(format!("velocity of the right bar, worst, {} cells", level.name), "m/s")
                 .run(run())
-                .series(|done| samples(done, "right.vx"))
                 .follows(
                     SOURCE,
+                    |done| samples(done, "right.vx"),
                     |done, time| Impact::from_scene(&done.scene).velocity(time),
                     |done| Impact::from_scene(&done.scene).speed,
                 )

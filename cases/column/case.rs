@@ -105,9 +105,9 @@ fn claims() -> Vec<Claim> {
 fn swinging(level: Level, allowed: f64) -> Claim {
     claim(format!("displacement of the centre of mass over three periods, worst, {} cells", level.name), "m")
         .run(Run::new("swinging", "mpm", level.resolution))
-        .series(|done| from_start(done, "column.y"))
         .follows(
             SOURCE,
+            |done| from_start(done, "column.y"),
             |done, time| Column::from_scene(&done.scene).swing(time),
             |done| 2.0 * Column::from_scene(&done.scene).sag(),
         )

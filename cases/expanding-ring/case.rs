@@ -189,9 +189,9 @@ fn claims() -> Vec<Claim> {
         ),
         claim("radial displacement over two periods, worst, cells of t/4", "m")
             .run(run(THIN, LEVELS[1].resolution))
-            .series(|done| Ok(done.series().time.iter().copied().zip(radial(done)?).collect()))
             .follows(
                 SOURCE,
+                |done| Ok(done.series().time.iter().copied().zip(radial(done)?).collect()),
                 |done, time| mode(done).map_or(f64::NAN, |mode| mode.amplitude() * (mode.frequency() * time).sin()),
                 |done| mode(done).map_or(f64::NAN, |mode| mode.amplitude()),
             )

@@ -62,8 +62,9 @@ fn coefficient(done: &FinishedRun) -> Result<f64, MissingData> {
 fn claims() -> Vec<Claim> {
     let exponent = claim("exponent of the speed in the force", "1")
         .runs(SPEEDS.map(strike))
-        .sweep(|done| wave(done).map(|(speed, force)| (force, speed)))
-        .scales(1.0 / 6.0, 1.0 / 6.0, Source::Derived("scaling of F = kδ^{3/2} (derivation)"))
+        .scales(1.0 / 6.0, 1.0 / 6.0, Source::Derived("scaling of F = kδ^{3/2} (derivation)"), |done| {
+            wave(done).map(|(speed, force)| (force, speed))
+        })
         .within(rounding(
             7.0,
             "the discretisation of the pulse is the same at every speed; rounding of speeds and forces, which counts \

@@ -202,11 +202,10 @@ fn discrete() -> Vec<Claim> {
 fn geometry() -> Claim {
     claim("exponent in δ/R of the deviation from the linear answer", "1")
         .runs(SPEEDS.map(|factor| at_speed("kappa-1", factor)))
-        .sweep(|done| {
+        .scales(1.0, 1.0, Source::Derived("normals turn by (a − b)/2R (derivation)"), |done| {
             let worst = worst(&done.series().time, &inward(done)?, &exact_cycles(done))?;
             Ok((travel(done), worst.error()))
         })
-        .scales(1.0, 1.0, Source::Derived("normals turn by (a − b)/2R (derivation)"))
         .within(computed(
             over_radius("kappa-1"),
             "next power of δ/R with a coefficient of the same size: δ/R of the largest value",

@@ -101,9 +101,9 @@ fn between(variant: &'static str) -> Claim {
     let forth = if variant == "between" { "forth" } else { "back" };
     claim(format!("spin of the disc between two that run {forth}, worst"), "rad/s")
         .run(Run::new(variant, "dem", STEP.resolution))
-        .series(|done| samples(done, "grain.omega"))
         .follows(
             Source::Derived("ω₀ cos ω_s t, ω_s² = Σ (k_t R² + k_r)/I (derivation)"),
+            |done| samples(done, "grain.omega"),
             |done, time| done.scene.grains[0].spin.z * (rocks(&done.scene)[0] * time).cos(),
             |done| done.scene.grains[0].spin.z,
         )

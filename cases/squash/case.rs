@@ -73,10 +73,12 @@ fn claims() -> Vec<Claim> {
     let over_cycles = |contact: &'static str, force: fn(&FinishedRun, f64) -> f64| {
         claim(format!("normal force at {contact} over 200 cycles, worst"), "N")
             .run(run())
-            .series(move |done| samples(done, &format!("{contact}.normal_force")))
-            .follows(Source::Derived("closed solution of the paper's recurrence (derivation)"), force, |done| {
-                units(done).1
-            })
+            .follows(
+                Source::Derived("closed solution of the paper's recurrence (derivation)"),
+                move |done| samples(done, &format!("{contact}.normal_force")),
+                force,
+                |done| units(done).1,
+            )
             .within(computed(
                 200_f64.sqrt() * ROUNDING,
                 "random rounding of positions up to 4 R by ε over 200 cycles; in units of k v Δt with v Δt = 1e-3 R",

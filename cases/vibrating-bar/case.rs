@@ -150,9 +150,9 @@ fn of_others() -> Vec<Claim> {
     let off = CASE.number(VISCOUS, |scene| damped_off(at.resolution, scene, time));
     let viscous = claim(format!("mean velocity of a viscous bar over two periods, worst, {} cells", at.name), "m/s")
         .run(Run::new(VISCOUS, "mpm", at.resolution))
-        .series(|done| samples(done, "bar.vx"))
         .follows(
             Source::Derived("ρ u_tt = M u_xx + (4η/3 + ζ) u_txx, fixed-free (derivation)"),
+            |done| samples(done, "bar.vx"),
             |done, time| DampedMode::from_scene(&done.scene).velocity(time),
             |done| DampedMode::from_scene(&done.scene).amplitude,
         )
@@ -172,9 +172,9 @@ fn of_others() -> Vec<Claim> {
     let stretched = |level: &Level| {
         claim(format!("mean velocity of a stretched bar let go, a period, worst, {} cells", level.name), "m/s")
             .run(Run::new(STRETCHED, "mpm", level.resolution))
-            .series(|done| samples(done, "bar.vx"))
             .follows(
                 Source::Derived("d'Alembert's waves of a stressed bar, fixed-free (derivation)"),
+                |done| samples(done, "bar.vx"),
                 |done, time| triangle(&done.scene, time),
                 |done| triangle(&done.scene, 3.0 * stretched(&done.scene).2),
             )
@@ -211,9 +211,9 @@ fn claims() -> Vec<Claim> {
         let (squared, strain) = small(level.resolution);
         claim(format!("mean velocity over two periods, worst, {} cells", level.name), "m/s")
             .run(run(*level))
-            .series(|done| samples(done, "bar.vx"))
             .follows(
                 SOURCE,
+                |done| samples(done, "bar.vx"),
                 |done, time| {
                     let (frequency, amplitude) = mode(&done.scene);
                     amplitude * (frequency * time).cos()

@@ -20,7 +20,6 @@
 //! ```
 
 use crate::control::{Control, FailureMode};
-use crate::course::{ClaimFigure, Trace};
 use crate::evidence::Evidence;
 use crate::expect::{Bound, ExpectedValue, Measurement};
 use crate::run::{ExpectedOutcome, FinishedRun, MissingData, Run, Set};
@@ -82,6 +81,38 @@ pub struct Claim {
     pub drawn: Option<(&'static ClaimFigure, String)>,
     /// Claim for other parameter values of the case's scene; none if its tolerance is unknown there.
     pub elsewhere: Option<ParameterVariation>,
+}
+
+/// Points (x, y).
+pub type Points = Vec<(f64, f64)>;
+
+/// The curves of a claim: measured points, and expected points if the expectation is a curve.
+#[derive(Clone, Debug, PartialEq)]
+pub struct ClaimCurves {
+    /// Points (x, y) from the runs.
+    pub measured: Points,
+    /// Points (x, y) of the expected curve, or of a guide line with the expected slope.
+    pub expected: Points,
+    /// Power of the guide line; none if there is no guide line.
+    pub slope: Option<f64>,
+}
+
+/// Reads the measured and the expected curve from the runs of a claim.
+pub type Trace = Arc<dyn Fn(&[FinishedRun]) -> Result<ClaimCurves, MissingData> + Send + Sync>;
+
+/// Figure in which a claim is plotted. Claims with the same figure share one graph.
+#[derive(Debug)]
+pub struct ClaimFigure {
+    /// Name of the figure.
+    pub name: &'static str,
+    /// Title above the graph.
+    pub title: &'static str,
+    /// Caption, which describes the expected result.
+    pub caption: &'static str,
+    /// Labels of both axes.
+    pub axes: [&'static str; 2],
+    /// True for logarithmic axes.
+    pub logarithmic: bool,
 }
 
 /// Form of a claim for the case's scene with other parameter values. The tolerance is computed from the changed scene.

@@ -3,7 +3,7 @@
 //! The figure of a claim plots the data that the claim compares.
 
 use crate::case::Case;
-use crate::claim::{Claim, ClaimWithExpectation, Expectation, Quantity};
+use crate::claim::{Claim, ClaimCurves, ClaimFigure, ClaimWithExpectation, Expectation, Points, Quantity, Trace};
 use crate::expect::{Bound, ExpectedValue, Measurement};
 use crate::figure::{Axis, Curve, Figure, Stroke};
 use crate::measure::slope;
@@ -13,40 +13,8 @@ use crate::source::Source;
 use grainbench_solver::failure::RunError;
 use std::sync::Arc;
 
-/// Points (x, y).
-pub type Points = Vec<(f64, f64)>;
-
 /// Largest number of points of a plotted curve.
 const DRAWN: usize = 300;
-
-/// The curves of a claim: measured points, and expected points if the expectation is a curve.
-#[derive(Clone, Debug, PartialEq)]
-pub struct ClaimCurves {
-    /// Points (x, y) from the runs.
-    pub measured: Points,
-    /// Points (x, y) of the expected curve, or of a guide line with the expected slope.
-    pub expected: Points,
-    /// Power of the guide line; none if there is no guide line.
-    pub slope: Option<f64>,
-}
-
-/// Reads the measured and the expected curve from the runs of a claim.
-pub type Trace = Arc<dyn Fn(&[FinishedRun]) -> Result<ClaimCurves, MissingData> + Send + Sync>;
-
-/// Figure in which a claim is plotted. Claims with the same figure share one graph.
-#[derive(Debug)]
-pub struct ClaimFigure {
-    /// Name of the figure.
-    pub name: &'static str,
-    /// Title above the graph.
-    pub title: &'static str,
-    /// Caption, which describes the expected result.
-    pub caption: &'static str,
-    /// Labels of both axes.
-    pub axes: [&'static str; 2],
-    /// True for logarithmic axes.
-    pub logarithmic: bool,
-}
 
 /// Returns the time (s) and the value of every sample of a column.
 ///
@@ -67,49 +35,16 @@ pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingDat
     Ok(points)
 }
 
-/// Reads a value from a run.
-type RunReader<T> = Arc<dyn Fn(&FinishedRun) -> Result<T, MissingData> + Send + Sync>;
-
-/// A claim about a time series that has no expectation yet.
-#[must_use = "a claim needs a negative control"]
-pub struct Series {
-    quantity: Quantity,
-    read: RunReader<Points>,
-}
-
-/// A claim about the dependence of a quantity, such as an error, on a varied parameter. It has no expectation yet.
-#[must_use = "a claim needs a negative control"]
-pub struct Sweep {
-    quantity: Quantity,
-    read: RunReader<(f64, f64)>,
-}
-
 impl Quantity {
-    /// Reads a time series from the first run: the time (s) and the value of every sample.
-    pub fn series(self, read: impl Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync + 'static) -> Series {
-        Series { quantity: self, read: Arc::new(read) }
-    }
-
-    /// Reads two numbers from every run: the varied parameter, such as a time step or a cell size, and the quantity that
-    /// depends on it, such as the error.
-    pub fn sweep(
-        self,
-        read: impl Fn(&FinishedRun) -> Result<(f64, f64), MissingData> + Send + Sync + 'static,
-    ) -> Sweep {
-        Sweep { quantity: self, read: Arc::new(read) }
-    }
-}
-
-impl Series {
-    /// Expects the exact value at every sample. `exact` returns this value from the scene and the time (s). The error
-    /// is divided by `scale`.
+    /// Reads a time series from the first run, which is the time (s) and the value of every sample. Expects the exact value
+    /// at every sample. `exact` returns this value from the scene and the time (s). The error is divided by `scale`.
     pub fn follows(
         self,
         source: Source,
+        read: impl Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync + 'static,
         exact: impl Fn(&FinishedRun, f64) -> f64 + Send + Sync + 'static,
         scale: impl Fn(&FinishedRun) -> f64 + Send + Sync + 'static,
     ) -> ClaimWithExpectation {
-        let read = self.read;
         let trace: Trace = Arc::new(move |done| {
             let measured = read(&done[0])?;
             let expected = measured.iter().map(|&(time, _)| (time, exact(&done[0], time))).collect();
@@ -122,15 +57,19 @@ impl Series {
             let expected: Vec<f64> = expected.into_iter().map(|(_, value)| value).collect();
             Ok(Measurement::worst_of(&time, &values, &expected, scale(&done[0])))
         };
-        self.quantity.equals(source, compare).traced(trace)
+        self.equals(source, compare).traced(trace)
     }
-}
 
-impl Sweep {
-    /// Expects this order of convergence, fitted over all runs.
-    pub fn converges(self, order: f64, source: Source) -> ClaimWithExpectation {
-        let fitted = Arc::clone(&self.read);
-        let read = self.read;
+    /// Reads two numbers from every run: the varied parameter, such as a time step or a cell size, and the quantity that
+    /// depends on it, such as the error. Expects this order of convergence, fitted over all runs.
+    pub fn fits(
+        self,
+        order: f64,
+        source: Source,
+        read: impl Fn(&FinishedRun) -> Result<(f64, f64), MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
+        let read = Arc::new(read);
+        let fitted = Arc::clone(&read);
         let trace: Trace = Arc::new(move |done| {
             let measured: Points =
                 done.iter().map(|done| read(done).map(|(x, y)| (x, y.abs()))).collect::<Result<_, _>>()?;
@@ -143,13 +82,19 @@ impl Sweep {
             let points: Result<Points, MissingData> = done.iter().map(|done| fitted(done)).collect();
             Ok(Measurement::new(slope(&points?), ExpectedValue::Bound(Bound::Order(order)), 1.0))
         };
-        self.quantity.expects(Expectation::Converges, source, measure).traced(trace)
+        self.expects(Expectation::Converges, source, measure).traced(trace)
     }
 
-    /// Expects that the quantity is proportional to the varied parameter raised to `power`. The error of the fitted power is
-    /// divided by `scale`.
-    pub fn scales(self, power: f64, scale: f64, source: Source) -> ClaimWithExpectation {
-        let expecting = self.converges(power, source);
+    /// Reads two numbers from every run, as [`Self::fits`] does. Expects that the quantity is proportional to the varied
+    /// parameter raised to `power`. The error of the fitted power is divided by `scale`.
+    pub fn scales(
+        self,
+        power: f64,
+        scale: f64,
+        source: Source,
+        read: impl Fn(&FinishedRun) -> Result<(f64, f64), MissingData> + Send + Sync + 'static,
+    ) -> ClaimWithExpectation {
+        let expecting = self.fits(power, source, read);
         let fitted = Arc::clone(&expecting.measure);
         let measure = Arc::new(move |done: &[FinishedRun]| Ok(Measurement::new(fitted(done)?.value, power, scale)));
         ClaimWithExpectation { expectation: Expectation::Equals, measure, ..expecting }

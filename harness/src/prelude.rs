@@ -1,9 +1,9 @@
 //! Names that the definition of a case needs.
 
 pub use crate::case::{Case, Home, Level, PLAIN, Physics, cells, fraction, time_step};
-pub use crate::claim::{Claim, ClaimWithTolerance, Measure, RunsReader, claim};
+pub use crate::claim::{Claim, ClaimFigure, ClaimWithTolerance, Measure, Points, RunsReader, claim};
 pub use crate::control::Control;
-pub use crate::course::{ClaimFigure, from_start, samples, thinned};
+pub use crate::course::{from_start, samples, thinned};
 pub use crate::expect::{Bound, ExpectedValue, Measurement};
 pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::reading::{Reader, Reading, Table};

@@ -4,8 +4,7 @@ use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
 use super::wrong;
-use grainbench_harness::claim::{ClaimWithExpectation, Quantity, RunsReader};
-use grainbench_harness::course::Points;
+use grainbench_harness::claim::{ClaimWithExpectation, Points, Quantity, RunsReader};
 use grainbench_harness::run::{FinishedRun, MissingData};
 use grainbench_harness::source::Source;
 use std::sync::Arc;
@@ -112,7 +111,7 @@ pub(super) fn follow(
     let (again, expected) = (Arc::clone(&samples), exact.clone());
     let largest = move |points: Points| points.iter().map(|(t, _)| expected(*t).abs()).fold(0.0, f64::max);
     let scale = move |done: &FinishedRun| scale.unwrap_or_else(|| again(done).map_or(f64::NAN, &largest));
-    quantity.series(move |done| samples(done)).follows(source, move |_, t| exact(t), scale)
+    quantity.follows(source, move |done| samples(done), move |_, t| exact(t), scale)
 }
 
 /// Returns the time average of samples at unequal intervals, by linear interpolation.

@@ -91,8 +91,9 @@ fn compliant(case: &Case, slope: Plane) -> Vec<Claim> {
             .refuses(stronger_friction()),
         claim("order in Δt of that displacement", "1")
             .runs(STEPS_BEFORE_SLIP.iter().map(|steps| run(Resolution::TimeStep(slips_from / steps))))
-            .sweep(move |done| Ok((done.record.provenance.time_step, error(done)?.error())))
-            .converges(2.0, Source::Derived("central differences are of second order"))
+            .fits(2.0, Source::Derived("central differences are of second order"), move |done| {
+                Ok((done.record.provenance.time_step, error(done)?.error()))
+            })
             .within(computed(
                 2.0 * 9.0 / 80.0 * (PI / STEPS_BEFORE_SLIP[0]).powi(2),
                 "the next power of ωΔt: a step turns the spring by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 (ωΔt)²/80)), \
@@ -158,14 +159,14 @@ fn exponent(slope: Plane) -> Claim {
     let middle = (OVERLAPS[0] * NEARLY_RIGID).sqrt();
     claim("exponent of the displacement's error in overlap/R, 1e-3 to 1e-5", "1")
         .runs(OVERLAPS.iter().map(|&ratio| at_overlap(slope.variant, "dem:lammps", ratio, DAMPING, STEP)))
-        .sweep(|done| {
-            let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
-            Ok((OneGrain::from_scene(&done.scene).overlap_ratio, error))
-        })
         .scales(
             expected,
             1.0,
             Source::Derived("elastic phase before slip lasts ∝ √(overlap/R), its stretch ∝ overlap/R (derivation)"),
+            |done| {
+                let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
+                Ok((OneGrain::from_scene(&done.scene).overlap_ratio, error))
+            },
         )
         .within(computed(
             expected * middle.powf(expected),

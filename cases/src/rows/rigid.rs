@@ -77,11 +77,10 @@ fn fine(plane: Plane) -> impl Iterator<Item = Run> {
 fn order(plane: Plane) -> Claim {
     claim("order in Δt of the displacement's error", "1")
         .runs(fine(plane))
-        .sweep(|done| {
+        .fits(1.0, ORDER_SOURCE, |done| {
             let error = end(done, OneGrain::rigid_incline, |state| state.x)?.error();
             Ok((done.record.provenance.time_step, error))
         })
-        .converges(1.0, ORDER_SOURCE)
         .within(asymptotic(1.0))
         .refuses(plane.control())
 }

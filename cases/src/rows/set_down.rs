@@ -128,9 +128,9 @@ pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
     vec![
         claim("overlap while it rings, largest deviation", "m")
             .run(run())
-            .series(|done| samples(done, "contact.overlap"))
             .follows(
                 SOURCE,
+                |done| samples(done, "contact.overlap"),
                 |done, t| {
                     let rest = rest(&done.scene);
                     rest + (DEEPER - 1.0) * rest * oscillators(&done.scene)[0].distance(t)
@@ -143,12 +143,12 @@ pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
             .drawn(&SPRINGS, super::label(variant)),
         claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
             .run(run())
-            .series(|done| {
-                let radius = done.scene.grains[0].radius;
-                Ok(course(done)?.into_iter().map(|(t, state)| (t, state.v - state.omega * radius)).collect())
-            })
             .follows(
                 SOURCE,
+                |done| {
+                    let radius = done.scene.grains[0].radius;
+                    Ok(course(done)?.into_iter().map(|(t, state)| (t, state.v - state.omega * radius)).collect())
+                },
                 |done, t| {
                     let oscillator = oscillators(&done.scene)[1];
                     OneGrain::from_scene(&done.scene).along / (oscillator.frequency * oscillator.frequency)
