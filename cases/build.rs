@@ -106,9 +106,9 @@ fn folders_with(folder: &Path, file: &str) -> Result<Vec<String>, Failure> {
     Ok(names)
 }
 
-/// Returns the code of the case modules and of the registry. A file `cost.rs` has the targets of the cost study.
+/// Returns the code of the case modules and of the registry.
 fn registry(root: &Path) -> Result<String, Failure> {
-    let [mut code, mut heads, mut cases, mut costs] = [const { String::new() }; 4];
+    let [mut code, mut heads, mut cases] = [const { String::new() }; 3];
     for name in folders_with(root, "scene.toml")? {
         let (folder, module) = (root.join(&name), name.replace('-', "_"));
         if let Some(head) = head(&folder, &name, "case.toml")? {
@@ -119,18 +119,11 @@ fn registry(root: &Path) -> Result<String, Failure> {
             None => writeln!(code, "#[path = {:?}]\nmod {module};", folder.join("case.rs"))?,
         }
         writeln!(cases, "    &{module}::CASE,")?;
-        let cost = folder.join("cost.rs");
-        if cost.is_file() {
-            writeln!(code, "#[path = {cost:?}]\nmod {module}_cost;")?;
-            writeln!(costs, "    ({name:?}, {module}_cost::subjects),")?;
-        }
     }
     Ok(format!(
         "{code}/// Cases with the texts of their `case.toml` and without claims.\npub(crate) mod heads {{\n\
          use crate::{{Case, folder::EMPTY}};\n{heads}}}\n\
-         /// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[\n{cases}];\n\
-         /// Target functions of the cases that define their own.\n\
-         pub(crate) static COSTS: &[TargetFunction] = &[\n{costs}];\n"
+         /// All cases, in the order of their names.\npub static CASES: &[&crate::Case] = &[\n{cases}];\n"
     ))
 }
 

@@ -4,6 +4,7 @@ mod elastic;
 
 use crate::exact::one_grain::{OneGrain, State, course, nearest, rest_at_overlap};
 use crate::rows::on_plane::{self, DAMPING, NEARLY_RIGID, Plane, STEP, at_overlap, other_inertia, stronger_friction};
+use crate::rows::one_grain_cost::displacement;
 use crate::rows::rigid;
 use crate::rows::{incline, programs};
 use grainbench_harness::prelude::*;
@@ -13,7 +14,9 @@ const VARIANTS: [&str; 2] = ["disc", "sphere"];
 const RIGID: &[Plane] =
     &[Plane { variant: "disc", rolls: true, lifts: None }, Plane { variant: "sphere", rolls: true, lifts: None }];
 
-pub(crate) static CASE: Case = crate::heads::BACKSPIN.with(LEVELS, 2, &claims).drawn_by(figures);
+pub(crate) static CASE: Case = crate::heads::BACKSPIN.with(LEVELS, 2, &claims).drawn_by(figures).priced_by(|case| {
+    displacement(case, &VARIANTS, 0.5, OneGrain::rigid_backspin, "2001 paper, section on backspin; derivation")
+});
 
 const SOURCE: Source =
     Source::Derived("a rigid grain slides, then rolls (derivation; 2001 paper, section on backspin)");

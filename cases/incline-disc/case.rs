@@ -2,12 +2,17 @@
 
 mod elastic;
 
+use crate::exact::one_grain::OneGrain;
 use crate::rows::incline::{Incline, LEVELS};
 use crate::rows::on_plane::Plane;
+use crate::rows::one_grain_cost::displacement;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case = crate::heads::INCLINE_DISC.with(LEVELS, 2, &claims).drawn_by(figures);
+pub(crate) static CASE: Case =
+    crate::heads::INCLINE_DISC.with(LEVELS, 2, &claims).drawn_by(figures).priced_by(|case| {
+        displacement(case, &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, "MPM 2000 eq. 25")
+    });
 
 static INCLINE: Incline = Incline {
     case: &CASE,

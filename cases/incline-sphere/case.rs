@@ -2,15 +2,21 @@
 
 mod elastic;
 
+use crate::exact::one_grain::OneGrain;
 use crate::rows::incline::{Incline, LEVELS};
 use crate::rows::on_plane::Plane;
+use crate::rows::one_grain_cost::displacement;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case =
     Case { derivation: include_str!("../incline-disc/derivation.md"), ..crate::heads::INCLINE_SPHERE }
         .with(LEVELS, 2, &claims)
-        .drawn_by(figures);
+        .drawn_by(figures)
+        .priced_by(|case| {
+            let variants = &["45deg-mu.495", "60deg-mu2_7"];
+            displacement(case, variants, 0.3, OneGrain::rigid_incline, "2001 paper, eqs. 23-26")
+        });
 
 static INCLINE: Incline = Incline {
     case: &CASE,

@@ -1,6 +1,7 @@
 //! The worked example of Cundall & Strack (1979): two discs between two walls, with exact values of the calculation
 //! cycle.
 
+mod cost;
 mod elastic;
 
 use crate::rows::rigid;
@@ -20,7 +21,7 @@ const FORCES: ClaimFigure = ClaimFigure {
     logarithmic: false,
 };
 
-pub(crate) static CASE: Case = crate::heads::SQUASH.with(LEVELS, 0, &claims).drawn_by(figures);
+pub(crate) static CASE: Case = crate::heads::SQUASH.with(LEVELS, 0, &claims).drawn_by(figures).priced_by(cost::targets);
 
 fn run() -> Run {
     Run::new(PLAIN, "dem", LEVELS[0].resolution)

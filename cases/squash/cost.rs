@@ -4,7 +4,6 @@
 //! m ü = F_A − F_B, with F_A = k(vt − u), F_B = 2ku for equal and opposite discs: u = vt/3 − (v/3W) sin Wt, W =
 //! √(3k/m).
 
-use crate::registry;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::method::Method;
@@ -14,8 +13,7 @@ use std::sync::Arc;
 /// Duration of the run (s), several periods of the pair of discs. The period is 2π/√3 = 3.63 s.
 const SECONDS: f64 = 20.0;
 
-pub(crate) fn subjects() -> Vec<TargetQuantity> {
-    let Some(case) = registry::by_name("squash") else { return Vec::new() };
+pub(super) fn targets(case: &'static Case) -> Vec<TargetQuantity> {
     let lane = |method, about| SolverSetup {
         method,
         knobs: String::new(),

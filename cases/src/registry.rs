@@ -1,7 +1,6 @@
 //! Registry of cases. Each folder with a `scene.toml` is a case.
 
 use grainbench_harness::case::{Case, Home, SceneCache};
-use grainbench_harness::subject::{TargetQuantity, from_claims};
 use grainbench_reference::data::folder;
 use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::error::SceneError;
@@ -10,9 +9,6 @@ use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
 use nalgebra::Vector3;
 use std::path::Path;
-
-/// Name of a case and the function in its `cost.rs`, which returns the target quantities of the cost study.
-type TargetFunction = (&'static str, fn() -> Vec<TargetQuantity>);
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));
 
@@ -25,15 +21,6 @@ static MADE: SceneCache = SceneCache::new(Vec::new());
 #[must_use]
 pub fn by_name(name: &str) -> Option<&'static Case> {
     CASES.iter().copied().find(|case| case.name == name)
-}
-
-/// Returns the target quantities of a case for the cost study: those of its `cost.rs`, or else those of its claims.
-#[must_use]
-pub fn subjects(case: &'static Case) -> Vec<TargetQuantity> {
-    match COSTS.iter().find(|(name, _)| *name == case.name) {
-        Some((_, subjects)) => subjects(),
-        None => from_claims(case),
-    }
 }
 
 /// Reads grains for a scene from a LAMMPS data file.

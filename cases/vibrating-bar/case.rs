@@ -1,12 +1,14 @@
 //! Longitudinal vibration of a bar.
 
+mod cost;
+
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Hold;
 
-pub(crate) const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
+const LEVELS: &[Level] = &[cells("L/12", 12.5, 2), cells("L/25", 25.0, 2), cells("L/50", 50.0, 2)];
 /// Variant of the bar between smooth sides.
-pub(crate) const HELD: &str = "held-sideways";
+const HELD: &str = "held-sideways";
 /// Variant of the bar of viscous material.
 const VISCOUS: &str = "viscous";
 /// Variant of the bar with an initial stress.
@@ -40,10 +42,10 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     ..VELOCITY
 };
 
-pub(crate) static CASE: Case = crate::heads::VIBRATING_BAR.with(LEVELS, 1, &claims);
+pub(crate) static CASE: Case = crate::heads::VIBRATING_BAR.with(LEVELS, 1, &claims).priced_by(cost::targets);
 
 /// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
-pub(crate) fn mode(scene: &Scene) -> (f64, f64) {
+fn mode(scene: &Scene) -> (f64, f64) {
     let bar = &scene.bodies[0];
     let wave = bar.wave.map_or((f64::NAN, f64::NAN), |wave| (wave.wave_number, wave.amplitude));
     let material = scene.deformable[0].map_or(f64::NAN, |material| material.longitudinal_modulus());
@@ -75,10 +77,10 @@ fn rest(squared: f64, strain: f64) -> f64 {
 }
 
 /// Period between smooth sides (s), 10 √(E/M): E = 100 Pa and M = E (1 − ν)/((1 + ν)(1 − 2ν)) = 70/(1.3 · .4) Pa at ν = .3.
-pub(crate) const HELD_PERIOD: f64 = 8.618_916_073_713_347;
+const HELD_PERIOD: f64 = 8.618_916_073_713_347;
 
 /// Returns the mean period between zero crossings (s).
-pub(crate) fn period(done: &FinishedRun) -> Result<f64, MissingData> {
+fn period(done: &FinishedRun) -> Result<f64, MissingData> {
     let (time, velocity) = (&done.series().time, done.column("bar.vx")?);
     let crossings: Vec<f64> = (1..velocity.len())
         .filter(|&at| velocity[at - 1] * velocity[at] < 0.0)

@@ -1,15 +1,13 @@
 //! Target quantity of the cost study: the period of the bar, compared with the exact period. The effect of the grid
 //! counts as an error.
 
-use super::vibrating_bar::{HELD, HELD_PERIOD, LEVELS, mode, period};
-use crate::registry;
+use super::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::{SolverSetup, TargetQuantity};
 use grainbench_scene::method::Method;
 use std::sync::Arc;
 
-pub(crate) fn subjects() -> Vec<TargetQuantity> {
-    let Some(case) = registry::by_name("vibrating-bar") else { return Vec::new() };
+pub(super) fn targets(case: &'static Case) -> Vec<TargetQuantity> {
     let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| TargetQuantity {
         case,
         variant,

@@ -3,6 +3,7 @@
 use crate::claim::Claim;
 use crate::figure::Figure;
 use crate::runner::Runner;
+use crate::subject::TargetQuantity;
 use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
 use grainbench_scene::scene::Scene;
@@ -114,6 +115,8 @@ pub struct Case {
     pub claims: &'static (dyn Fn() -> Vec<Claim> + Send + Sync),
     /// Builds the figures that are not part of a claim, from runs of the case.
     pub figures: fn(&Runner) -> Result<Vec<Figure>, RunError>,
+    /// Returns the target quantities of the cost study.
+    pub targets: fn(&'static Self) -> Vec<TargetQuantity>,
     /// Directory of the case folders, and the reader of their grain files.
     pub home: &'static Home,
 }
@@ -153,6 +156,12 @@ impl Case {
     #[must_use]
     pub const fn drawn_by(self, figures: fn(&Runner) -> Result<Vec<Figure>, RunError>) -> Self {
         Self { figures, ..self }
+    }
+
+    /// Sets the target quantities of the cost study, which replace those of the claims.
+    #[must_use]
+    pub const fn priced_by(self, targets: fn(&'static Self) -> Vec<TargetQuantity>) -> Self {
+        Self { targets, ..self }
     }
 
     /// Returns the folder of the case.

@@ -1,8 +1,8 @@
 //! Target quantities of accuracy studies. Each has an exact solution, and a scene for each method.
 //!
 //! The target quantities of a case come from its claims, so that a new case has a cost diagram without further input.
-//! They are quantities with an analytic solution, and each method uses the scene of its claim. A file `cost.rs` in the
-//! case folder replaces them by other quantities, such as a parameter study of the stiffness.
+//! They are quantities with an analytic solution, and each method uses the scene of its claim. A case replaces them by other
+//! quantities, such as a parameter study of the stiffness, with [`Case::priced_by`].
 
 use crate::case::Case;
 use crate::claim::{Claim, Measure};

@@ -5,7 +5,6 @@ use super::jobs::arguments::{Arguments as Planned, StudyOptions};
 use super::jobs::here::plan_or_perform;
 use super::own;
 use super::value::window;
-use grainbench::cases::registry;
 use std::path::PathBuf;
 
 #[derive(clap::Args)]
@@ -51,7 +50,7 @@ pub(crate) struct Arguments {
 pub(crate) fn cost(arguments: &Arguments) -> Outcome {
     let Arguments { cases, solver, levels, quantity, window, own, study, out, .. } = arguments;
     let path = own::scene(cases)?;
-    let has_claims = own::folder(cases)?.is_some_and(|case| !registry::subjects(case).is_empty());
+    let has_claims = own::folder(cases)?.is_some_and(|case| !(case.targets)(case).is_empty());
     let Some(path) = path.filter(|_| !has_claims) else {
         own.refuse_for_cases(!quantity.is_empty() || window.is_some())?;
         let planned = Planned {

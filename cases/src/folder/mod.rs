@@ -21,6 +21,7 @@ use grainbench_harness::claim::{Claim, claim};
 use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
 use grainbench_harness::run::MissingData;
+use grainbench_harness::subject::from_claims;
 use grainbench_harness::tolerance::exactly;
 use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::written;
@@ -113,6 +114,7 @@ pub(crate) const EMPTY: Case = Case {
     default_level: fraction("dt=.1", 0.1),
     claims: &Vec::new,
     figures: no_more,
+    targets: from_claims,
     home: &HOME,
 };
 

@@ -2,7 +2,6 @@
 //! several stiffnesses of the contact and of the grain.
 
 use crate::exact::one_grain::{OneGrain, State, rest_at_overlap};
-use crate::registry;
 use crate::rows::elastic::{Rest, settle, stiffen};
 use crate::rows::on_plane::{DAMPING, end, touching};
 use grainbench_harness::prelude::*;
@@ -18,13 +17,12 @@ const STIFFENED: [f64; 2] = [1.0, 10.0];
 /// Returns the displacement at the time `seconds` (s) as a target quantity, one for each of the variants of a case. The
 /// expected value is the rigid solution `exact`. All solvers run up to this time.
 pub(crate) fn displacement(
-    name: &str,
+    case: &'static Case,
     variants: &[&'static str],
     seconds: f64,
     exact: fn(&OneGrain, f64) -> State,
     source: &str,
 ) -> Vec<TargetQuantity> {
-    let Some(case) = registry::by_name(name) else { return Vec::new() };
     let setup = |method, knobs, prepare, about| SolverSetup { method, knobs, prepare: Some(prepare), about };
     let dem = OVERLAPS.map(|ratio| {
         let at_rest = lasting(seconds, move |scene| rest_at_overlap(scene, ratio, DAMPING));

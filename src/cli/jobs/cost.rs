@@ -6,7 +6,6 @@ use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::own;
 use crate::cli::strangers::NamedSolvers;
 use crate::cli::subject::selected;
-use grainbench::cases::registry;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;
 use grainbench::harness::subject::{TargetQuantity, of_each_variant};
@@ -187,11 +186,11 @@ impl Study for CostStudy {
 /// Returns the target quantities of the named cases, in the order of the registry.
 fn subjects(names: &[String]) -> Result<Vec<TargetQuantity>, Fault> {
     if let Some(case) = own::folder(names)? {
-        return Ok(registry::subjects(case));
+        return Ok((case.targets)(case));
     }
     let mut found = Vec::new();
     for (case, variants) in selected(names)? {
-        found.extend(registry::subjects(case).into_iter().filter(|subject| variants.contain(subject.variant)));
+        found.extend((case.targets)(case).into_iter().filter(|subject| variants.contain(subject.variant)));
         for variant in variants.named() {
             if found.iter().all(|subject| subject.case.name != case.name || subject.variant != variant) {
                 found.push(of_variant(case, variant)?);
