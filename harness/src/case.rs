@@ -15,6 +15,7 @@ use std::sync::{Mutex, PoisonError};
 
 /// One resolution level.
 #[derive(Clone, Copy, Debug, PartialEq)]
+#[must_use]
 pub struct Level {
     /// Name, such as `dt=.1`.
     pub name: &'static str,
@@ -31,19 +32,16 @@ impl Level {
 }
 
 /// Returns a level whose time step is a fraction of the critical time step.
-#[must_use]
 pub const fn fraction(name: &'static str, fraction: f64) -> Level {
     Level { name, resolution: Resolution::CriticalFraction(fraction) }
 }
 
 /// Returns a level with a time step (s).
-#[must_use]
 pub const fn time_step(name: &'static str, step: f64) -> Level {
     Level { name, resolution: Resolution::TimeStep(step) }
 }
 
 /// Returns a level with a grid: cells per reference length, and material points per cell along each axis.
-#[must_use]
 pub const fn cells(name: &'static str, cells: f64, points: u32) -> Level {
     Level { name, resolution: Resolution::grid(cells, points) }
 }

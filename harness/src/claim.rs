@@ -56,6 +56,7 @@ pub enum Expectation {
 
 /// Claim of a case: runs, measured quantity, expectation, tolerance and negative control.
 #[derive(Clone)]
+#[must_use]
 pub struct Claim {
     /// Measured quantity, in words.
     pub quantity: String,
@@ -246,7 +247,6 @@ impl Quantity {
     /// Expects that the solver rejects the scene as unsupported. The result is then amber and states the solver's reason.
     ///
     /// The negative control replaces the scene by one that the solver can run. The result must then be red.
-    #[must_use]
     pub fn refused(self, because: &'static str, control: Control) -> Claim {
         let refused = |run| Run { standing: ExpectedOutcome::Refused, ..run };
         let quantity = Self { runs: self.runs.into_iter().map(refused).collect(), ..self };
@@ -282,7 +282,6 @@ impl ClaimWithExpectation {
 
 impl ClaimWithTolerance {
     /// Sets the negative control. The claim must fail by value under its wrong physics.
-    #[must_use]
     pub fn refuses(self, control: Control) -> Claim {
         let Self { expecting: ClaimWithExpectation { quantity, expectation, source, measure, trace }, tolerance } =
             self;
@@ -293,7 +292,6 @@ impl ClaimWithTolerance {
 
     /// Sets a negative control under which the claim must fail by error: the run ends with an error or the quantity
     /// cannot be measured.
-    #[must_use]
     pub fn breaks(self, control: Control) -> Claim {
         self.refuses(Control { red: FailureMode::Breaking, ..control })
     }
@@ -301,26 +299,22 @@ impl ClaimWithTolerance {
 
 impl Claim {
     /// Extends the claim to every solver that can run the scene.
-    #[must_use]
     pub fn fair_to_any(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
     }
 
     /// Extends the claim to every solver with deformable bodies.
-    #[must_use]
     pub fn fair_to_any_continuum(self) -> Self {
         Self { scope: Scope::AnyContinuum, ..self }
     }
 
     /// Extends the claim to every solver whose contacts have the springs and dashpots of the scene.
-    #[must_use]
     pub fn fair_to_any_springs(self) -> Self {
         Self { scope: Scope::AnySprings, ..self }
     }
 
     /// Extends the claim to the case's scene with other parameter values. `allowed` computes the tolerance from the changed
     /// scene.
-    #[must_use]
     pub fn at_other_numbers(
         self,
         quantity: &'static str,
@@ -331,7 +325,6 @@ impl Claim {
     }
 
     /// Plots the measured and the expected curve of the claim in a figure.
-    #[must_use]
     pub fn drawn(self, plate: &'static ClaimFigure, label: impl Into<String>) -> Self {
         Self { drawn: Some((plate, label.into())), ..self }
     }

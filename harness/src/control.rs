@@ -52,6 +52,7 @@ impl FailureMode {
 
 /// A negative control: a name and the wrong physics.
 #[derive(Clone)]
+#[must_use]
 pub struct Control {
     /// Description of the wrong physics, such as `a sphere's inertia in a disc`.
     pub name: &'static str,
@@ -71,86 +72,72 @@ impl Control {
     }
 
     /// Repeats stored runs under this control only in the long tier.
-    #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
     /// Runs the wrong physics at a coarser resolution, which costs less. The tolerance of the claim still applies. At
     /// this resolution the right physics must pass, or have less than half the error of the wrong physics.
-    #[must_use]
     pub fn coarser(self, resolution: Resolution) -> Self {
         Self { resolution: Some(resolution), ..self }
     }
 
     /// Returns a control that changes the tables read from the snapshots, such as swapped stresses or rotated angles.
-    #[must_use]
     pub const fn misread(name: &'static str, change: fn(&mut [Table])) -> Self {
         Self::new(name, WrongPhysics::Misread(change))
     }
 
     /// Returns a control with a wrong scene.
-    #[must_use]
     pub fn scene(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, WrongPhysics::Scene(Arc::new(change)))
     }
 
     /// Returns a control with wrong contact laws.
-    #[must_use]
     pub fn contact_law(name: &'static str, change: impl Fn(&mut ContactLaw) + Send + Sync + 'static) -> Self {
         Self::scene(name, move |scene| scene.change_laws(&change))
     }
 
     /// Returns a control with wrong grains.
-    #[must_use]
     pub fn grains(name: &'static str, change: impl Fn(&mut Grain) + Send + Sync + 'static) -> Self {
         Self::scene(name, move |scene| scene.grains.iter_mut().for_each(&change))
     }
 
     /// Returns a control that switches off an effect of the scene.
-    #[must_use]
     pub fn without(effect: Effect) -> Self {
         Self::scene(effect.absence(), move |scene| effect.switch_off(scene))
     }
 
     /// Returns a control for a comparison with another program: only our solver gets a wrong scene.
-    #[must_use]
     pub fn ours(name: &'static str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         Self::new(name, WrongPhysics::Ours(Arc::new(change)))
     }
 
     /// Returns a control for a comparison with another program: only our solver gets wrong contact laws.
-    #[must_use]
     pub fn our_contact_law(name: &'static str, change: impl Fn(&mut ContactLaw) + Send + Sync + 'static) -> Self {
         Self::ours(name, move |scene| scene.change_laws(&change))
     }
 
     /// Returns a control with a solver whose contacts lose their history.
-    #[must_use]
     pub const fn forgets_history() -> Self {
         Self::new("contacts forget their history", WrongPhysics::Solver(Defect::ForgetsHistory))
     }
 
     /// Returns a control in which the solver with the name `solver` does the runs.
-    #[must_use]
     pub const fn solver(name: &'static str, solver: &'static str) -> Self {
         Self::new(name, WrongPhysics::OtherSolver(solver))
     }
 
     /// Returns the control of a known error: a solver without this error, with which the claim must pass.
-    #[must_use]
     pub const fn without_the_error(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::run(name, solver, resolution)
     }
 
     /// Returns a control that runs another variant of the scene.
-    #[must_use]
     pub const fn variant(name: &'static str, variant: &'static str) -> Self {
         Self::new(name, WrongPhysics::OtherVariant(variant))
     }
 
     /// Returns a control in which the solver with the name `solver` does the runs at another resolution.
-    #[must_use]
     pub const fn run(name: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self::new(name, WrongPhysics::OtherRun(solver, resolution))
     }

@@ -111,6 +111,7 @@ impl fmt::Display for ExpectedValue {
 
 /// A measured value with its expectation and scale.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Measurement {
     /// Measured value.
     pub value: f64,
@@ -125,26 +126,22 @@ pub struct Measurement {
 
 impl Measurement {
     /// Returns a single measured value.
-    #[must_use]
     pub fn new(value: f64, expected: impl Into<ExpectedValue>, scale: f64) -> Self {
         Self { value, expected: expected.into(), scale, course: Vec::new() }
     }
 
     /// Returns a single measured value whose error is in units of the expected value.
-    #[must_use]
     pub fn relative(value: f64, expected: f64) -> Self {
         Self::new(value, expected, expected)
     }
 
     /// Returns the worst sample of a time series compared with an exact solution.
-    #[must_use]
     pub fn worst(time: &[f64], values: &[f64], exact: impl Fn(f64) -> f64, scale: f64) -> Self {
         let expected: Vec<f64> = time.iter().map(|&t| exact(t)).collect();
         Self::worst_of(time, values, &expected, scale)
     }
 
     /// Returns the worst sample of a time series compared with another series. A NaN is worse than any number.
-    #[must_use]
     pub fn worst_of(time: &[f64], values: &[f64], expected: &[f64], scale: f64) -> Self {
         let errors = values.iter().zip(expected).map(|(value, expected)| (value - expected) / scale);
         let course: Vec<(f64, f64)> = time.iter().copied().zip(errors).collect();
@@ -154,7 +151,6 @@ impl Measurement {
     }
 
     /// Returns the largest change since the first sample, for a series that must be constant.
-    #[must_use]
     pub fn drift(time: &[f64], values: &[f64], scale: f64) -> Self {
         let first = values.first().copied().unwrap_or(f64::NAN);
         let changes: Vec<f64> = values.iter().map(|value| value - first).collect();

@@ -51,6 +51,7 @@ fn walls<'de, D: Deserializer<'de>>(from: D) -> Result<Vec<Segment>, D::Error> {
 
 /// One axis of a graph.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct Axis {
     /// Quantity and unit, such as `time t (s)`.
     pub label: String,
@@ -60,13 +61,11 @@ pub struct Axis {
 
 impl Axis {
     /// Returns a linear axis.
-    #[must_use]
     pub fn linear(label: &str) -> Self {
         Self { label: label.to_owned(), logarithmic: false }
     }
 
     /// Returns a logarithmic axis.
-    #[must_use]
     pub fn log(label: &str) -> Self {
         Self { label: label.to_owned(), logarithmic: true }
     }
@@ -251,6 +250,7 @@ pub enum Drawing {
 
 /// One figure of a case.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct Figure {
     /// File name without extension, unique within the case. It contains letters, digits and `-`.
     pub name: String,
@@ -268,25 +268,21 @@ impl Figure {
     }
 
     /// Returns a figure with a graph.
-    #[must_use]
     pub fn graph(name: &str, title: &str, caption: &str, [x, y]: [Axis; 2], curves: Vec<Curve>) -> Self {
         Self::new(name, title, caption, Drawing::Graph(Graph { x, y, curves }))
     }
 
     /// Returns a figure with a field.
-    #[must_use]
     pub fn field(name: &str, title: &str, caption: &str, field: Field) -> Self {
         Self::new(name, title, caption, Drawing::Field(field))
     }
 
     /// Returns a figure with lines in the plane.
-    #[must_use]
     pub fn lines(name: &str, title: &str, caption: &str, plot: LinePlot) -> Self {
         Self::new(name, title, caption, Drawing::Lines(plot))
     }
 
     /// Returns a figure with a force plot of Cundall and Strack.
-    #[must_use]
     pub fn forces(name: &str, title: &str, caption: &str, plot: ForcePlot) -> Self {
         Self::new(name, title, caption, Drawing::Forces(plot))
     }

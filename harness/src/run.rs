@@ -13,6 +13,7 @@ pub type Change = Arc<dyn Fn(&mut Scene) + Send + Sync>;
 
 /// A run that a claim reads.
 #[derive(Clone)]
+#[must_use]
 pub struct Run {
     /// Variant of the scene.
     pub variant: &'static str,
@@ -77,7 +78,6 @@ pub enum ExpectedOutcome {
 
 impl Run {
     /// Returns a run of a variant without changes.
-    #[must_use]
     pub fn new(variant: &'static str, solver: &'static str, resolution: Resolution) -> Self {
         Self {
             variant,
@@ -95,20 +95,17 @@ impl Run {
     }
 
     /// Replaces the scene by one made from third-party data, which the user must supply.
-    #[must_use]
     pub fn from_data(self, data: &'static Data) -> Self {
         Self { data: Some(data), ..self }
     }
 
     /// Adds a named change of the scene.
-    #[must_use]
     pub fn adjusted(mut self, name: &str, change: impl Fn(&mut Scene) + Send + Sync + 'static) -> Self {
         self.adjustment = Some((name.to_owned(), Arc::new(change)));
         self
     }
 
     /// Expects a documented error of the method, with its reason.
-    #[must_use]
     pub fn known(self, reason: &'static str) -> Self {
         Self { standing: ExpectedOutcome::Known(reason), ..self }
     }
@@ -117,37 +114,31 @@ impl Run {
     ///
     /// The limit is the documented error rounded up to 1, 2 or 5 in its leading digit. It follows from earlier results,
     /// so it detects changes but does not show that the value is correct.
-    #[must_use]
     pub fn up_to(self, error: f64) -> Self {
         Self { known_up_to: error, ..self }
     }
 
     /// Assigns the run to the standard tier, which the tests and `run --levels all` include.
-    #[must_use]
     pub fn slow(self) -> Self {
         Self { set: Set::Tests, ..self }
     }
 
     /// Assigns the run to the long tier.
-    #[must_use]
     pub fn long(self) -> Self {
         Self { set: Set::Long, ..self }
     }
 
     /// Assigns the run to the full-scale tier.
-    #[must_use]
     pub fn paper_size(self) -> Self {
         Self { set: Set::Paper, ..self }
     }
 
     /// Evaluates the snapshots during the run. The snapshots are then not stored.
-    #[must_use]
     pub fn read_by(self, reading: Reading) -> Self {
         Self { reading: Some(reading), ..self }
     }
 
     /// Stores the tables with the case. Smaller tiers then judge the stored result, and the tier of the run repeats it.
-    #[must_use]
     pub fn kept(self) -> Self {
         Self { kept: true, ..self }
     }
@@ -159,13 +150,11 @@ impl Run {
     }
 
     /// Makes the run a reference run: negative controls are not applied to it.
-    #[must_use]
     pub fn aside(self) -> Self {
         Self { aside: true, ..self }
     }
 
     /// Returns the same run at another resolution.
-    #[must_use]
     pub fn at(&self, resolution: Resolution) -> Self {
         Self { resolution, ..self.clone() }
     }

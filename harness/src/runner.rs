@@ -142,7 +142,6 @@ impl Runner {
 
     /// Judges a claim. If an external solver passes but cannot run the negative control, the result is unsupported. A
     /// panic gives the outcome `broken`, so that all other results are still reported.
-    #[must_use]
     pub fn judge(&self, claim: &Claim) -> Verdict {
         unless_panicked(|| self.judge_or_panic(claim)).unwrap_or_else(|reason| self.crashed(claim, reason))
     }
@@ -161,7 +160,6 @@ impl Runner {
 
     /// Judges a claim and, if `with_control` is true and the control can be run, its negative control. All runs of the claim must
     /// be available. An external solver must support the claim and be able to run the wrong physics.
-    #[must_use]
     pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<ControlResult>) {
         let row = self.judge(claim);
         let is_run = || {
@@ -185,7 +183,6 @@ impl Runner {
 
     /// Judges a claim under its wrong physics. For a known error, another solver without this error does the runs, and
     /// the claim must pass. After a panic, the claim counts as failed by error.
-    #[must_use]
     pub fn control(&self, claim: &Claim) -> ControlResult {
         let start = Instant::now();
         let under = || self.conclude(claim, claim.runs.iter().map(|run| self.run_wrong(claim, run)).collect());
@@ -415,7 +412,6 @@ impl Runner {
     }
 
     /// Returns the result of a claim whose evaluation panicked. Its outcome is `broken`.
-    #[must_use]
     pub fn crashed(&self, claim: &Claim, reason: String) -> Verdict {
         let tolerance = &claim.tolerance;
         self.row(claim, Some((tolerance.allowed(&[]), tolerance.made))).left(Outcome::Broken, reason)

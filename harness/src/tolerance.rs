@@ -39,6 +39,7 @@ impl ToleranceOrigin {
 
 /// Largest |error| that passes, with its origin and reason.
 #[derive(Clone, Debug, PartialEq)]
+#[must_use]
 pub struct Tolerance {
     /// Largest |error| that passes. For an estimate, this is the limit for external solvers; for rounding, the limit per step.
     allowed: f64,
@@ -70,7 +71,6 @@ impl Tolerance {
 
     /// Sets the largest accepted estimate. It may exceed the limit for external solvers, because the numerical
     /// uncertainty of a value may be larger than its error.
-    #[must_use]
     pub fn up_to(self, most: f64) -> Self {
         Self { up_to: most, ..self }
     }
@@ -85,7 +85,6 @@ impl Tolerance {
 }
 
 /// Returns a tolerance from the formula in the reason.
-#[must_use]
 pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Computed, allowed, because)
 }
@@ -95,32 +94,27 @@ pub fn computed(allowed: f64, because: impl Into<String>) -> Tolerance {
 /// Each step rounds positions and velocities by half a unit in the last place, in the run and in its reference. After N
 /// steps the two differ by at most 2 N ε, in units of the rounded quantity. N is the number of steps of the first run.
 /// `lever` converts these units to units of the result.
-#[must_use]
 pub fn rounding(lever: f64, because: impl Into<String>) -> Tolerance {
     let because = format!("{}; {:.3} ε in each step", because.into(), 2.0 * lever);
     Tolerance { each_step: true, ..computed(2.0 * lever * f64::EPSILON, because) }
 }
 
 /// Returns a tolerance that is a stored estimate from three resolution levels. It is at most `most`.
-#[must_use]
 pub fn estimated(most: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Estimated, most, because)
 }
 
 /// Returns a tolerance of one confidence interval. The runs determine the interval, which is the unit of the error.
-#[must_use]
 pub fn one_interval(because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Interval, 1.0, because)
 }
 
 /// Returns a tolerance of zero, for a bound or for the equality of bits.
-#[must_use]
 pub fn exactly(because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Exact, 0.0, because)
 }
 
 /// Returns a tolerance that was required before the solver existed.
-#[must_use]
 pub fn required(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Required, allowed, because)
 }
@@ -131,13 +125,11 @@ pub(crate) const ASYMPTOTIC: &str =
 
 /// Returns the tolerance of an order of convergence: 0.1 of the method's order, as ASME V&V 20-2009 (section 2)
 /// requires of levels in the asymptotic range.
-#[must_use]
 pub fn asymptotic(order: f64) -> Tolerance {
     required(0.1 * order, ASYMPTOTIC)
 }
 
 /// Returns a tolerance from engineering judgement. The reason names the physics that the tolerance allows for.
-#[must_use]
 pub fn judged(allowed: f64, because: impl Into<String>) -> Tolerance {
     Tolerance::new(ToleranceOrigin::Judged, allowed, because)
 }

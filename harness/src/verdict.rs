@@ -108,6 +108,7 @@ impl From<&RunError> for Outcome {
 ///
 /// Stored results of earlier versions lack the fields with a default.
 #[derive(Clone, Debug, PartialEq, Deserialize)]
+#[must_use]
 pub struct Verdict {
     /// Case name, such as `nine-discs`.
     pub case: String,
@@ -187,7 +188,6 @@ impl Verdict {
     }
 
     /// Returns a result that is not judged yet. Its outcome is `Fail`.
-    #[must_use]
     pub fn open(case: impl Into<String>, quantity: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             case: case.into(),
@@ -211,19 +211,16 @@ impl Verdict {
     }
 
     /// Returns the result of a run that ended with an error.
-    #[must_use]
     pub fn ended(self, error: &RunError) -> Self {
         Self { outcome: Outcome::from(error), detail: Some(error.to_string()), ..self }
     }
 
     /// Returns the result with another outcome and its reason.
-    #[must_use]
     pub fn left(self, outcome: Outcome, reason: impl Into<String>) -> Self {
         Self { outcome, detail: Some(reason.into()), ..self }
     }
 
     /// Returns the judged result. It passes only if the error is finite and |error| is at most the allowed error.
-    #[must_use]
     pub fn judged(self, found: &Measurement) -> Self {
         let finite = |value: f64| value.is_finite().then_some(value);
         let error = found.error();
@@ -240,7 +237,6 @@ impl Verdict {
     }
 
     /// Makes a passed result amber, with a reason, if the allowed error exceeds `most`. Both are fractions of the scale.
-    #[must_use]
     pub fn unless_wider_than(self, most: f64) -> Self {
         if self.outcome == Outcome::Pass && self.allowed > most {
             let [allowed, most] = [self.allowed, most].map(|part| 100.0 * part);
@@ -253,7 +249,6 @@ impl Verdict {
     /// Makes a passed result amber, with a reason, if a single value is expected and the allowed error is at least the
     /// scale. This does not apply to a confidence interval. A computed tolerance of exactly 1 is also accepted, because
     /// the scale is then the limit itself.
-    #[must_use]
     pub fn unless_as_wide_as_the_scale(self) -> Self {
         let is_value = matches!(self.expected, Some(ExpectedValue::Value(_)));
         let is_wide = match self.tolerance {
@@ -288,6 +283,7 @@ impl Verdict {
 
 /// Result of a negative control, under whose wrong physics the claim must fail.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[must_use]
 pub struct ControlResult {
     /// Case of the claim.
     pub case: String,
@@ -315,7 +311,6 @@ pub struct ControlResult {
 
 impl ControlResult {
     /// Returns a control from a result under wrong physics. `how` is the required way of failing.
-    #[must_use]
     pub fn new(row: Verdict, wrong_physics: &str, how: FailureMode, seconds: f64) -> Self {
         let turned_red = row.red() == Some(how);
         Self {

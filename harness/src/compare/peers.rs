@@ -86,7 +86,6 @@ impl ColumnComparison<'_> {
     }
 
     /// Returns the observed value at a sample, with the expected value and the scale.
-    #[must_use]
     pub fn measured(&self, sample: &Sample) -> Measurement {
         Measurement::new(sample.found, sample.expected, self.scale)
     }

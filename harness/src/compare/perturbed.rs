@@ -58,7 +58,6 @@ pub fn time_of_horizon(
 
 /// Returns the claim that the horizon is at step `steps`. This expected value is a regression value: the result when the
 /// case was written.
-#[must_use]
 pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim {
     let expected = steps as f64;
     claim(format!("predictability horizon in steps: perturbed runs part by {PARTED:e}"), "1")
@@ -84,7 +83,6 @@ pub fn horizon(columns: DivergenceColumns, steps: u64, runs: [Run; 2]) -> Claim 
 /// horizon.
 ///
 /// The horizon follows from our run (third) and its perturbed run (fourth).
-#[must_use]
 pub fn pointwise(columns: DivergenceColumns, runs: Vec<Run>, control: Control) -> Claim {
     let program = runs[1].solver;
     claim(format!("energy and stress up to the horizon, worst, against {program}"), "1")
@@ -125,7 +123,6 @@ pub struct Sum {
 /// Returns the claim about the mean of a column after the horizon.
 ///
 /// The error is the difference of the two means. It is divided by half the width of its confidence interval.
-#[must_use]
 pub fn statistics(
     columns: DivergenceColumns,
     Sum { column, words, unit, logarithm }: Sum,
