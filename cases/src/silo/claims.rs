@@ -1,6 +1,8 @@
 //! Claims of the silo cases, on elements, blocks and tracers.
 
+use super::collapse::ComparedFlow;
 use super::ensemble::{self, Flow, onset, plateau, share, steady};
+use super::{ELEMENTS, flows};
 use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::row;
 use grainbench_harness::compare::pointwise::{largest, worst};
@@ -10,28 +12,41 @@ use grainbench_harness::run::Set;
 /// Function that returns a quantity of a silo from its run.
 pub(crate) type Quantity = fn(&FinishedRun) -> Result<f64, MissingData>;
 
-/// Values of the prototype for draining silos.
-pub(crate) struct DrainNumbers {
+/// Silo at two sizes, with the data for its expected values, tolerances and figures.
+pub(crate) struct Silo {
+    /// Variants at a tenth of the paper's size and at the paper's size.
+    pub(crate) variants: [&'static str; 2],
+    /// Tier of the run at a tenth of the size.
+    pub(crate) set: Set,
+    /// Mean sin φ and mean packing fraction of the flow in the prototype.
+    pub(crate) means: [CitedNumber; 2],
+    /// Table of all quantities of ten of our own packings, one in a row, by `examples/silo_packings.rs`.
+    pub(crate) packings: &'static str,
+    /// Packing fractions of the prototype in the first bins of the inertial number |I₀|.
+    pub(crate) bins: &'static [CitedNumber],
+    /// Label of the flow at the paper's size in figures.
+    pub(crate) label: &'static str,
+    /// Expected values of a draining silo; `None` for a pushed silo. In a pushed silo, too few elements deform for
+    /// tracer paths and for curves against the inertial number.
+    pub(crate) drained: Option<Drained>,
+}
+
+/// Values of the prototype for a draining silo, and the flows that are compared with it.
+pub(crate) struct Drained {
     pub(crate) plateau: CitedNumber,
     pub(crate) onset: CitedNumber,
     /// Angles between the major axes of stress and strain rate (degrees), in single frames and in means over 20 frames.
     pub(crate) angles: [CitedNumber; 2],
     /// Correlation coefficients: of two measures of friction, and of shear rates from two methods.
     pub(crate) correlations: [CitedNumber; 2],
-    /// Packing fractions in the first bins of the inertial number |I₀|.
-    pub(crate) bins: &'static [CitedNumber],
-}
-
-/// Silo at a tenth of the paper's size, with the data for its expected values and tolerances.
-pub(crate) struct Silo {
-    /// Cause of the flow.
-    pub(crate) flow: Flow,
-    /// Run of the claims.
-    pub(crate) run: Run,
-    /// Mean sin φ and mean packing fraction of the flow in the prototype.
-    pub(crate) means: [CitedNumber; 2],
-    /// Table of all quantities of ten of our own packings, one in a row, by `examples/silo_packings.rs`.
-    pub(crate) packings: &'static str,
+    /// Number of bins of |I₀| whose worst error is tested at the paper's size. A further bin in `bins` of [`Silo`] is
+    /// tested by its mean over the whole steady flow, because it contains few elements, all above the slit.
+    pub(crate) first_bins: usize,
+    /// Draining silo of the paper's size whose curve of φ against |I₀| is compared. The curves of `others` against |E|
+    /// are compared then.
+    pub(crate) beside: Option<&'static ComparedFlow>,
+    /// Other flows of the paper's size, for figures and for the curves of φ against |E|.
+    pub(crate) others: &'static [ComparedFlow],
 }
 
 /// Adds to a case what all silos share.
@@ -86,10 +101,36 @@ fn packing(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 impl Silo {
-    pub(crate) fn of_every(&self) -> Vec<Claim> {
+    /// Returns the run at a tenth of the paper's size.
+    pub(crate) fn run(&self) -> Run {
+        Run { set: self.set, ..Run::new(self.variants[0], "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept() }
+    }
+
+    pub(super) const fn flow(&self) -> Flow {
+        if self.drained.is_some() { Flow::Drained } else { Flow::Pushed }
+    }
+
+    /// Returns all claims, with further claims of one silo first.
+    pub(crate) fn claims(&self, own: Vec<Claim>) -> Vec<Claim> {
+        let of_drains = self.drained.as_ref().map(|drained| self.of_drains(drained)).unwrap_or_default();
+        [own, self.of_every(), of_drains, self.of_paper_size()].concat()
+    }
+
+    /// Returns the figures of both sizes. `others` are flows that are drawn beside the flow at a tenth of the size.
+    pub(crate) fn figures(&self, runner: &Runner, others: &[ComparedFlow]) -> Result<Vec<Figure>, RunError> {
+        let done = runner.run(&self.run())?;
+        let mut all = super::figures::all(&done, self.bins);
+        if !others.is_empty() {
+            all.extend(flows::figures(&done, self.label, others));
+        }
+        all.extend(self.paper_size_figures(runner));
+        Ok(all)
+    }
+
+    fn of_every(&self) -> Vec<Claim> {
         let [of_sine, of_packing] = self.means;
         // In pushed silos, half the friction changes sin φ by less than the difference between ten packings.
-        let control = match self.flow {
+        let control = match self.flow() {
             Flow::Drained => Control::contact_law("friction .25 for .5", |law| law.friction = 0.25),
             Flow::Pushed => no_springs(),
         };
@@ -104,16 +145,16 @@ impl Silo {
     }
 
     /// Returns the claims on draining silos only. In pushed silos, too few elements deform for these claims.
-    pub(crate) fn of_drains(&self, numbers: &DrainNumbers) -> Vec<Claim> {
+    fn of_drains(&self, drained: &Drained) -> Vec<Claim> {
         let at_large_strain = vec![
-            self.equals(PLATEAU, numbers.plateau, no_springs(), plateau),
-            self.equals(ONSET, numbers.onset, no_springs(), onset),
+            self.equals(PLATEAU, drained.plateau, no_springs(), plateau),
+            self.equals(ONSET, drained.onset, no_springs(), onset),
         ];
         [
             at_large_strain,
-            self.over_inertia(numbers.bins),
-            self.correlations(numbers.correlations),
-            self.coaxiality(numbers.angles),
+            self.over_inertia(self.bins),
+            self.correlations(drained.correlations),
+            self.coaxiality(drained.angles),
             vec![self.beside_lammps(PLATEAU, plateau), self.beside_lammps(ONSET, onset)],
         ]
         .concat()
@@ -132,15 +173,15 @@ impl Silo {
         let allowed = (apart(self.packings, quantity) + cited.uncertainty) / scale;
         let because = format!("{PACKINGS}, plus the uncertainty of the prototype's mean; in units {in_units}");
         claim(quantity, unit)
-            .run(self.run.clone())
+            .run(self.run())
             .equals_cited(cited, scale, move |done| read(&done[0]))
             .within(computed(allowed, because))
             .refuses(control)
     }
 
     fn range_of_friction(&self, source: Source) -> Claim {
-        claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow.words()), "1")
-            .run(self.run.clone())
+        claim(format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow().words()), "1")
+            .run(self.run())
             .at_least(0.95, source, |done| Ok(share(&steady(&done[0], "sine_of_friction")?, [0.2, 0.6])))
             .within(exactly("required in advance: the source states the range but not the fraction of elements in it"))
             .refuses(Control::misread("tan φ taken for sin φ", ensemble::tangent))
@@ -154,12 +195,12 @@ impl Silo {
         let [criteria, rates] = cited.map(|cited| cited.source());
         vec![
             claim("correlation of sin φ with Drucker and Prager's ratio", "1")
-                .run(self.run.clone())
+                .run(self.run())
                 .at_least(0.92, criteria, |done| ensemble::of_criteria(&done[0]))
                 .within(exactly(for_criteria))
                 .refuses(ensemble::FRICTION_ELSEWHERE),
             claim("correlation of log |D₀| of the instant with that from positions .2 τ apart", "1")
-                .run(self.run.clone())
+                .run(self.run())
                 .at_least(0.95, rates, |done| ensemble::of_rates(&done[0]))
                 .within(exactly(for_rates))
                 .refuses(ensemble::RATE_ELSEWHERE),
@@ -184,7 +225,7 @@ impl Silo {
 
     pub(crate) fn symmetry(&self) -> Claim {
         claim("mean shear stress T_xz over the pressure, of the whole silo", "1")
-            .run(self.run.clone())
+            .run(self.run())
             .holds("scene, walls and slit are their own mirror image in x = 0", |done| {
                 Ok(Measurement::new(mean(&ensemble::whole(&done[0], "shear_over_pressure")?), 0.0, 1.0))
             })
@@ -202,7 +243,7 @@ impl Silo {
         let mean_off = "packing fraction over |I₀| less that of the prototype, mean over bins";
         vec![
             claim("packing fraction over |I₀| in bins, worst", "1")
-                .run(self.run.clone())
+                .run(self.run())
                 .equals(bins[0].source(), move |done| {
                     let full = cited().take(ensemble::FULL);
                     let found = ensemble::over_inertia(&done[0], f64::INFINITY)?;
@@ -215,7 +256,7 @@ impl Silo {
                 ))
                 .refuses(no_springs()),
             claim(mean_off, "1")
-                .run(self.run.clone())
+                .run(self.run())
                 .equals(bins[0].source(), move |done| {
                     // These are the bins from the second to the last but one, which the table of ten packings covers.
                     let middle = cited().skip(1).take(bins.len() - 2);
@@ -234,7 +275,7 @@ impl Silo {
     }
 
     pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
-        let run = |solver| Run::new("beside", solver, self.run.resolution).read_by(super::ELEMENTS).kept().long();
+        let run = |solver| Run::new("beside", solver, LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
         let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {
             law.scale_tangential(1e-6)
         });
@@ -249,8 +290,8 @@ impl Silo {
     /// Returns the claim that our solver agrees with LAMMPS until chaotic trajectories separate. Other claims may use
     /// stored results of our solver; this claim always runs our solver.
     fn beginning(&self) -> Claim {
-        let run = |solver| Run::new("beginning", solver, self.run.resolution);
-        let time = if self.run.set == Set::Long { 0.05 } else { 0.2 };
+        let run = |solver| Run::new("beginning", solver, LEVELS[0].resolution);
+        let time = if self.set == Set::Long { 0.05 } else { 0.2 };
         let allowed = rounding(
             2.0 * (0.2_f64 / 0.033).exp(),
             "order of sums: the difference grows by e every .033 τ, up to .2 τ; an energy has twice the relative error \

@@ -7,11 +7,11 @@ mod axes;
 pub(crate) mod claims;
 pub(crate) mod collapse;
 pub(crate) mod ensemble;
-pub(crate) mod figures;
+mod figures;
 mod flow;
-pub(crate) mod flows;
+mod flows;
 mod instant;
-pub(crate) mod paper;
+mod paper;
 mod reader;
 
 pub(crate) use reader::ELEMENTS;

@@ -6,38 +6,12 @@
 //! this sin φ therefore uses the value of the prototype and the tolerance for a tenth of the size (derivation).
 
 use super::ELEMENTS;
-use super::claims::{DrainNumbers, LEVELS};
-use super::collapse::{self, ComparedFlow};
-use super::ensemble::{self, Flow, share, steady};
-use super::flows;
+use super::claims::{Drained, LEVELS, Silo};
+use super::ensemble::{self, share, steady};
+use super::{collapse, flows};
 use crate::sources::literature::rycroft_2009 as paper;
 use grainbench_harness::claim::Quantity;
 use grainbench_harness::prelude::*;
-
-/// A silo at the paper's size.
-pub(crate) struct PaperSize {
-    pub(crate) variant: &'static str,
-    /// Label of this flow in figures.
-    pub(crate) label: &'static str,
-    /// Packing fractions of the prototype in the first bins of |I₀|.
-    pub(crate) bins: &'static [CitedNumber],
-    /// Expected values of a draining silo; `None` for a pushed silo. In a pushed silo, too few elements deform for
-    /// tracer paths and for curves against the inertial number.
-    pub(crate) drained: Option<DrainExpectations>,
-}
-
-/// Expected values of a draining silo at the paper's size.
-pub(crate) struct DrainExpectations {
-    /// Values of the prototype. Our runs do not reach the paper's largest sin φ of 0.6 (derivation).
-    pub(crate) numbers: &'static DrainNumbers,
-    /// Number of bins of |I₀| whose worst error is tested. A further bin in `bins` of [`PaperSize`] is tested by its
-    /// mean over the whole steady flow, because it contains few elements, all above the slit.
-    pub(crate) bins: usize,
-    /// Draining silo whose curve of φ against |I₀| is compared. The curves of `others` against |E| are compared then.
-    pub(crate) beside: Option<&'static ComparedFlow>,
-    /// Other flows, for figures and for the curves of φ against |E|.
-    pub(crate) others: &'static [ComparedFlow],
-}
 
 const TANGENT: Control = Control::misread("tan φ for sin φ", ensemble::tangent);
 
@@ -70,18 +44,17 @@ fn asked(allowed: f64, what: &str) -> Tolerance {
     required(allowed, format!("required in advance: {what}"))
 }
 
-impl PaperSize {
-    /// Returns the run of this silo. It takes a few minutes on two cores.
-    pub(crate) fn run(&self) -> Run {
-        Run::new(self.variant, "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().paper_size()
+impl Silo {
+    /// Returns the run at the paper's size. It takes a few minutes on two cores.
+    fn paper_size(&self) -> Run {
+        Run::new(self.variants[1], "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().paper_size()
     }
 
     fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
-        claim(format!("{quantity}{SUFFIX}"), unit).run(self.run())
+        claim(format!("{quantity}{SUFFIX}"), unit).run(self.paper_size())
     }
 
-    pub(crate) fn claims(&self) -> Vec<Claim> {
-        let flow = if self.drained.is_some() { Flow::Drained } else { Flow::Pushed };
+    pub(super) fn of_paper_size(&self) -> Vec<Claim> {
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
             self.claim(quantity, "deg")
                 .equals_cited(cited, cited.value, move |done| ensemble::angle(&done[0], averaged))
@@ -89,7 +62,7 @@ impl PaperSize {
                 .refuses(ensemble::STRESS_ELSEWHERE)
         };
         let mut all = vec![
-            self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", flow.words()), "1")
+            self.claim(&format!("part of the flowing elements with sin φ of .2 to .6, {}", self.flow().words()), "1")
                 .at_least(0.95, paper::LOWEST_SINE.source(), |done| {
                     let range = [paper::LOWEST_SINE.value, paper::HIGHEST_SINE.value];
                     Ok(share(&steady(&done[0], "sine_of_friction")?, range))
@@ -103,12 +76,12 @@ impl PaperSize {
         // In a pushed silo, only few blocks flow in all twenty frames of a window.
         let drained = self.drained.iter();
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
-        all.extend(drained.flat_map(|drained| self.of_drains(drained)));
+        all.extend(drained.flat_map(|drained| self.of_paper_size_drains(drained)));
         all
     }
 
-    fn of_drains(&self, drained: &DrainExpectations) -> Vec<Claim> {
-        let (bins, over_the_slit) = self.bins.split_at(drained.bins);
+    fn of_paper_size_drains(&self, drained: &Drained) -> Vec<Claim> {
+        let (bins, over_the_slit) = self.bins.split_at(drained.first_bins);
         let bulk = if over_the_slit.is_empty() { "" } else { "the first nine " };
         let one = |quantity: &str| self.claim(quantity, "1");
         let mut all = vec![
@@ -124,17 +97,17 @@ impl PaperSize {
             ),
             over_inertia(
                 claim(format!("packing fraction over |I₀| in {bulk}bins from 6 to 25 τ, worst{SUFFIX}"), "1")
-                    .run(self.run().known(STRAINED).up_to(0.02)),
+                    .run(self.paper_size().known(STRAINED).up_to(0.02)),
                 bins,
                 f64::INFINITY,
                 ensemble::WITHOUT_THE_END,
             ),
             one("packing fraction of tracers strained by more than .4")
-                .equals_cited(drained.numbers.plateau, 1.0, |done| ensemble::plateau(&done[0]))
+                .equals_cited(drained.plateau, 1.0, |done| ensemble::plateau(&done[0]))
                 .within(asked(0.008, TENTH))
                 .refuses(ensemble::LARGER_RADII),
             one("largest sin φ of tracers before they dilate, median")
-                .equals_cited(drained.numbers.onset, 1.0, |done| ensemble::onset(&done[0]))
+                .equals_cited(drained.onset, 1.0, |done| ensemble::onset(&done[0]))
                 .within(asked(0.04, TENTH))
                 .refuses(TANGENT),
         ];
@@ -150,15 +123,15 @@ impl PaperSize {
             );
         }
         if let Some(other) = drained.beside {
-            all.push(collapse::of_drains(self.run(), other, ["the wide silo", SUFFIX]));
-            all.push(collapse::of_strained(self.run(), drained.others, SUFFIX));
+            all.push(collapse::of_drains(self.paper_size(), other, ["the wide silo", SUFFIX]));
+            all.push(collapse::of_strained(self.paper_size(), drained.others, SUFFIX));
         }
         all
     }
 
-    /// Returns the figures; none if the run is neither stored nor possible.
-    pub(crate) fn figures(&self, runner: &Runner) -> Vec<Figure> {
-        let Ok(done) = runner.run(&self.run()) else { return Vec::new() };
+    /// Returns the figures of the paper's size; none if the run is neither stored nor possible.
+    pub(super) fn paper_size_figures(&self, runner: &Runner) -> Vec<Figure> {
+        let Ok(done) = runner.run(&self.paper_size()) else { return Vec::new() };
         let mut all = super::figures::all(&done, self.bins);
         if let Some(drained) = &self.drained {
             all.extend(flows::figures(&done, self.label, drained.others));
