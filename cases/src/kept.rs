@@ -5,15 +5,12 @@
 use crate::registry::CASES;
 use crate::stored::{folder_name, is_program};
 use flate2::read::GzDecoder;
-use grainbench_harness::case::Case;
-use grainbench_harness::claim::Claim;
 use grainbench_harness::control::WrongPhysics;
-use grainbench_harness::reading::Table;
-use grainbench_harness::run::{FinishedRun, ResultOrigin, Run, Set};
+use grainbench_harness::prelude::*;
+use grainbench_harness::run::{ResultOrigin, Set};
 use grainbench_reference::deck::Stepping;
 use grainbench_reference::stored::{compressed, csv_of, is_scene_of, probe_series, scene_hash_by_bits};
-use grainbench_scene::scene::Scene;
-use grainbench_solver::failure::{Failure, RunError};
+use grainbench_solver::failure::Failure;
 use grainbench_solver::record::{Cost, Provenance as RecordProvenance, Record};
 use grainbench_store::ReadError;
 use grainbench_store::artifact::{hashes, read_listed, read_toml};

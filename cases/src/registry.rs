@@ -1,13 +1,12 @@
 //! Registry of cases. Each folder with a `scene.toml` is a case.
 
-use grainbench_harness::case::{Case, Home, SceneCache};
+use grainbench_harness::case::SceneCache;
+use grainbench_harness::prelude::*;
 use grainbench_reference::data::folder;
 use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
-use grainbench_scene::scene::Scene;
 use grainbench_scene::source::SceneSource;
-use nalgebra::Vector3;
 use std::path::Path;
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));

@@ -1,13 +1,11 @@
 //! Stored runs of LAMMPS and LIGGGHTS that claims read, by the names of their folders.
 
 use crate::registry::CASES;
-use grainbench_harness::case::{Case, PLAIN};
-use grainbench_harness::run::{ExpectedOutcome, Run};
+use grainbench_harness::prelude::*;
+use grainbench_harness::run::ExpectedOutcome;
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, folder, unusable};
 use grainbench_scene::error::SceneError;
-use grainbench_scene::scene::Scene;
-use grainbench_solver::failure::RunError;
 use grainbench_solver::record::Record;
 
 /// A run of LAMMPS or LIGGGHTS that a claim reads, stored or not.

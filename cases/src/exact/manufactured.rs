@@ -1,7 +1,7 @@
 //! Error of a run against its manufactured solution.
 
 use grainbench_harness::measure::slope;
-use grainbench_harness::prelude::{FinishedRun, MissingData};
+use grainbench_harness::prelude::*;
 use grainbench_scene::manufactured::Medium;
 
 /// Returns the error of the final displacement (m): the root mean square over the material points, weighted by volume. It

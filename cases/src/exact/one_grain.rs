@@ -12,11 +12,9 @@
 //! Bardenhagen, Brackbill & Sulsky 2000, eq. 25; Bardenhagen et al. 2001, eqs. 23-26. The compliant forms are derived
 //! here.
 
-use grainbench_harness::run::{FinishedRun, MissingData};
+use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::Springs;
 use grainbench_scene::dimension::Dimension;
-use grainbench_scene::scene::Scene;
-use std::f64::consts::PI;
 
 /// One grain, its plane and their contact law.
 #[derive(Clone, Copy, Debug)]

@@ -16,13 +16,9 @@ pub use read::RecordExpression;
 
 use crate::registry::HOME;
 use claims_file::{ClaimEntry, ClaimsFile};
-use grainbench_harness::case::{Case, Home, Physics, fraction};
-use grainbench_harness::claim::{Claim, claim};
-use grainbench_harness::control::Control;
 use grainbench_harness::course::no_more;
-use grainbench_harness::run::MissingData;
+use grainbench_harness::prelude::*;
 use grainbench_harness::subject::from_claims;
-use grainbench_harness::tolerance::exactly;
 use grainbench_scene::source::{SceneSource, named_files};
 use grainbench_scene::text::written;
 use grainbench_scene::toml_error::TomlError;

@@ -4,9 +4,8 @@ use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
 use super::wrong;
-use grainbench_harness::claim::{ClaimWithExpectation, Points, Quantity, RunsReader};
-use grainbench_harness::run::{FinishedRun, MissingData};
-use grainbench_harness::source::Source;
+use grainbench_harness::claim::{ClaimWithExpectation, Quantity};
+use grainbench_harness::prelude::*;
 use std::sync::Arc;
 
 /// Function that returns time (s) and value of each sample of a run.

@@ -24,7 +24,7 @@ pub(crate) struct Silo {
     pub(crate) packings: &'static str,
     /// Packing fractions of the prototype in the first bins of the inertial number |I₀|.
     pub(crate) bins: &'static [CitedNumber],
-    /// Label of the flow at the paper's size in figures.
+    /// Label of the flow in figures.
     pub(crate) label: &'static str,
     /// Expected values of a draining silo; `None` for a pushed silo. In a pushed silo, too few elements deform for
     /// tracer paths and for curves against the inertial number.

@@ -6,9 +6,8 @@ use grainbench_fields::element::Element;
 use grainbench_fields::grid::Grid;
 use grainbench_fields::mask::MaskReasons;
 use grainbench_fields::tensor::{deviator, principal};
-use grainbench_harness::reading::Table;
-use grainbench_solver::record::{Partner, Snapshot};
-use nalgebra::{Matrix3, Vector3};
+use grainbench_harness::prelude::*;
+use nalgebra::Matrix3;
 
 /// Columns of the table of axes, one row per block. The three axes of T, from the smallest principal value to the
 /// largest, are projected on the x-z plane. Each axis has the length √|principal value of the deviator| (√(mg/d²)). The

@@ -10,11 +10,9 @@ use grainbench_fields::mask::Masks;
 use grainbench_fields::motion::{motion, movers_between};
 use grainbench_fields::tensor::{deviator, principal};
 use grainbench_fields::trails::Trails;
-use grainbench_harness::reading::{Reader, Reading, Table};
+use grainbench_harness::prelude::*;
 use grainbench_scene::dimension::Dimension;
-use grainbench_scene::scene::Scene;
-use grainbench_solver::record::Snapshot;
-use nalgebra::{Matrix3, Vector3};
+use nalgebra::Matrix3;
 
 /// Evaluation of the snapshots of every silo.
 pub(crate) const ELEMENTS: Reading = Reading { name: "granular elements", begin };
