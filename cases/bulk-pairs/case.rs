@@ -1,6 +1,6 @@
 //! All material pairs of the round robin of bulk processes, against LIGGGHTS.
 
-use crate::rows::programs::{row, same_cycle};
+use crate::rows::programs::{LIGGGHTS, row, same_cycle};
 use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
@@ -8,9 +8,6 @@ use grainbench_harness::prelude::*;
 const LEVELS: &[Level] = &[time_step("dt=5e-7 s", 5e-7)];
 
 pub(crate) static CASE: Case = crate::heads::BULK_PAIRS.with(LEVELS, 0, &claims);
-
-/// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
-const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 
 /// Variants with the names of their pairs.
 const PAIRS: [(&str, &str); 8] = [
@@ -27,7 +24,7 @@ const PAIRS: [(&str, &str); 8] = [
 /// Returns the claims on the force m Δv/Δt and on the torque I Δω/Δt on the first grain of a pair, over all steps.
 fn claims() -> Vec<Claim> {
     let of_pair = |(variant, about): (&'static str, &str)| {
-        let runs = || SIDES.map(|solver| Run::new(variant, solver, LEVELS[0].resolution));
+        let runs = || LIGGGHTS.map(|solver| Run::new(variant, solver, LEVELS[0].resolution));
         let stiffer = Control::our_contact_law("E* × 1.00001 in ours", |law| law.scale_normal(1.00001));
         let rougher = Control::our_contact_law("μ × 1.00001 in ours", |law| law.friction *= 1.00001);
         let [of_force, of_torque] = ["in units of the largest force", "in units of the largest torque"].map(same_cycle);

@@ -1,6 +1,6 @@
 //! Ten thousand inelastic discs cool by Haff's law at the rate of hard discs.
 
-use crate::rows::programs::{PAIRS, row};
+use crate::rows::programs::{ENERGY, PAIRS, row};
 use crate::sources::prototype::event_driven_gas::{COOLING_RATE, SPREAD};
 use grainbench_harness::prelude::*;
 
@@ -8,7 +8,6 @@ const LEVELS: &[Level] = &[fraction("dt=.1", 0.1)];
 
 pub(crate) static CASE: Case = crate::heads::COOLING_GAS.with(LEVELS, 0, &claims).drawn_by(figures);
 
-const ENERGY: &str = "all.kinetic_energy";
 /// Time (s) from which the initially equal speeds have a Maxwell distribution.
 const FROM: f64 = 2.0;
 /// Time (s) up to which the kinetic energies of our solver and of LAMMPS or LIGGGHTS agree to rounding.

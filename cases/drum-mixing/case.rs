@@ -6,6 +6,7 @@ mod zones;
 
 use crate::registry::made_of;
 use crate::rows::bulk;
+use crate::rows::programs::LIGGGHTS;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
@@ -17,9 +18,6 @@ use zones::{COUNTED, ZONES};
 const LEVELS: &[Level] = &[time_step("dt=3e-6 s", 3e-6)];
 
 pub(crate) static CASE: Case = crate::heads::DRUM_MIXING.with(LEVELS, 0, &claims).drawn_by(figures);
-
-/// Our solver in the convention of LIGGGHTS, and LIGGGHTS.
-const SIDES: [&str; 2] = ["dem:liggghts", "liggghts"];
 
 /// Drum of the paper with the published initial state.
 static PUBLISHED: Data = Data {
@@ -63,14 +61,14 @@ fn claims() -> Vec<Claim> {
         // Rounding errors grow tenfold in about a hundred steps.
         bulk::beginning(
             "position of a grain of the bed over .3 ms, worst",
-            SIDES.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution)),
+            LIGGGHTS.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution)),
         ),
     ];
     claims.extend(ladder::claims());
-    for ours in [SIDES[0], "dem"] {
+    for ours in [LIGGGHTS[0], "dem"] {
         let run = |solver| Run::new(PLAIN, solver, LEVELS[0].resolution);
         // Each run takes two seconds, so the additional run of `dem` is in the standard tier.
-        let both = || if ours == SIDES[0] { SIDES.map(run) } else { [run(ours).slow(), run(SIDES[1])] };
+        let both = || if ours == LIGGGHTS[0] { LIGGGHTS.map(run) } else { [run(ours).slow(), run(LIGGGHTS[1])] };
         // One control run serves both claims.
         let smooth = || Control::ours("no friction of the drum", |scene| rub(scene, 0.0));
         // The bed moves with the drum from 0.03 s on.
@@ -130,7 +128,7 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
         Err(error) => return Err(error),
     }
     let mut curves = Vec::new();
-    for (solver, stroke) in SIDES.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
+    for (solver, stroke) in LIGGGHTS.into_iter().zip([Stroke::Line, Stroke::Dashed]) {
         // A solver has no curve if it is not installed and no run of it is stored.
         if let Ok(done) = runner.run(&Run::new(PLAIN, solver, LEVELS[0].resolution)) {
             let momentum = samples(&done, "all.angular_momentum_y").unwrap_or_default().into_iter();

@@ -1,19 +1,16 @@
 //! Ten thousand discs in plane shear, compared with LAMMPS and LIGGGHTS. Samples are compared up to the predictability
 //! horizon, and time averages afterwards.
 
-use crate::rows::programs::{PAIRS, row};
+use crate::rows::programs::{ENERGY, PAIRS, kinetic_energy};
 use crate::rows::rigid;
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
-use grainbench_harness::compare::pointwise::{difference, largest, worst};
+use grainbench_harness::compare::pointwise::difference;
 use grainbench_harness::prelude::*;
 use grainbench_solver::perturbed::move_one;
 
 const LEVELS: &[Level] = &[time_step("dt=1e-3 s", 1e-3), time_step("dt=1e-4 s", 1e-4)];
 
 pub(crate) static CASE: Case = crate::heads::PLANE_SHEAR.with(LEVELS, 1, &claims).drawn_by(figures);
-
-/// Column of the kinetic energy of translation.
-const ENERGY: &str = "all.kinetic_energy";
 
 const fn sum(column: &'static str, words: &'static str, unit: &'static str) -> Sum {
     Sum { column, words, unit, logarithm: false }
@@ -62,8 +59,8 @@ fn claims() -> Vec<Claim> {
     };
     let known = [long(liggghts[0]).known(STALE_STRETCH).up_to(1e-4).slow(), long(liggghts[1])];
     let mut claims = vec![
-        beginning(2000, lammps.map(short), other(liggghts[0])),
-        beginning(85, liggghts.map(first), other(lammps[0])),
+        kinetic_energy("over 2000 steps", lammps.map(short), other(liggghts[0])),
+        kinetic_energy("over 85 steps", liggghts.map(first), other(lammps[0])),
         perturbed::pointwise(PARTING, with_perturbed(lammps.map(long)), other(liggghts[0])),
         perturbed::pointwise(PARTING, with_perturbed(known), without),
     ];
@@ -87,17 +84,6 @@ fn claims() -> Vec<Claim> {
 
 /// Predictability horizon (number of steps of 1e-3 s).
 const HORIZON: u64 = 800;
-
-/// Returns the claim on the kinetic energy over the first steps, before motion becomes chaotic.
-fn beginning(steps: u32, runs: [Run; 2], control: Control) -> Claim {
-    let allowed = rounding(
-        2.0,
-        "rounding only, because both programs use the same integration cycle with another \
-                                 order of sums; an energy has twice the relative error of velocities",
-    );
-    let quantity = format!("kinetic energy of translation over {steps} steps, worst");
-    row(&quantity, "J", allowed, runs, control, |done| worst(done, &[ENERGY], largest(done[1].column(ENERGY)?)))
-}
 
 fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let right = runner.run(&long(PAIRS[0][0]))?;

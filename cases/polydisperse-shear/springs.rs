@@ -1,8 +1,7 @@
 //! Claims on the slab with grains on springs: energy budget, momentum, and comparison with LAMMPS and LIGGGHTS.
 
 use super::{entry, gained, measures, to_shear};
-use crate::rows::programs::{PAIRS, row};
-use grainbench_harness::compare::pointwise::{largest, worst};
+use crate::rows::programs::{PAIRS, kinetic_energy};
 use grainbench_harness::prelude::*;
 
 const STEP: Resolution = Resolution::CriticalFraction(0.05);
@@ -11,8 +10,6 @@ const WITH_PROGRAMS: Resolution = Resolution::CriticalFraction(0.1);
 /// Mean shears up to which sixteen digits of our solver agree with LAMMPS and LIGGGHTS. LIGGGHTS differs once a contact
 /// closes again, because it keeps the tangential displacement of opened contacts (derivation of `plane-shear`).
 const BEGINNINGS: [f64; 2] = [0.05, 0.025];
-
-const ENERGY: &str = "all.kinetic_energy";
 
 /// Returns the run of a packing of grains on springs with closed sides, up to a mean shear.
 pub(super) fn to(packing: &'static str, shear: f64, snapshots: u32) -> Run {
@@ -55,14 +52,8 @@ pub(super) fn claims() -> Vec<Claim> {
         .refuses(Control::grains("grains heavier by a thousandth", |grain| grain.mass *= 1.001));
     let beside = PAIRS.into_iter().zip(BEGINNINGS).map(|(pair, beginning)| {
         let runs = pair.map(|solver| to_shear(Run::new("seed-1", solver, WITH_PROGRAMS), beginning, 0));
-        let quantity = format!("kinetic energy of translation to {:.1} % shear, worst", 100.0 * beginning);
-        let allowed = rounding(
-            2.0,
-            "rounding only, because both programs use the same integration cycle with another order of sums; an energy \
-             has twice the relative error of velocities",
-        );
         let control = Control::our_contact_law("friction .29 for .3 in ours", |law| law.friction = 0.29);
-        row(&quantity, "J", allowed, runs, control, |done| worst(done, &[ENERGY], largest(done[1].column(ENERGY)?)))
+        kinetic_energy(&format!("to {:.1} % shear", 100.0 * beginning), runs, control)
     });
     [energy, momentum].into_iter().chain(beside).collect()
 }

@@ -2,12 +2,17 @@
 //! that program.
 
 use crate::rows::on_plane::{DAMPING, at_overlap};
-use grainbench_harness::compare::pointwise::worst;
+use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_scene::dimension::GrainShape;
 
 /// Pairs of solvers: our solver in the contact convention of a program, and the program.
 pub(crate) const PAIRS: [[&str; 2]; 2] = [["dem:lammps", "lammps"], ["dem:liggghts", "liggghts"]];
+/// Our solver in the contact convention of LIGGGHTS, and LIGGGHTS.
+pub(crate) const LIGGGHTS: [&str; 2] = PAIRS[1];
+
+/// Column of the kinetic energy of translation.
+pub(crate) const ENERGY: &str = "all.kinetic_energy";
 
 /// Time step for one grain on a plane: 1e-4 s.
 const STEP: Resolution = Resolution::TimeStep(1e-4);
@@ -31,6 +36,18 @@ pub(crate) fn row(
 /// Returns the tolerance for rounding in two programs with the same integration cycle. `unit` states the unit of the error.
 pub(crate) fn same_cycle(unit: &str) -> Tolerance {
     rounding(1.0, format!("rounding only, because both programs use the same integration cycle; {unit}"))
+}
+
+/// Returns the claim on the kinetic energy at each time, before motion becomes chaotic, in units of the largest energy.
+/// `until` states the compared part of the run.
+pub(crate) fn kinetic_energy(until: &str, runs: [Run; 2], control: Control) -> Claim {
+    let allowed = rounding(
+        2.0,
+        "rounding only, because both programs use the same integration cycle with another order of sums; an energy has \
+         twice the relative error of velocities",
+    );
+    let quantity = format!("kinetic energy of translation {until}, worst");
+    row(&quantity, "J", allowed, runs, control, |done| worst(done, &[ENERGY], largest(done[1].column(ENERGY)?)))
 }
 
 /// Returns the claims on the position of one grain on a plane over one second, undamped and damped. In the damped runs,

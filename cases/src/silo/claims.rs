@@ -4,7 +4,7 @@ use super::collapse::ComparedFlow;
 use super::ensemble::{self, Flow, onset, plateau, share, steady};
 use super::{ELEMENTS, flows};
 use crate::rows::draws::{apart, mean_of};
-use crate::rows::programs::row;
+use crate::rows::programs::{ENERGY, row};
 use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_harness::run::Set;
@@ -304,6 +304,3 @@ impl Silo {
         })
     }
 }
-
-/// Column of the kinetic energy of translation.
-const ENERGY: &str = "all.kinetic_energy";
