@@ -1,7 +1,6 @@
 //! All material pairs of the round robin of bulk processes, against LIGGGHTS.
 
 use crate::rows::programs::{LIGGGHTS, row, same_cycle};
-use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
 /// Time step of the impact in the paper (Dosta et al. 2024).

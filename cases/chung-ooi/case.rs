@@ -8,7 +8,6 @@ use crate::exact::dashpot::{no_tension_lag, no_tension_ratio};
 use crate::rows::programs::{PAIRS, forces, row, same_cycle};
 use crate::rows::rigid;
 use forms::ImpactParameters;
-use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::ContactLaw;
 

@@ -3,8 +3,6 @@
 use crate::exact::dashpot::{lag, no_tension_restitution};
 use crate::rows::programs;
 use crate::rows::rigid;
-use grainbench_harness::claim::Quantity;
-use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] =

@@ -11,7 +11,7 @@ use crate::sources::literature::bardenhagen_2001::FRINGES_SLOWER;
 use crate::sources::prototype::disk_chains::ARRIVAL_IN_DISC_4;
 use crate::sources::prototype::disk_chains_nodal_contact::ARRIVAL_AT_40;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::{BodyName, Probe, ProbeTarget, Spot};
+use grainbench_scene::scene::{BodyName, Spot};
 
 const BEST: &str = "mpm";
 const STIFF: &str = "mpm+penalty=5.2";

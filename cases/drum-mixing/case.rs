@@ -11,7 +11,6 @@ use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
-use grainbench_scene::source::SceneSource;
 use std::path::Path;
 use zones::{COUNTED, ZONES};
 

@@ -1,8 +1,6 @@
 //! Counting of the small spheres in the lower quarters of the drum.
 
-use grainbench_harness::reading::{Reader, Reading, Table};
-use grainbench_scene::scene::Scene;
-use grainbench_solver::record::Snapshot;
+use grainbench_harness::prelude::*;
 
 /// Evaluation of each snapshot: counts of M1 spheres in two zones.
 pub(super) const ZONES: Reading = Reading { name: "zones of the drum", begin };

@@ -3,7 +3,6 @@
 use super::{DEEP, FINE, MET, STEP, height, lighten, of_two_beds};
 use crate::rows::programs::{ENERGY, LIGGGHTS, row};
 use grainbench_harness::compare::perturbed::{self, DivergenceColumns, PERTURBED, Sum};
-use grainbench_harness::compare::pointwise::together;
 use grainbench_harness::prelude::*;
 use grainbench_solver::perturbed::move_one;
 

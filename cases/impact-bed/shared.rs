@@ -6,7 +6,6 @@ use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
-use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
 /// Time at which the ball is at rest in a hundred thousand grains (s).

@@ -3,7 +3,6 @@
 use grainbench_fields::contact_stress::{Stress, contact_stress};
 use grainbench_fields::grid::Grid;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::WallShape;
 
 /// Evaluation of each snapshot in horizontal slices of the silo.
 pub(super) const COLUMN: Reading = Reading { name: "slices of a silo", begin };

@@ -3,9 +3,7 @@
 mod floors;
 
 use crate::rows::programs::{row, same_cycle};
-use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
-use grainbench_scene::scene::WallShape;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 /// Time step (s): 1/65 of the critical time step.

@@ -7,7 +7,6 @@ mod programs;
 
 use crate::rows::rigid;
 use crate::sources::literature::cundall_strack_1979;
-use grainbench_harness::measure::{dominant_frequency, slope};
 use grainbench_harness::prelude::*;
 use modal::{InwardDisplacements, Modal, RAMP_TIME, law};
 use std::f64::consts::{SQRT_2, TAU};

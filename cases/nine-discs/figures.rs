@@ -3,7 +3,6 @@
 use super::modal::{Modal, law};
 use super::{DISTORTION, FIGURE_STEP, LEVELS, MODAL, ORDER, SPEEDS, TURN, modal_error, modal_run};
 use crate::sources::literature::cundall_strack_1979::RESIDUAL_AMPLITUDE;
-use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
 
 pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {

@@ -2,7 +2,6 @@
 
 use super::{DISTORTION, LEVELS, MODAL, law, over_radius, rounded, travel};
 use crate::rows::programs::{PAIRS, discs_for, layer_of_spheres, row, stiffer};
-use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
 const STEP: Resolution = LEVELS[0].resolution;

@@ -3,7 +3,6 @@
 use crate::exact::dashpot::lag;
 use crate::rows::on_plane::stronger_friction;
 use crate::rows::programs::{PAIRS, row, same_cycle};
-use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.05", 0.05), fraction("dt=.01", 0.01), fraction("dt=.002", 0.002)];

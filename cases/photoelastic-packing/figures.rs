@@ -4,7 +4,6 @@ use super::{PAIRS, STEP, elastic, experiment, run, time_of_a, vertical_strain};
 use grainbench_fields::picture::{Shot, fringe_constant, pictures};
 use grainbench_fields::quantity::Quantity;
 use grainbench_harness::figure::Field;
-use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
 
 /// Pixels along the longer side of a picture.

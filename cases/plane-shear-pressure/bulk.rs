@@ -5,7 +5,6 @@ use grainbench_fields::contact_stress::{Stress, contact_stress, tells_interval};
 use grainbench_fields::grid::Grid;
 use grainbench_fields::packing::packing_fraction;
 use grainbench_harness::prelude::*;
-use grainbench_solver::record::GrainState;
 
 /// Evaluation of the bulk in each snapshot.
 pub(super) const BULK: Reading = Reading { name: "bulk of a sheared layer", begin };

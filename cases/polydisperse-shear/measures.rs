@@ -2,9 +2,9 @@
 //! strain also use material points.
 
 use grainbench_fields::overlap::disc_in_box;
-use grainbench_harness::prelude::{FinishedRun, MissingData, mean};
+use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::mean_and_variance;
-use grainbench_solver::record::{GrainState, PointState, Snapshot};
+use grainbench_solver::record::PointState;
 use std::collections::HashMap;
 
 /// Number of columns over which displacements are averaged.

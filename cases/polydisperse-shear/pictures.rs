@@ -5,10 +5,8 @@ use super::{CHAINS, FRAMES, springs, yielding};
 use grainbench_fields::element_picture;
 use grainbench_fields::picture::{Shot, film, pictures};
 use grainbench_fields::quantity::Quantity;
-use grainbench_harness::force_plot::force_plot;
 use grainbench_harness::prelude::*;
-use grainbench_solver::record::{GrainState, Owner, Record};
-use std::sync::Arc;
+use grainbench_solver::record::Owner;
 
 /// Mean shears at which the paper shows displacement profiles.
 pub(super) const PROFILES: [f64; 3] = [0.25, 0.5, 0.75];

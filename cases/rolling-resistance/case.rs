@@ -4,7 +4,6 @@ use crate::exact::one_grain::{OneGrain, State, course};
 use crate::rows::on_plane::wrong_inertia;
 use crate::rows::programs::{PAIRS, row, same_cycle};
 use crate::rows::rigid;
-use grainbench_harness::compare::pointwise::worst;
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];

@@ -3,7 +3,6 @@
 use crate::silo::claims::{Silo, case};
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::Set;
 
 pub(crate) static CASE: Case =
     case(crate::heads::SILO_PUSH, &|| SILO.claims(Vec::new()), |runner| SILO.figures(runner, &[]));

@@ -5,7 +5,6 @@ use crate::silo::collapse;
 use crate::silo::ensemble::gone;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::Set;
 
 pub(crate) static CASE: Case = case(crate::heads::SILO_TALL, &claims, |runner| SILO.figures(runner, &collapse::TENTH));
 

@@ -4,7 +4,6 @@ use crate::silo::claims::{Drained, Silo, case};
 use crate::silo::collapse;
 use crate::sources::prototype::silo as prototype;
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::Set;
 
 pub(crate) static CASE: Case =
     case(crate::heads::SILO_WIDE, &|| SILO.claims(vec![SILO.turn(prototype::WIDE_TURN), SILO.symmetry()]), |runner| {

@@ -5,10 +5,6 @@
 //! √(3k/m).
 
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::method::Method;
-use grainbench_scene::scene::{Probe, ProbeTarget};
-use std::sync::Arc;
 
 /// Duration of the run (s), several periods of the pair of discs. The period is 2π/√3 = 3.63 s.
 const SECONDS: f64 = 20.0;

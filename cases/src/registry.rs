@@ -6,7 +6,6 @@ use grainbench_reference::data::folder;
 use grainbench_reference::{DataFile, parse_data};
 use grainbench_scene::error::SceneError;
 use grainbench_scene::resolve::FileGrain;
-use grainbench_scene::source::SceneSource;
 use std::path::Path;
 
 include!(concat!(env!("OUT_DIR"), "/registry.rs"));

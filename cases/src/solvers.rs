@@ -11,10 +11,8 @@ use grainbench_reference::data::missing;
 use grainbench_reference::deck::Program;
 use grainbench_reference::live::LiveProgram;
 use grainbench_rigid::solver::Rigid;
-use grainbench_solver::record::Record;
 use grainbench_solver::terms::Terms;
 use grainbench_solver::{Defect, Solver};
-use std::sync::Arc;
 use std::time::Duration;
 
 /// Returns all our solvers.

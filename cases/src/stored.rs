@@ -6,7 +6,6 @@ use grainbench_harness::run::ExpectedOutcome;
 use grainbench_reference::deck::Program;
 use grainbench_reference::stored::{StoredRun, folder, unusable};
 use grainbench_scene::error::SceneError;
-use grainbench_solver::record::Record;
 
 /// A run of LAMMPS or LIGGGHTS that a claim reads, stored or not.
 #[derive(Clone)]

@@ -3,9 +3,6 @@
 
 use super::{HELD, HELD_PERIOD, LEVELS, mode, period};
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::method::Method;
-use std::sync::Arc;
 
 pub(super) fn targets(case: &'static Case) -> Vec<TargetQuantity> {
     let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| TargetQuantity {

@@ -1,6 +1,5 @@
 //! Error of a run against its manufactured solution.
 
-use grainbench_harness::measure::slope;
 use grainbench_harness::prelude::*;
 use grainbench_scene::manufactured::Medium;
 

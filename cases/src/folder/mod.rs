@@ -19,7 +19,7 @@ use claims_file::{ClaimEntry, ClaimsFile};
 use grainbench_harness::course::no_more;
 use grainbench_harness::prelude::*;
 use grainbench_harness::subject::from_claims;
-use grainbench_scene::source::{SceneSource, named_files};
+use grainbench_scene::source::named_files;
 use grainbench_scene::text::written;
 use grainbench_scene::toml_error::TomlError;
 use row::Reader;

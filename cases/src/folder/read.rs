@@ -4,9 +4,7 @@ use super::claims_file::SampleReduction;
 use super::expression::Expression;
 use super::numbers::{Numbers, TIME};
 use super::wrong;
-use grainbench_harness::claim::{ClaimWithExpectation, Quantity};
 use grainbench_harness::prelude::*;
-use std::sync::Arc;
 
 /// Function that returns time (s) and value of each sample of a run.
 type Samples = Arc<dyn Fn(&FinishedRun) -> Result<Points, MissingData> + Send + Sync>;

@@ -10,15 +10,11 @@ use super::{kept, wrong};
 use crate::registry::read_grains;
 use crate::solvers;
 use crate::sources::WORKS;
-use grainbench_harness::claim::{ClaimWithExpectation, Quantity};
 use grainbench_harness::prelude::*;
 use grainbench_harness::source::{Kind, Work};
 use grainbench_reference::read_table;
-use grainbench_scene::method::Method;
-use grainbench_scene::source::SceneSource;
 use grainbench_scene::text::tamed;
 use std::path::Path;
-use std::sync::Arc;
 
 /// Data for the conversion of claims: the case folder and its scene file.
 pub(super) struct Reader<'a> {

@@ -3,7 +3,6 @@
 //! the mean over our own packings.
 
 use crate::rows::programs::row;
-use grainbench_harness::compare::pointwise::{together, worst};
 use grainbench_harness::prelude::*;
 use grainbench_harness::statistics::{BLOCKS, difference, mean_and_variance};
 use grainbench_reference::round_robin::Spread;

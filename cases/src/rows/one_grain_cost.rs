@@ -5,9 +5,6 @@ use crate::exact::one_grain::{OneGrain, State, rest_at_overlap};
 use crate::rows::elastic::{Rest, settle, stiffen};
 use crate::rows::on_plane::{DAMPING, end, touching};
 use grainbench_harness::prelude::*;
-use grainbench_harness::subject::{SolverSetup, TargetQuantity};
-use grainbench_scene::method::Method;
-use std::sync::Arc;
 
 /// Static overlaps of grains on springs, divided by the radius R.
 const OVERLAPS: [f64; 4] = [1e-2, 1e-3, 1e-4, 1e-5];

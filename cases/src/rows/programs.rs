@@ -2,7 +2,6 @@
 //! that program.
 
 use crate::rows::on_plane::{DAMPING, at_overlap};
-use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
 use grainbench_scene::dimension::GrainShape;
 

@@ -3,7 +3,6 @@
 //! springs that have the same force at rest.
 
 use crate::rows::elastic::stiffen;
-use grainbench_harness::measure::dominant_frequency;
 use grainbench_harness::prelude::*;
 use grainbench_scene::contact_law::Springs;
 

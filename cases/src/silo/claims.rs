@@ -5,9 +5,7 @@ use super::ensemble::{self, Flow, onset, plateau, share, steady};
 use super::{ELEMENTS, flows};
 use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::{ENERGY, row};
-use grainbench_harness::compare::pointwise::{largest, worst};
 use grainbench_harness::prelude::*;
-use grainbench_harness::run::Set;
 
 /// Function that returns a quantity of a silo from its run.
 pub(crate) type Quantity = fn(&FinishedRun) -> Result<f64, MissingData>;

@@ -5,7 +5,7 @@ use super::ensemble::{self, STRAIN};
 use crate::kept;
 use crate::registry::by_name;
 use grainbench_harness::prelude::*;
-use std::sync::{Arc, Mutex, PoisonError};
+use std::sync::{Mutex, PoisonError};
 
 /// Flow whose stored result is compared with a run of the same size: case, variant, and label in figures.
 pub(crate) struct ComparedFlow {

@@ -10,7 +10,6 @@ use super::claims::{Drained, LEVELS, Silo};
 use super::ensemble::{self, share, steady};
 use super::{collapse, flows};
 use crate::sources::literature::rycroft_2009 as paper;
-use grainbench_harness::claim::Quantity;
 use grainbench_harness::prelude::*;
 
 const TANGENT: Control = Control::misread("tan φ for sin φ", ensemble::tangent);
