@@ -58,13 +58,18 @@ fn of_grains(rows: &Rows<'_>) -> Vec<Verdict> {
     let place = |turning: &RotatingScene| {
         worst(levels, turning.reach(), |resolution| {
             let end = end(turning, resolution)?;
-            Ok((place_off(turning, &end), place_allowed(rows, turning, &end)))
+            let grains = end.grains.iter().zip(turning.named.scene.grains.iter());
+            let off = grains.map(|(grain, start)| (grain.position - turning.place(start.position, end.time)).norm());
+            Ok((off.fold(0.0, larger), place_allowed(rows, turning, &end)))
         })
     };
     let spin = |turning: &RotatingScene| {
         worst(levels, turning.spin.norm(), |resolution| {
             let end = end(turning, resolution)?;
-            Ok((spin_off(turning, &end), spin_allowed(turning, &end, rows.terms)))
+            // Spin times radius (m/s).
+            let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
+            let allowed = turning.spin.norm() * (scheme(turning, &end, rows.terms) + 2.0 * turning.overlap);
+            Ok((off.fold(0.0, larger), allowed))
         })
     };
     let resolution = &rows.terms.resolution;
@@ -98,19 +103,6 @@ fn worst(
     Ok(PropertyValue::deviation(off, scale, allowed))
 }
 
-/// Returns the largest distance of a grain from its exact position (m).
-fn place_off(turning: &RotatingScene, end: &End) -> f64 {
-    let grains = end.grains.iter().zip(turning.named.scene.grains.iter());
-    let off = grains.map(|(grain, start)| (grain.position - turning.place(start.position, end.time)).norm());
-    off.fold(0.0, larger)
-}
-
-/// Returns the largest error of spin times radius (m/s).
-fn spin_off(turning: &RotatingScene, end: &End) -> f64 {
-    let off = end.grains.iter().map(|grain| (grain.spin - turning.spin).norm() * grain.radius);
-    off.fold(0.0, larger)
-}
-
 /// Returns the relative error that a scheme may have after the rotation of the scene. The error is of second order in the
 /// time step if the solver claims at least this order, and of first order otherwise.
 fn scheme(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
@@ -132,11 +124,6 @@ fn place_allowed(rows: &Rows<'_>, turning: &RotatingScene, end: &End) -> f64 {
     let lever = if turning.carried { 2.0 * turning.overlap * RotatingScene::angle() } else { 0.0 };
     let rigid = if is_rigid(&terms.resolution) { turning.overlap } else { 0.0 };
     turning.reach() * (scheme(turning, end, terms) + swing) + lever + rigid
-}
-
-/// Returns the largest allowed error of spin times radius (m/s).
-fn spin_allowed(turning: &RotatingScene, end: &End, terms: &Terms) -> f64 {
-    turning.spin.norm() * (scheme(turning, end, terms) + 2.0 * turning.overlap)
 }
 
 /// Returns true if a resolution is for rigid bodies, whose contacts have no springs.
