@@ -21,12 +21,13 @@ pub enum Severity {
 }
 
 /// Outcome of a result. Only `Pass` is green.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum Outcome {
     /// The error is at most the allowed error.
     Pass,
     /// The error exceeds the allowed error.
+    #[default]
     Fail,
     /// The error exceeds the allowed error, but is a documented error of the method or program.
     Known,
@@ -107,7 +108,7 @@ impl From<&RunError> for Outcome {
 /// Result of a claim: a row of `results.json`, `report.json`, `rows.csv`, and of the stored results of external solvers.
 ///
 /// Stored results of earlier versions lack the fields with a default.
-#[derive(Clone, Debug, PartialEq, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Deserialize)]
 #[must_use]
 pub struct Verdict {
     /// Case name, such as `nine-discs`.
@@ -191,22 +192,11 @@ impl Verdict {
     pub fn open(case: impl Into<String>, quantity: impl Into<String>, unit: impl Into<String>) -> Self {
         Self {
             case: case.into(),
-            variant: String::new(),
-            solver: String::new(),
-            resolution: String::new(),
             quantity: quantity.into(),
             unit: unit.into(),
-            value: None,
-            expected: None,
-            scale: None,
-            error: None,
-            allowed: 0.0,
             tolerance: ToleranceOrigin::Exact,
-            because: String::new(),
             evidence: Evidence::Invariant,
-            source: String::new(),
-            outcome: Outcome::Fail,
-            detail: None,
+            ..Self::default()
         }
     }
 
