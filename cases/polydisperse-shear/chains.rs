@@ -92,20 +92,14 @@ pub(crate) fn chains(snapshot: &Snapshot) -> Chains {
     }
 }
 
-/// Returns the root of the group of each of `count` grains, by union-find.
+/// Returns the first grain of the group of each of `count` grains.
 fn groups(count: usize, links: &[(u32, u32)]) -> Vec<usize> {
-    let mut roots: Vec<usize> = (0..count).collect();
-    let find = |roots: &[usize], mut at: usize| {
-        while roots[at] != at {
-            at = roots[at];
-        }
-        at
-    };
+    let mut first: Vec<usize> = (0..count).collect();
     for &(a, b) in links {
-        let (a, b) = (find(&roots, a as usize - 1), find(&roots, b as usize - 1));
-        roots[a.max(b)] = a.min(b);
+        let (a, b) = (first[a as usize - 1], first[b as usize - 1]);
+        first.iter_mut().filter(|first| **first == a.max(b)).for_each(|first| *first = a.min(b));
     }
-    (0..count).map(|grain| find(&roots, grain)).collect()
+    first
 }
 
 #[cfg(test)]
