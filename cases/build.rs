@@ -23,6 +23,7 @@ fn main() -> Result<(), Failure> {
     // The build script of the crate `reference` sets this variable. In a checkout, the folder is beside this crate; in
     // a package, it is not.
     let references = PathBuf::from(env::var("DEP_GRAINBENCH_REFERENCE_FOLDER")?);
+    println!("cargo::rustc-env=GRAINBENCH_REFERENCES={}", references.display());
     fs::write(out.join("sources.rs"), sources(&references)?)?;
     fs::write(out.join("estimates.rs"), estimates(&references.join(ESTIMATES))?)?;
     println!("cargo::rerun-if-changed={}", root.display());

@@ -13,16 +13,12 @@ use published::{BEDS, PUBLISHED};
 
 const LEVELS: &[Level] = &[time_step("dt=2e-6 s", 2e-6), time_step("dt=5e-7 s", 5e-7)];
 
-/// Derivation, followed by the description of the published data.
-const DERIVATION: &str = {
-    const OWN: &str = include_str!("derivation.md");
-    const PUBLISHED: &str = grainbench_reference::round_robin::CONSISTENCY;
-    static BOTH: [u8; OWN.len() + 1 + PUBLISHED.len()] = published::joined(OWN, PUBLISHED);
-    match std::str::from_utf8(&BOTH) {
-        Ok(both) => both,
-        Err(_) => OWN,
-    }
-};
+/// Derivation, followed by the inconsistencies in the published data.
+const DERIVATION: &str = concat!(
+    include_str!("derivation.md"),
+    "\n",
+    include_str!(concat!(env!("GRAINBENCH_REFERENCES"), "/literature/dosta-2024/consistency.md"))
+);
 
 pub(crate) static CASE: Case =
     Case { derivation: DERIVATION, ..crate::heads::IMPACT_BED }.with(LEVELS, 0, &claims).drawn_by(figures);

@@ -28,22 +28,6 @@ pub(super) fn scores(done: &[FinishedRun], published: &[[f64; 4]]) -> Result<Vec
     published.iter().filter(is_counted).map(score).collect()
 }
 
-/// Joins two texts with a line break between them.
-pub(super) const fn joined<const N: usize>(first: &str, second: &str) -> [u8; N] {
-    let (first, second) = (first.as_bytes(), second.as_bytes());
-    let mut both = [b'\n'; N];
-    let mut at = 0;
-    while at < N {
-        if at < first.len() {
-            both[at] = first[at];
-        } else if at > first.len() {
-            both[at] = second[at - first.len() - 1];
-        }
-        at += 1;
-    }
-    both
-}
-
 pub(super) fn figures(done: &[FinishedRun], published: &[[f64; 4]]) -> Vec<Figure> {
     let last = done.first().and_then(|done| done.series().time.last().copied()).unwrap_or(0.0);
     let within: Vec<&[f64; 4]> = published.iter().filter(|row| row[0] <= last + 1e-9).collect();

@@ -19,9 +19,6 @@ pub const EARLY: [f64; 2] = [0.2, 0.8];
 /// between codes, and standard deviation between beds (heights in mm).
 pub const IMPACT: &str = include_str!("../literature/dosta-2024/impact-25k.csv");
 
-/// Inconsistencies in the published data, as a heading and a table in Markdown.
-pub const CONSISTENCY: &str = include_str!("../literature/dosta-2024/consistency.md");
-
 /// Number of grains in the silo over time, for the large orifice. The columns are t (s), mean of LIGGGHTS and MUSEN,
 /// and half the difference of the two codes.
 pub const SILO: &str = include_str!("../literature/dosta-2024/silo-large.csv");
