@@ -9,8 +9,10 @@ use crate::rows::one_grain_cost::displacement;
 use crate::rows::set_down::Dashpots;
 use grainbench_harness::prelude::*;
 
-pub(crate) static CASE: Case =
-    crate::heads::INCLINE_DISC.with(LEVELS, 2, &claims).drawn_by(figures).priced_by(|case| {
+pub(crate) static CASE: Case = crate::heads::INCLINE_DISC
+    .with(LEVELS, 2, &|| INCLINE.claims())
+    .drawn_by(|runner| INCLINE.figures(runner))
+    .priced_by(|case| {
         displacement(case, &["60deg-mu.9", "60deg-mu.3"], 0.3, OneGrain::rigid_incline, "MPM 2000 eq. 25")
     });
 
@@ -23,14 +25,6 @@ static INCLINE: Incline = Incline {
         Plane { variant: "30deg-mu.5", rolls: true, lifts: None },
     ],
     set_down: ("30deg-mu.5", Dashpots::OfMass),
+    elastic_claims: elastic::claims,
+    elastic_figure: elastic::figure,
 };
-
-fn claims() -> Vec<Claim> {
-    [INCLINE.claims(), elastic::claims()].concat()
-}
-
-fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut figures = INCLINE.figures(runner)?;
-    figures.extend(elastic::figures(runner)?);
-    Ok(figures)
-}

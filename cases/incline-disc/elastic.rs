@@ -278,7 +278,7 @@ fn turns_as_it_goes(slope: Elastic) -> Claim {
         .refuses(Control::solver("nodal contact that acts at a distance (2000)", "mpm:2000"))
 }
 
-pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
     let mut curves = Vec::new();
     for slope in SLOPES {
         for solver in ["mpm", "mpm:2000"] {
@@ -292,7 +292,7 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
             curves.push(Curve::new(label, Stroke::MarkedLine, points));
         }
     }
-    Ok(vec![Figure::graph(
+    Ok(Figure::graph(
         "elastic",
         "An elastic disc: deviation from its converged displacement",
         "The disc starts in static equilibrium. `mpm` has springs at the surfaces. The contact of the 2000 paper \
@@ -300,5 +300,5 @@ pub(super) fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
          are small.",
         [Axis::log("cells per radius"), Axis::log("|x − x_elastic| / x_rigid")],
         curves,
-    )])
+    ))
 }

@@ -11,8 +11,8 @@ use grainbench_harness::prelude::*;
 
 pub(crate) static CASE: Case =
     Case { derivation: include_str!("../incline-disc/derivation.md"), ..crate::heads::INCLINE_SPHERE }
-        .with(LEVELS, 2, &claims)
-        .drawn_by(figures)
+        .with(LEVELS, 2, &|| INCLINE.claims())
+        .drawn_by(|runner| INCLINE.figures(runner))
         .priced_by(|case| {
             let variants = &["45deg-mu.495", "60deg-mu2_7"];
             displacement(case, variants, 0.3, OneGrain::rigid_incline, "2001 paper, eqs. 23-26")
@@ -25,14 +25,6 @@ static INCLINE: Incline = Incline {
         Plane { variant: "60deg-mu2_7", rolls: false, lifts: None },
     ],
     set_down: ("45deg-mu.495", Dashpots::OfStiffness),
+    elastic_claims: elastic::claims,
+    elastic_figure: elastic::figure,
 };
-
-fn claims() -> Vec<Claim> {
-    [INCLINE.claims(), elastic::claims()].concat()
-}
-
-fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
-    let mut figures = INCLINE.figures(runner)?;
-    figures.push(elastic::figure(runner)?);
-    Ok(figures)
-}

@@ -16,13 +16,16 @@ pub(crate) struct Incline {
     pub(crate) slopes: &'static [Plane],
     /// Variant for the claims on a grain that is set down, and the coefficients of the dashpots in these claims.
     pub(crate) set_down: (&'static str, Dashpots),
+    /// Returns the claims on the elastic body.
+    pub(crate) elastic_claims: fn() -> Vec<Claim>,
+    /// Returns the figure of the elastic body.
+    pub(crate) elastic_figure: fn(&Runner) -> Result<Figure, RunError>,
 }
 
 /// Levels of resolution of these cases.
 pub(crate) const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
 
 impl Incline {
-    /// Returns all claims except the claims on the elastic body.
     pub(crate) fn claims(&self) -> Vec<Claim> {
         let (variant, dashpots) = self.set_down;
         let variants: Vec<_> = self.slopes.iter().map(|slope| slope.variant).collect();
@@ -31,14 +34,15 @@ impl Incline {
             set_down::claims(variant, dashpots),
             self.slopes.iter().flat_map(|&slope| rigid::incline(self.case, slope)).collect(),
             programs::one_grain(&variants),
+            (self.elastic_claims)(),
         ]
         .concat()
     }
 
-    /// Returns all figures except the figures of the elastic body.
     pub(crate) fn figures(&self, runner: &Runner) -> Result<Vec<Figure>, RunError> {
         let mut figures = motion(runner, self.slopes)?;
         figures.push(rigid::figure(runner, self.slopes, OneGrain::rigid_incline)?);
+        figures.push((self.elastic_figure)(runner)?);
         Ok(figures)
     }
 }
