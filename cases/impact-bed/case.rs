@@ -1,10 +1,9 @@
 //! A steel ball falls into a bed: the impact of the round robin of bulk processes, on five beds of our own.
 
-mod hundred_thousand;
 mod ladders;
+mod larger;
 mod programs;
 mod published;
-mod shared;
 
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::prelude::*;
@@ -140,7 +139,7 @@ fn claims() -> Vec<Claim> {
         early("late", "dem:liggghts"),
         early("down", "dem").fair_to_any_springs(),
     ];
-    [own, programs::claims(), ladders::claims(), hundred_thousand::claims(), shared::claims()].concat()
+    [own, programs::claims(), ladders::claims(), larger::claims()].concat()
 }
 
 /// Functions that combine the values of several beds and the expected value, and that return the tolerance.
@@ -212,6 +211,6 @@ fn figures(runner: &Runner) -> Result<Vec<Figure>, RunError> {
     let done: Vec<FinishedRun> = OWN.iter().map(|variant| runner.run(&on(variant))).collect::<Result<_, _>>()?;
     let mut figures = published::figures(&done, &BEDS);
     figures.extend(ladders::figures(runner)?);
-    figures.push(hundred_thousand::figure(runner)?);
+    figures.push(larger::figure(runner)?);
     Ok(figures)
 }

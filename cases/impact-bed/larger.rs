@@ -1,13 +1,18 @@
-//! Impact on the published beds of the round robin, if the user provides their data.
+//! Impact on more grains: on our own beds of 100,000 grains, and on the published beds of the round robin if the user
+//! provides their data.
 
 use super::{DEEP, half_the_density, height};
 use crate::registry::made_of;
+use crate::rows::bulk::of_packings;
 use crate::sources::literature::dosta_2024 as dosta;
 use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
 use std::path::Path;
 
+/// Variants with our own beds of 100,000 grains, each with another random seed.
+const OWN: [&str; 5] =
+    ["hundred-thousand", "hundred-thousand-2", "hundred-thousand-3", "hundred-thousand-4", "hundred-thousand-5"];
 /// Time at which the ball is at rest in a hundred thousand grains (s).
 const REST: f64 = 0.06;
 
@@ -55,10 +60,23 @@ fn row(quantity: &str, data: &'static Data, time: f64, (cited, half): (CitedNumb
         .refuses(half_the_density())
 }
 
+fn on_all() -> [Run; 5] {
+    OWN.map(|variant| Run::new(variant, "dem:liggghts", super::STEP).paper_size().kept())
+}
+
 pub(super) fn claims() -> Vec<Claim> {
     let at_30_ms = (dosta::HEIGHT_30_100K, dosta::HEIGHT_30_100K_HALF);
     let at_rest = (dosta::HEIGHT_60_100K, dosta::HEIGHT_60_100K_HALF);
+    let of_own = of_packings(
+        ("height of the ball at 30 ms, 100,000 grains, mean of five beds".to_owned(), "mm"),
+        on_all().to_vec(),
+        at_30_ms,
+        |done| height(done, DEEP),
+        "in units of 2 √(s_code² + s_bed² (1/5 + 1)), with s_code from two codes on one bed and s_bed between our \
+         beds; fixed before any run",
+    );
     vec![
+        of_own.refuses(half_the_density()),
         row(
             "height of the ball at 30 ms, 50,000 grains, the shared bed",
             &FIFTY,
@@ -68,4 +86,21 @@ pub(super) fn claims() -> Vec<Claim> {
         row("height of the ball at 30 ms, 100,000 grains, the shared bed", &HUNDRED, DEEP, at_30_ms),
         row("height of the ball at 60 ms, 100,000 grains, the shared bed", &HUNDRED, REST, at_rest),
     ]
+}
+
+pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {
+    let codes = vec![(DEEP * 1e3, dosta::HEIGHT_30_100K.value)];
+    let mut curves = vec![Curve::new("LIGGGHTS and MUSEN, one bed", Stroke::Markers, codes)];
+    for (number, run) in on_all().iter().enumerate() {
+        let done = runner.run(run)?;
+        curves.push(Curve::new(format!("own bed {}", number + 1), Stroke::Line, super::course(&done)));
+    }
+    Ok(Figure::graph(
+        "hundred-thousand",
+        "Height of the ball, 100,000 grains",
+        "Height of the ball's centre on our five beds of 100,000 grains. The marker is the height of two codes at 30 \
+         ms on one bed (Dosta et al. 2024, derived).",
+        [Axis::linear("time (ms)"), Axis::linear("height (mm)")],
+        curves,
+    ))
 }
