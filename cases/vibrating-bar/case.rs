@@ -1,7 +1,5 @@
 //! Longitudinal vibration of a bar.
 
-mod cost;
-
 use crate::rows::elastic::{AHEAD, front, stiffen};
 use grainbench_harness::prelude::*;
 use grainbench_scene::body::Hold;
@@ -42,7 +40,7 @@ const STRETCHED_VELOCITY: ClaimFigure = ClaimFigure {
     ..VELOCITY
 };
 
-pub(crate) static CASE: Case = crate::heads::VIBRATING_BAR.with(LEVELS, 1, &claims).priced_by(cost::targets);
+pub(crate) static CASE: Case = crate::heads::VIBRATING_BAR.with(LEVELS, 1, &claims).priced_by(targets);
 
 /// Returns the frequency ω of the mode (rad/s) and the mean initial velocity (m/s).
 fn mode(scene: &Scene) -> (f64, f64) {
@@ -253,4 +251,31 @@ fn claims() -> Vec<Claim> {
         .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01));
     let of_mode = LEVELS.iter().map(period_of).chain([held]).chain(LEVELS.iter().map(velocity));
     of_mode.chain([energy]).chain(of_others()).collect()
+}
+
+/// Returns the target quantities of the cost study: periods, compared with the exact ones. The effect of the grid counts
+/// as an error.
+fn targets(case: &'static Case) -> Vec<TargetQuantity> {
+    let target = |variant, quantity: &str, source: &str, exact: fn(&Scene) -> f64| TargetQuantity {
+        case,
+        variant,
+        quantity: quantity.to_owned(),
+        unit: "s",
+        source: source.to_owned(),
+        measure: Arc::new(move |done| {
+            let done = done.first().ok_or("run")?;
+            let exact = exact(&done.scene);
+            Ok(Measurement::relative(period(done)?, exact))
+        }),
+        lanes: vec![SolverSetup {
+            method: Method::Grid,
+            knobs: String::new(),
+            prepare: None,
+            about: LEVELS[1].resolution,
+        }],
+    };
+    vec![
+        target(PLAIN, "period", "2π/(β√(E/ρ)) (derivation)", |scene| 2.0 * PI / mode(scene).0),
+        target(HELD, "period between smooth sides", "10 √(E/M) s (derivation)", |_| HELD_PERIOD),
+    ]
 }
