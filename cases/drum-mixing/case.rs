@@ -1,14 +1,12 @@
 //! Two kinds of spheres in a rotating drum. The large drum starts from the published initial state if the user provides
 //! its data file. A small drum starts from our own bed.
 
-mod ladder;
 mod zones;
 
 use crate::registry::made_of;
 use crate::rows::bulk;
 use crate::rows::programs::LIGGGHTS;
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{DRUM, DRUM_SCENE, course, read_start, start_in};
 use std::path::Path;
@@ -24,6 +22,15 @@ static PUBLISHED: Data = Data {
     needs: "it starts from the published initial state of Dosta et al. 2024 (doi 10.5281/zenodo.8252892), an `xyz` \
             file of 38,000 grains; `grainbench run drum-mixing --data DIR` reads it from the folder DIR",
     scene: published,
+};
+
+/// Time up to which runs with other time steps are compared (s).
+const UNTIL: f64 = 0.5;
+/// Drum of the paper up to the time [`UNTIL`].
+static SHORTER: Data = Data {
+    name: "published-half",
+    needs: PUBLISHED.needs,
+    scene: |folder| Ok(Scene { duration: Duration::Seconds(UNTIL), ..published(folder)? }),
 };
 
 /// Returns the scene of the drum with the initial state from a folder.
@@ -63,7 +70,8 @@ fn claims() -> Vec<Claim> {
             LIGGGHTS.map(|solver| Run::new("beginning", solver, LEVELS[0].resolution)),
         ),
     ];
-    claims.extend(ladder::claims());
+    let steps = [("half the step", 1.5e-6), ("a step longer by a millionth", 3.000_003e-6), ("twice the step", 6e-6)];
+    claims.extend(steps.map(|(words, step)| with_step(words, step)));
     for ours in [LIGGGHTS[0], "dem"] {
         let run = |solver| Run::new(PLAIN, solver, LEVELS[0].resolution);
         // Each run takes two seconds, so the additional run of `dem` is in the standard tier.
@@ -95,6 +103,22 @@ fn rub(scene: &mut Scene, factor: f64) {
 
 fn of_paper() -> Run {
     Run::new(PLAIN, "dem:liggghts", LEVELS[0].resolution).from_data(&PUBLISHED).read_by(ZONES).long().kept()
+}
+
+/// Returns the claim on the effect of another time step (s) on the M1 spheres in zone 2. A step longer by a millionth
+/// shows the effect of rounding.
+fn with_step(words: &str, step: f64) -> Claim {
+    let run = Run::new(PLAIN, "dem:liggghts", Resolution::TimeStep(step)).from_data(&SHORTER);
+    claim(format!("M1 in zone 2 to .5 s with {words}, worst"), "1")
+        .runs([run.read_by(ZONES).long().kept(), of_paper().aside()])
+        .agrees(Source::Ourselves("the same with the step of the case"), |done| {
+            let times = course(DRUM).into_iter().map(|[time, ..]| time).filter(|&time| time < UNTIL + 1e-9);
+            Measurement::worst_read(
+                times.map(|time| Ok(Measurement::relative(counted(&done[0], time)?, counted(&done[1], time)?))),
+            )
+        })
+        .within(required(EARLY.0, "tolerance of a count relative to either code until .5 s"))
+        .refuses(beside())
 }
 
 /// Returns the claim on the M1 spheres in zone 2: the largest relative difference from either code in an interval (s).

@@ -5,7 +5,6 @@ use super::{DEEP, half_the_density, height};
 use crate::registry::made_of;
 use crate::rows::bulk::of_packings;
 use crate::sources::literature::dosta_2024 as dosta;
-use grainbench_harness::data::{Data, SceneDataError};
 use grainbench_harness::prelude::*;
 use grainbench_reference::round_robin::{Spread, bed_in, bed_names, read_bed};
 use std::path::Path;

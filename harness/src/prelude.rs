@@ -7,6 +7,7 @@ pub use crate::claim::{
 pub use crate::compare::pointwise::{largest, together, worst};
 pub use crate::control::Control;
 pub use crate::course::{from_start, samples, thinned};
+pub use crate::data::{Data, SceneDataError};
 pub use crate::expect::{Bound, ExpectedValue, Measurement};
 pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::force_plot::force_plot;
