@@ -104,7 +104,6 @@ fn duration(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 fn elastic() -> Vec<Claim> {
-    type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
     type Formula = fn(&Scene) -> f64;
     const QUANTITIES: [(&str, &str, Formula, RunReader); 3] = [
         ("deepest overlap", "m", |scene| hertz(scene).0, |done| Ok(peak(done.column("contact.overlap")?))),

@@ -161,7 +161,7 @@ fn of_beds(
     (together, tolerance): BedCombination,
     cited: CitedNumber,
     spread: Spread,
-    read: fn(&FinishedRun) -> Result<f64, MissingData>,
+    read: RunReader,
 ) -> ClaimWithTolerance {
     claim(quantity, unit)
         .runs(runs)

@@ -93,7 +93,6 @@ fn within_a_step(variant: &str, allowed: ErrorBound) -> Tolerance {
 }
 
 type ErrorBound = fn(&StepErrors, &Exit, &Scene) -> f64;
-type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
 type ExitValue = fn(&Exit) -> f64;
 
 fn claims() -> Vec<Claim> {

@@ -128,7 +128,7 @@ fn of_walls(done: &FinishedRun) -> Result<f64, MissingData> {
 }
 
 /// Name of a quantity and the function that reads it from a run.
-type Quantity = (&'static str, fn(&FinishedRun) -> Result<f64, MissingData>);
+type Quantity = (&'static str, RunReader);
 
 const FRICTION: Quantity = ("friction σ_xy/σ_yy", friction);
 const PACKING: Quantity = ("packing fraction", packing);

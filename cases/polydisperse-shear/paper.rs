@@ -111,12 +111,9 @@ fn motion_and_chains(words: &str, runs: &[Run], other_side: Control, staying: Co
         &format!("{LINKS} after 7.5 % of shear, mean from 20 to 80 %{words}"),
         &format!("{LINKS} from 63 to 71 % shear{words}, least"),
     ];
-    let claim_on =
-        |at: usize, source, reduction, bound, control, read: fn(&FinishedRun) -> Result<f64, MissingData>| {
-            over_packings((quantities[at], source), runs.to_vec(), reduction, bound, control, move |done| {
-                read(&done[0])
-            })
-        };
+    let claim_on = |at: usize, source, reduction, bound, control, read: RunReader| {
+        over_packings((quantities[at], source), runs.to_vec(), reduction, bound, control, move |done| read(&done[0]))
+    };
     [
         claim_on(0, FIGURE_8, VALUES, 0.6, other_side, |done| Ok(at_the_moving_side(done, at(done, 0.5)?))),
         claim_on(1, FIGURE_7, VALUES, 0.4, staying.clone(), gone_in_the_mean),

@@ -49,8 +49,6 @@ fn carried(done: &FinishedRun) -> Result<f64, MissingData> {
         .sum::<Result<f64, MissingData>>()
 }
 
-type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
-
 fn claims() -> Vec<Claim> {
     let weight = claim("weight carried by floor and walls", "N")
         .run(run(PAIRS[0][0]))

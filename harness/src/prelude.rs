@@ -13,7 +13,7 @@ pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::force_plot::force_plot;
 pub use crate::measure::{dominant_frequency, slope};
 pub use crate::reading::{Reader, Reading, Table};
-pub use crate::run::{Change, FinishedRun, MissingData, Run, Set};
+pub use crate::run::{Change, FinishedRun, MissingData, Run, RunReader, Set};
 pub use crate::runner::Runner;
 pub use crate::source::{CitedNumber, Source};
 pub use crate::statistics::mean;

@@ -178,6 +178,9 @@ impl Run {
     }
 }
 
+/// Function that reads a value from a finished run.
+pub type RunReader = fn(&FinishedRun) -> Result<f64, MissingData>;
+
 /// A finished run: its scene and its output.
 #[derive(Clone, Debug)]
 pub struct FinishedRun {

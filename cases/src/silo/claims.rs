@@ -7,9 +7,6 @@ use crate::rows::draws::{apart, mean_of};
 use crate::rows::programs::{ENERGY, row};
 use grainbench_harness::prelude::*;
 
-/// Function that returns a quantity of a silo from its run.
-pub(crate) type Quantity = fn(&FinishedRun) -> Result<f64, MissingData>;
-
 /// Silo at two sizes, with the data for its expected values, tolerances and figures.
 pub(crate) struct Silo {
     /// Variants at a tenth of the paper's size and at the paper's size.
@@ -165,7 +162,7 @@ impl Silo {
         [quantity, unit]: [&'static str; 2],
         cited: CitedNumber,
         control: Control,
-        read: Quantity,
+        read: RunReader,
     ) -> Claim {
         let (scale, in_units) = if unit == "deg" { (45.0, "of 45°") } else { (cited.value.abs(), "of the value") };
         let allowed = (apart(self.packings, quantity) + cited.uncertainty) / scale;
@@ -272,7 +269,7 @@ impl Silo {
         self.equals(quantity, cited, ensemble::LARGER_RADII, ensemble::deposit)
     }
 
-    pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: Quantity) -> Claim {
+    pub(crate) fn beside_lammps(&self, [quantity, unit]: [&'static str; 2], read: RunReader) -> Claim {
         let run = |solver| Run::new("beside", solver, LEVELS[0].resolution).read_by(ELEMENTS).kept().long();
         let control = Control::our_contact_law("tangential springs a millionth as stiff in ours", |law| {
             law.scale_tangential(1e-6)
