@@ -11,7 +11,6 @@ pub mod compare;
 pub mod conformance;
 pub mod control;
 pub mod course;
-pub mod data;
 pub mod evidence;
 pub mod expect;
 pub mod figure;

@@ -7,13 +7,12 @@ pub use crate::claim::{
 pub use crate::compare::pointwise::{largest, together, worst};
 pub use crate::control::Control;
 pub use crate::course::{from_start, samples, thinned};
-pub use crate::data::{Data, SceneDataError};
 pub use crate::expect::{Bound, ExpectedValue, Measurement};
 pub use crate::figure::{Axis, Curve, Figure, LinePlot, Lines, Sheet, Stroke};
 pub use crate::force_plot::force_plot;
 pub use crate::measure::{dominant_frequency, slope};
 pub use crate::reading::{Reader, Reading, Table};
-pub use crate::run::{Change, FinishedRun, MissingData, Run, RunReader, Set};
+pub use crate::run::{Change, Data, FinishedRun, MissingData, Run, RunReader, SceneDataError, Set};
 pub use crate::runner::Runner;
 pub use crate::source::{CitedNumber, Source};
 pub use crate::statistics::mean;

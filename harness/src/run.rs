@@ -1,11 +1,11 @@
 //! Runs that a claim reads: scene, solver and resolution.
 
-use crate::data::Data;
 use crate::reading::{Reading, Table};
 use grainbench_scene::scene::Scene;
 use grainbench_solver::record::{Record, Series};
 use grainbench_solver::resolution::Resolution;
 use std::fmt;
+use std::path::Path;
 use std::sync::Arc;
 
 /// A change of a scene in code.
@@ -38,6 +38,36 @@ pub struct Run {
     pub reading: Option<Reading>,
     /// True if the tables of the run are stored with the case. Smaller tiers then use the stored result.
     pub kept: bool,
+}
+
+/// A scene that is made from third-party data.
+#[derive(Debug)]
+pub struct Data {
+    /// Name of the scene, which identifies its runs.
+    pub name: &'static str,
+    /// Required files, their origin and the way to supply them, in words.
+    pub needs: &'static str,
+    /// Makes the scene from the files in a directory.
+    pub scene: fn(&Path) -> Result<Scene, SceneDataError>,
+}
+
+/// Reason why a scene cannot be made from data.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub enum SceneDataError {
+    /// The directory lacks the files. The text names the expected files.
+    Absent(String),
+    /// The files in the directory cannot be used. The text states the reason.
+    Wrong(String),
+}
+
+impl SceneDataError {
+    /// Returns the text of the error.
+    #[must_use]
+    pub fn into_words(self) -> String {
+        match self {
+            Self::Absent(words) | Self::Wrong(words) => words,
+        }
+    }
 }
 
 /// Provenance of a stored result.

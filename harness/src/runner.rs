@@ -3,10 +3,9 @@
 use crate::case::Case;
 use crate::claim::Claim;
 use crate::control::{self, WrongPhysics};
-use crate::data::SceneDataError;
 use crate::expect::Measurement;
 use crate::reading::{self, Table};
-use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, Set};
+use crate::run::{ExpectedOutcome, FinishedRun, ResultOrigin, Run, SceneDataError, Set};
 use crate::solvers::Solvers;
 use crate::tolerance;
 use crate::uncertainty::{Estimate, of_finest};

@@ -16,7 +16,7 @@ use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish};
 use super::select::{self, CaseSelection};
 use super::undeclared;
-use grainbench::harness::data::{Data, SceneDataError};
+use grainbench::harness::run::{Data, SceneDataError};
 use grainbench::jobs::execute::in_memory;
 use grainbench::reports::{Section, line};
 use std::path::{Path, PathBuf};
