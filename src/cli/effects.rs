@@ -20,7 +20,7 @@ use grainbench::reports::study::effects::Entry;
 use grainbench::scene::effect::Effect;
 use grainbench::scene::method::Method;
 use grainbench::solver::resolution::Resolution;
-use grainbench::store::artifact::{Directory, Json};
+use grainbench::store::artifact::{Directory, JSON};
 use grainbench::store::key;
 use grainbench::studies::effects::scene::StudyInput;
 use grainbench::studies::own::within::Within;
@@ -116,7 +116,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     // The files of an external program may change between two runs.
     let cache = match solver::is_manifest(&yours.solver) {
         true => Directory::none(),
-        false => Directory::open(&arguments.out.join(own::RUNS), arguments.study.no_cache)?,
+        false => Directory::open(&arguments.out.join(own::RUNS), JSON, arguments.study.no_cache)?,
     };
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -134,7 +134,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let mut left_out = Vec::new();
     for effect in effects {
         progress.advance();
-        if let Ok(entry) = cache.get::<Json<Option<Entry>>>(&id(effect.word())) {
+        if let Ok(entry) = cache.get::<Option<Entry>>(&id(effect.word())) {
             study.ledger.extend(entry);
             continue;
         }
@@ -168,8 +168,8 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
             left_out.push(effect.word());
             continue;
         }
-        cache.put::<Json<_>>(&id(effect.word()), &entry)?;
-        cache.put::<Json<_>>(&id(CHAOS), &!whole.perturbed.is_empty())?;
+        cache.put(&id(effect.word()), &entry)?;
+        cache.put(&id(CHAOS), &!whole.perturbed.is_empty())?;
         study.ledger.extend(entry);
     }
     drop(progress);
@@ -177,7 +177,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     if !left_out.is_empty() {
         study.provenance.options.push(format!("no time was left for: {}", left_out.join(", ")));
     }
-    let stored_chaos = cache.get::<Json<bool>>(&id(CHAOS)).ok();
+    let stored_chaos = cache.get::<bool>(&id(CHAOS)).ok();
     let is_chaotic = stored_chaos.unwrap_or_else(|| whole.is_some_and(|whole| !whole.perturbed.is_empty()));
     let text = study.text() + &scale_words(matters, is_chaotic, &left_out);
     let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.study.json, false) };

@@ -18,7 +18,7 @@ use grainbench::reports::study::stability::Limit;
 use grainbench::reports::study::{Study, write_study};
 use grainbench::scene::scene::{Duration as SceneDuration, Scene};
 use grainbench::solver::recorder::Recorder;
-use grainbench::store::artifact::Directory;
+use grainbench::store::artifact::{Directory, JSON};
 use grainbench::store::{WriteError, key};
 use grainbench::studies::own::cost::{Measurement, PARTS, SceneStudy, StudyFollower};
 use grainbench::studies::own::effects;
@@ -188,7 +188,7 @@ pub(crate) fn cost(input: &Input<'_>) -> Outcome {
     let input = &input.within(&scene)?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
+    let cache = Directory::open(&input.out.join(RUNS), JSON, input.study.no_cache)?;
     let words = input.words("cost");
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
@@ -245,7 +245,7 @@ pub(crate) fn stability(input: &Input<'_>) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
     check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), input.study.no_cache)?;
+    let cache = Directory::open(&input.out.join(RUNS), JSON, input.study.no_cache)?;
     let interrupt = Interrupt::listen();
     let stop = || interrupt.is_asked();
     let study = input.scene_study(&scene, (&solvers, named), &cache, &stop);

@@ -1,10 +1,8 @@
-//! Kinds of stored files: how a value becomes a file, and how the file is read back and checked. A directory holds one file
-//! for each key.
+//! Stored files: reading and checking of their content, and a directory with one file for each key.
 
 use std::collections::BTreeMap;
 use std::fs;
 use std::io;
-use std::marker::PhantomData;
 use std::path::{Path, PathBuf};
 use std::sync::OnceLock;
 use std::sync::atomic::{AtomicU64, Ordering};
@@ -144,48 +142,16 @@ pub fn read_listed(list: &Path, name: &str, hash: &str) -> Result<Vec<u8>, ReadE
     if found == hash { Ok(bytes) } else { Err(ReadError::other(&path, format!("the file with BLAKE3 {hash}"), found)) }
 }
 
-/// Stored file of one kind.
-pub trait Artifact {
-    /// Stored value.
-    type Value;
-    /// File extension.
-    const ENDING: &'static str;
+/// File extension of JSON files.
+pub const JSON: &str = "json";
 
-    /// Returns the content of the file of a key.
-    ///
-    /// # Errors
-    /// When the value cannot be stored. The error is the reason.
-    fn encode(key: &str, value: &Self::Value) -> Result<Vec<u8>, String>;
-
-    /// Reads the value of a key from the content of its file.
-    ///
-    /// # Errors
-    /// When the file is damaged, or has another format or key.
-    fn decode(key: &str, path: &Path, bytes: &[u8]) -> Result<Self::Value, ReadError>;
-}
-
-/// JSON files. A file contains neither its key nor a checksum, so another program can read it.
-#[derive(Debug)]
-pub struct Json<T>(PhantomData<T>);
-
-impl<T: Serialize + DeserializeOwned> Artifact for Json<T> {
-    type Value = T;
-    const ENDING: &'static str = "json";
-
-    fn encode(_: &str, value: &T) -> Result<Vec<u8>, String> {
-        serde_json::to_vec(value).map_err(|error| error.to_string())
-    }
-
-    fn decode(_: &str, path: &Path, bytes: &[u8]) -> Result<T, ReadError> {
-        parse_json(path, bytes)
-    }
-}
-
-/// Directory of files, one for each key. Each file is written completely or not at all.
+/// Directory of files with one extension, one for each key. Each file is written completely or not at all.
 #[derive(Debug)]
 pub struct Directory {
     /// Path; `None` if nothing is stored.
     folder: Option<PathBuf>,
+    /// File extension.
+    ending: &'static str,
     /// True to ignore all stored files.
     is_fresh: bool,
     /// Directory for temporary files, created with the first written file.
@@ -195,48 +161,72 @@ pub struct Directory {
 }
 
 impl Directory {
-    /// Opens a directory and creates it if necessary. Existing files are ignored if `is_fresh` is true.
+    /// Opens a directory of files with the extension `ending`, and creates it if necessary. Existing files are ignored if
+    /// `is_fresh` is true.
     ///
     /// # Errors
     /// When the directory cannot be created.
-    pub fn open(folder: &Path, is_fresh: bool) -> Result<Self, WriteError> {
+    pub fn open(folder: &Path, ending: &'static str, is_fresh: bool) -> Result<Self, WriteError> {
         let made = fs::create_dir_all(folder).and_then(|()| remove_leftovers(folder));
         made.map_err(|source| WriteError::new(folder, source))?;
-        Ok(Self { folder: Some(folder.to_owned()), is_fresh, temporary: OnceLock::new(), written: AtomicU64::new(0) })
+        Ok(Self { folder: Some(folder.to_owned()), ending, is_fresh, ..Self::none() })
     }
 
     /// Returns a directory that stores nothing.
     #[must_use]
     pub const fn none() -> Self {
-        Self { folder: None, is_fresh: true, temporary: OnceLock::new(), written: AtomicU64::new(0) }
+        Self { folder: None, ending: JSON, is_fresh: true, temporary: OnceLock::new(), written: AtomicU64::new(0) }
+    }
+
+    /// Returns the path of the directory; empty if nothing is stored.
+    #[must_use]
+    pub fn folder(&self) -> &Path {
+        self.folder.as_deref().unwrap_or(Path::new(""))
     }
 
     /// Returns the path of the file of a key.
-    fn path<K: Artifact>(&self, key: &str) -> PathBuf {
-        self.folder.as_deref().unwrap_or(Path::new("")).join(format!("{key}.{}", K::ENDING))
+    fn path(&self, key: &str) -> PathBuf {
+        self.folder().join(format!("{key}.{}", self.ending))
     }
 
-    /// Reads the value of a key.
+    /// Reads the content of the file of a key.
     ///
     /// # Errors
-    /// When the file is absent, is ignored, is damaged, or has another format or key.
-    pub fn get<K: Artifact>(&self, key: &str) -> Result<K::Value, ReadError> {
-        let path = self.path::<K>(key);
+    /// When the file is absent, is ignored, or cannot be read.
+    pub fn read(&self, key: &str) -> Result<Vec<u8>, ReadError> {
+        let path = self.path(key);
         if self.is_fresh {
             return Err(ReadError::Unreadable { path, source: io::ErrorKind::NotFound.into() });
         }
-        K::decode(key, &path, &read(&path)?)
+        read(&path)
     }
 
-    /// Stores the value of a key.
+    /// Reads the value of a key from a JSON file.
     ///
     /// # Errors
-    /// When the value has no stored form, or the disk rejects the write.
-    pub fn put<K: Artifact>(&self, key: &str, value: &K::Value) -> Result<(), WriteError> {
+    /// When the file is absent, is ignored, or contains another value.
+    pub fn get<T: DeserializeOwned>(&self, key: &str) -> Result<T, ReadError> {
+        parse_json(&self.path(key), &self.read(key)?)
+    }
+
+    /// Stores the value of a key as a JSON file. The file contains neither its key nor a checksum, so another program can
+    /// read it.
+    ///
+    /// # Errors
+    /// When the value cannot be written as JSON, or the disk rejects the write.
+    pub fn put<T: Serialize>(&self, key: &str, value: &T) -> Result<(), WriteError> {
+        let json = serde_json::to_vec(value).map_err(|error| WriteError::new(self.path(key), error.into()))?;
+        self.write(key, &json)
+    }
+
+    /// Writes the content of the file of a key.
+    ///
+    /// # Errors
+    /// When the disk rejects the write.
+    pub fn write(&self, key: &str, bytes: &[u8]) -> Result<(), WriteError> {
         let Some(folder) = &self.folder else { return Ok(()) };
-        let path = self.path::<K>(key);
+        let path = self.path(key);
         let write = || -> io::Result<()> {
-            let bytes = K::encode(key, value).map_err(io::Error::other)?;
             let temporary = match self.temporary.get() {
                 Some(temporary) => temporary,
                 None => {
@@ -256,15 +246,15 @@ impl Directory {
     }
 
     /// Marks the file of a key as used now. If this fails, its last use stays the time of writing.
-    pub fn touch<K: Artifact>(&self, key: &str) {
-        let file = fs::File::options().append(true).open(self.path::<K>(key));
+    pub fn touch(&self, key: &str) {
+        let file = fs::File::options().append(true).open(self.path(key));
         let _ = file.and_then(|file| file.set_modified(SystemTime::now()));
     }
 
-    /// Removes the least recently used files of a kind until the remaining ones do not exceed `most` bytes.
-    pub fn make_room<K: Artifact>(&self, most: u64) {
+    /// Removes the least recently used files with the extension until the remaining ones do not exceed `most` bytes.
+    pub fn make_room(&self, most: u64) {
         let file_entry = |entry: fs::DirEntry| {
-            let is_of_kind = entry.path().extension().is_some_and(|ending| ending == K::ENDING);
+            let is_of_kind = entry.path().extension().is_some_and(|ending| ending == self.ending);
             let about = entry.metadata().ok().filter(|_| is_of_kind)?;
             Some((about.modified().unwrap_or(SystemTime::UNIX_EPOCH), about.len(), entry.path()))
         };
@@ -294,14 +284,14 @@ mod tests {
     #[test]
     fn gives_back_whole_files_alone() {
         let folder = tempfile::tempdir().unwrap();
-        let runs = Directory::open(folder.path(), false).unwrap();
-        let get = |runs: &Directory| runs.get::<Json<[u32; 2]>>("a").map_err(|error| error.to_string());
+        let runs = Directory::open(folder.path(), JSON, false).unwrap();
+        let get = |runs: &Directory| runs.get::<[u32; 2]>("a").map_err(|error| error.to_string());
         let path = folder.path().join("a.json");
         let wrong = |text: &str| get(&runs).unwrap_err().replace(&path.display().to_string(), "a.json") == text;
         assert!(wrong("a.json: expected a readable file, found No such file or directory (os error 2)"));
-        runs.put::<Json<[u32; 2]>>("a", &[7, 8]).unwrap();
+        runs.put("a", &[7, 8]).unwrap();
         assert_eq!(get(&runs), Ok([7, 8]));
-        assert!(get(&Directory::open(folder.path(), true).unwrap()).is_err());
+        assert!(get(&Directory::open(folder.path(), JSON, true).unwrap()).is_err());
         for (text, reason) in [
             ("", "line 1, column 0, at `.`: expected JSON, found an empty file"),
             ("[7", "line 1, column 2, at `.`: expected the rest of a list, found the end of the file"),
@@ -311,28 +301,28 @@ mod tests {
             fs::write(&path, text).unwrap();
             assert!(wrong(&format!("a.json, {reason}")), "{:?}", get(&runs));
         }
-        runs.put::<Json<[u32; 2]>>("a", &[1, 2]).unwrap();
+        runs.put("a", &[1, 2]).unwrap();
         assert_eq!(get(&runs), Ok([1, 2]));
         drop(runs);
         assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1, "no temporary file is left");
-        Directory::none().put::<Json<[u32; 2]>>("a", &[7, 8]).unwrap();
+        Directory::none().put("a", &[7, 8]).unwrap();
         assert!(get(&Directory::none()).is_err());
     }
 
     /// There are three files of 100 bytes and room for 250 bytes. The least recently used one is removed, and files of
-    /// another kind are kept.
+    /// another extension are kept.
     #[test]
     fn the_longest_unused_makes_room() {
         let folder = tempfile::tempdir().unwrap();
-        let runs = Directory::open(folder.path(), false).unwrap();
+        let runs = Directory::open(folder.path(), JSON, false).unwrap();
         for (age, name) in [(30, "a.json"), (40, "b.json"), (20, "c.json"), (99, "notes.txt")] {
             let path = folder.path().join(name);
             fs::write(&path, [0; 100]).unwrap();
             let then = SystemTime::now() - Duration::from_secs(age);
             fs::File::options().append(true).open(&path).unwrap().set_modified(then).unwrap();
         }
-        runs.touch::<Json<u32>>("b");
-        runs.make_room::<Json<u32>>(250);
+        runs.touch("b");
+        runs.make_room(250);
         let mut left: Vec<_> = fs::read_dir(folder.path())
             .unwrap()
             .map(|entry| entry.unwrap().file_name().into_string().unwrap())

@@ -18,9 +18,9 @@ use grainbench_solver::observer::{Observer, RunOptions};
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_solver::{Defect, Solver};
-use grainbench_store::artifact::{Artifact, Directory};
-use grainbench_store::{ReadError, WriteError, key};
-use std::path::{Path, PathBuf};
+use grainbench_store::artifact::Directory;
+use grainbench_store::{WriteError, key};
+use std::path::Path;
 use std::sync::Arc;
 use std::sync::atomic::{AtomicU64, Ordering};
 use std::time::Duration;
@@ -46,28 +46,9 @@ pub fn run_words(solver: &str, scene: &Scene, resolution: &Resolution, read: &st
     [solver.to_owned(), fingerprint(scene).to_hex().to_string(), format!("{resolution:?}"), read.to_owned()]
 }
 
-/// Records of finished runs.
-struct RunFile;
-
-impl Artifact for RunFile {
-    type Value = Record;
-    const ENDING: &'static str = "run";
-
-    fn encode(key: &str, record: &Record) -> Result<Vec<u8>, String> {
-        let bytes = kept_record::to_bytes(key, record)?;
-        if bytes.len() <= LARGEST { Ok(bytes) } else { Err(format!("a record of {} bytes", bytes.len())) }
-    }
-
-    fn decode(key: &str, path: &Path, bytes: &[u8]) -> Result<Record, ReadError> {
-        let wrong = || ReadError::other(path, format!("the record of run {key}"), "a damaged or other file");
-        kept_record::from_bytes(key, bytes).ok_or_else(wrong)
-    }
-}
-
 /// Folder of finished runs.
 pub struct RunCache {
     runs: Directory,
-    folder: PathBuf,
     /// Maximum size of all files (bytes).
     most: u64,
     edition: Edition,
@@ -81,14 +62,13 @@ impl RunCache {
     /// # Errors
     /// When the folder cannot be created.
     pub fn open(folder: &Path, most: u64, fresh: bool, edition: Edition) -> Result<Self, WriteError> {
-        let runs = Directory::open(folder, fresh)?;
-        Ok(Self { runs, folder: folder.to_owned(), most, edition, taken: AtomicU64::new(0) })
+        Ok(Self { runs: Directory::open(folder, "run", fresh)?, most, edition, taken: AtomicU64::new(0) })
     }
 
     /// Returns the folder of the cache.
     #[must_use]
     pub fn folder(&self) -> &Path {
-        &self.folder
+        self.runs.folder()
     }
 
     /// Returns the number of runs that were read from the cache.
@@ -124,18 +104,21 @@ impl RunCache {
 
     /// Returns the record of a key, or `None` if the file is missing or damaged, or if existing files are ignored.
     fn take(&self, name: &str) -> Option<Record> {
-        let record = self.runs.get::<RunFile>(name).ok()?;
+        let record = kept_record::from_bytes(name, &self.runs.read(name).ok()?)?;
         self.taken.fetch_add(1, Ordering::Relaxed);
         // The least recently used files are removed first.
-        self.runs.touch::<RunFile>(name);
+        self.runs.touch(name);
         Some(record)
     }
 
     /// Stores a record, unless the run is too short or the record too large. Write errors are ignored, because the run
     /// can be repeated.
     fn put(&self, name: &str, record: &Record) {
-        if record.cost.wall_seconds >= LEAST {
-            let _ = self.runs.put::<RunFile>(name, record);
+        if record.cost.wall_seconds >= LEAST
+            && let Ok(bytes) = kept_record::to_bytes(name, record)
+            && bytes.len() <= LARGEST
+        {
+            let _ = self.runs.write(name, &bytes);
         }
     }
 }
@@ -149,7 +132,7 @@ pub struct CachingSolvers<S> {
 impl<S> Drop for CachingSolvers<S> {
     /// Removes the least recently used files until the remaining files do not exceed the maximum size.
     fn drop(&mut self) {
-        self.cache.runs.make_room::<RunFile>(self.cache.most);
+        self.cache.runs.make_room(self.cache.most);
     }
 }
 

@@ -21,7 +21,7 @@ use grainbench_solver::failure::StorageError;
 use grainbench_solver::observer::Observer;
 use grainbench_solver::record::Snapshot;
 use grainbench_solver::resolution::Resolution;
-use grainbench_store::{WriteError, artifact::Directory, artifact::Json, key};
+use grainbench_store::{WriteError, artifact::Directory, key};
 use std::sync::Arc;
 use std::time::{Duration, Instant};
 
@@ -323,7 +323,7 @@ impl<'a> Measurement<'a> {
             let wall = wall_seconds(&record, begin.elapsed().as_secs_f64());
             let run = &mut self.runs[at];
             run.stored.walls.push(wall);
-            self.study.cache.put::<Json<_>>(&run.name, &run.stored)?;
+            self.study.cache.put(&run.name, &run.stored)?;
         }
         Ok(())
     }
@@ -359,7 +359,7 @@ impl<'a> Measurement<'a> {
         let what = self.study.window.map_or(String::new(), |(from, to)| format!(", {from:?}..{to:?}"));
         let name = key_of_run(&program, solver_name, &scene, &resolution, &format!("scene without claims{what}"));
         follower.now(&format!("{solver_name} {setting}"), self.spent());
-        let stored = match self.study.cache.get::<Json<StoredRun>>(&name) {
+        let stored = match self.study.cache.get::<StoredRun>(&name) {
             Ok(stored) => {
                 self.stored += stored.seconds;
                 self.repeated += stored.walls.iter().skip(1).sum::<f64>();
@@ -373,7 +373,7 @@ impl<'a> Measurement<'a> {
                     return Ok(None);
                 }
                 if stored.status != LevelStatus::OverBudget {
-                    self.study.cache.put::<Json<_>>(&name, &stored)?;
+                    self.study.cache.put(&name, &stored)?;
                 }
                 stored
             }
@@ -430,7 +430,7 @@ impl<'a> Measurement<'a> {
     fn test_for_chaos(&mut self, at: usize, follower: &mut dyn StudyFollower) {
         let Some(run) = self.measured(at, Purpose::Level).first().copied() else { return };
         let (resolution, name) = (run.resolution, key::of_words(&run.name, &["perturbed"]));
-        if let Ok((seconds, perturbed)) = self.study.cache.get::<Json<(f64, Perturbed)>>(&name) {
+        if let Ok((seconds, perturbed)) = self.study.cache.get::<(f64, Perturbed)>(&name) {
             self.stored += seconds;
             self.perturbed = Some(perturbed);
             return;
@@ -466,7 +466,7 @@ impl<'a> Measurement<'a> {
         let perturbed = if others.is_empty() { Perturbed::new() } else { all[0].iter().map(means).collect() };
         // A result that cannot be stored is computed again.
         let test = (begin.elapsed().as_secs_f64(), perturbed);
-        let _ = self.study.cache.put::<Json<_>>(&name, &test);
+        let _ = self.study.cache.put(&name, &test);
         self.perturbed = Some(test.1);
     }
 

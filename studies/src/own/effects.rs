@@ -10,7 +10,6 @@ use grainbench_scene::effect::Effect;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::Scene;
 use grainbench_store::WriteError;
-use grainbench_store::artifact::Json;
 
 /// Switches off each effect that the scene uses, with the first solver that has measured levels. Also returns a remark if
 /// effects were left out because of the time.
@@ -44,7 +43,7 @@ pub fn measure(
     }
     let program = study.program.clone() + &study.solvers.edition(name);
     let id = key_of_run(&program, name, study.scene, &resolution, "effects of a scene");
-    if let Ok(entries) = study.cache.get::<Json<_>>(&id) {
+    if let Ok(entries) = study.cache.get(&id) {
         return Ok((entries, None));
     }
     let Some(solver) = study.solvers.find(name) else { return Ok((Vec::new(), None)) };
@@ -69,6 +68,6 @@ pub fn measure(
         }
         entries.extend(entry);
     }
-    study.cache.put::<Json<_>>(&id, &entries)?;
+    study.cache.put(&id, &entries)?;
     Ok((entries, None))
 }

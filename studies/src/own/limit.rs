@@ -16,7 +16,6 @@ use grainbench_solver::observer::RunOptions;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::WriteError;
-use grainbench_store::artifact::Json;
 use std::time::Instant;
 
 /// Relative precision of a limit.
@@ -71,7 +70,7 @@ pub fn of_scene(study: &SceneStudy<'_>, solver: &str, deadline: Instant) -> Resu
     let (scene, solvers) = (study.scene, study.solvers);
     let program = study.program.clone() + &solvers.edition(solver);
     let id = key_of_run(&program, solver, scene, &Resolution::TimeStep(0.0), "largest stable step");
-    if let Ok(limit) = study.cache.get::<Json<_>>(&id) {
+    if let Ok(limit) = study.cache.get(&id) {
         return Ok(limit);
     }
     let ladder = Ladder::new(solver, scene, solvers);
@@ -103,7 +102,7 @@ pub fn of_scene(study: &SceneStudy<'_>, solver: &str, deadline: Instant) -> Resu
     };
     // An external program fails when it is stopped.
     if is_whole && !(study.stop)() {
-        study.cache.put::<Json<_>>(&id, &limit)?;
+        study.cache.put(&id, &limit)?;
     }
     Ok(limit)
 }
