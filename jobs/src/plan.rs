@@ -107,32 +107,33 @@ impl Plan {
         path.join(HEAD).is_file()
     }
 
-    /// Writes a plan to a directory that is new, empty, or already has a plan.
+    /// Writes the plan to its directory, which is new, empty, or already has a plan.
     ///
     /// Results of an earlier plan in the directory are kept. They count for tasks with the same ids in the new plan.
     ///
     /// # Errors
     /// When the directory has other contents, or the disk rejects a write.
-    pub fn write(path: &Path, mut head: Head, tasks: Vec<Task>) -> Result<Self, Fault> {
+    pub fn write(mut self) -> Result<Self, Fault> {
+        let Self { path, head, tasks } = &mut self;
         check_place(path)?;
-        let text = lines(&tasks)?;
+        let text = lines(tasks)?;
         head.tasks = tasks.len();
         head.hash = hash(&text);
         head.seconds = tasks.iter().map(|task| task.seconds).sum();
         if head.shards == 0 {
-            head.shards = shard::count(&tasks);
+            head.shards = shard::count(tasks);
         }
-        let words = toml::to_string(&head).map_err(|error| Fault::Input(error.to_string()))?;
+        let words = toml::to_string(head).map_err(|error| Fault::Input(error.to_string()))?;
         // `plan.toml` is moved before the tasks. If the process is killed between the two moves, the directory counts
         // as a plan and can be overwritten by a new plan.
-        let mut out = StagedDir::new(path)?.without_manifest();
+        let mut out = StagedDir::new(&*path)?.without_manifest();
         out.write(HEAD, words)?;
         out.write(TASKS, text)?;
         out.commit()?;
         for folder in [path.join(RESULTS), path.join(RUNNING)] {
             fs::create_dir_all(&folder).map_err(|source| WriteError::new(folder, source))?;
         }
-        Ok(Self { path: path.to_owned(), head, tasks })
+        Ok(self)
     }
 
     /// Reads a plan.

@@ -7,7 +7,7 @@ use crate::cli::cache;
 use crate::cli::exit::{self, Fault, Outcome, refuse};
 use crate::cli::filter::Filters;
 use crate::cli::jobs::arguments::Arguments;
-use crate::cli::jobs::study::{ReportOptions, Study, Tasks, check_ids};
+use crate::cli::jobs::study::{ReportOptions, Study, check_ids};
 use crate::cli::provenance::provenance;
 use crate::cli::publish::{Output, add_reasons, publish};
 use crate::cli::select::{self, CaseSelection};
@@ -246,7 +246,7 @@ impl TaskList for ClaimTasks {
     }
 }
 
-impl Tasks for ClaimTasks {
+impl Study for ClaimTasks {
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         self.planned(program, true)
     }
@@ -262,9 +262,7 @@ impl Tasks for ClaimTasks {
     fn check(&self, plan: &Plan) -> Result<(), Fault> {
         check_ids(plan, &self.planned(&plan.head.program, false)?)
     }
-}
 
-impl Study for ClaimTasks {
     fn report(&self, results: Vec<Option<Result<Section, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let sections = self.sections(results);
         let words = self.words.iter().chain(&how.words).cloned().collect();

@@ -1,7 +1,7 @@
 //! Tasks of a cost study: one for each point, one for the cost of the parts of a step, and one for large scenes.
 
 use super::arguments::Arguments;
-use super::study::{ReportOptions, Study, Tasks, outputs};
+use super::study::{ReportOptions, Study, outputs};
 use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::own;
 use crate::cli::strangers::NamedSolvers;
@@ -76,7 +76,37 @@ impl CostStudy {
     }
 }
 
-impl Tasks for CostStudy {
+impl TaskList for CostStudy {
+    type Output = Measured;
+
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Measured>) -> (State, Measured) {
+        let now = |name: &str| sink.now(name);
+        let measured = match BESIDE.get(place) {
+            Some(("prices", _)) => {
+                step::measure(&Registry, ROUNDS, &now).map(Measured::Model).map_err(|error| error.to_string())
+            }
+            _ => load::measure(&Registry, ROUNDS, &now).map(Measured::Loads).map_err(|error| error.to_string()),
+        };
+        measured.map_or_else(|why| (State::Failed, Measured::Nothing(why)), |measured| (State::Done, measured))
+    }
+
+    fn perform_group(&self, places: &[usize], sink: &ResultSink<'_, Measured>) {
+        let of_point = |place: &usize| self.places.get(place.checked_sub(self.beside())?).copied();
+        let found: Vec<(usize, usize)> = places.iter().filter_map(of_point).collect();
+        let Some(&(number, first)) = found.first() else { return self.perform_each(places, sink) };
+        let points: Vec<usize> = found.iter().map(|(_, point)| *point).collect();
+        // The tasks of a target quantity are consecutive.
+        let start = places[0] - first;
+        self.sets[number].measure(&points, &|name| sink.now(name), &mut |point, measured| {
+            let is_failed = matches!(measured.standing, PointStatus::Failed | PointStatus::NotAvailable);
+            let state = if is_failed { State::Failed } else { State::Done };
+            let seconds = measured.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum();
+            sink.leave(start + point, state, seconds, Ok(Measured::Point(Box::new(measured))));
+        });
+    }
+}
+
+impl Study for CostStudy {
     fn is_timed(&self) -> bool {
         !self.wanted.counts
     }
@@ -112,39 +142,7 @@ impl Tasks for CostStudy {
     fn inputs(&self) -> BTreeMap<String, String> {
         self.solvers.inputs()
     }
-}
 
-impl TaskList for CostStudy {
-    type Output = Measured;
-
-    fn perform(&self, place: usize, sink: &ResultSink<'_, Measured>) -> (State, Measured) {
-        let now = |name: &str| sink.now(name);
-        let measured = match BESIDE.get(place) {
-            Some(("prices", _)) => {
-                step::measure(&Registry, ROUNDS, &now).map(Measured::Model).map_err(|error| error.to_string())
-            }
-            _ => load::measure(&Registry, ROUNDS, &now).map(Measured::Loads).map_err(|error| error.to_string()),
-        };
-        measured.map_or_else(|why| (State::Failed, Measured::Nothing(why)), |measured| (State::Done, measured))
-    }
-
-    fn perform_group(&self, places: &[usize], sink: &ResultSink<'_, Measured>) {
-        let of_point = |place: &usize| self.places.get(place.checked_sub(self.beside())?).copied();
-        let found: Vec<(usize, usize)> = places.iter().filter_map(of_point).collect();
-        let Some(&(number, first)) = found.first() else { return self.perform_each(places, sink) };
-        let points: Vec<usize> = found.iter().map(|(_, point)| *point).collect();
-        // The tasks of a target quantity are consecutive.
-        let start = places[0] - first;
-        self.sets[number].measure(&points, &|name| sink.now(name), &mut |point, measured| {
-            let is_failed = matches!(measured.standing, PointStatus::Failed | PointStatus::NotAvailable);
-            let state = if is_failed { State::Failed } else { State::Done };
-            let seconds = measured.repetitions.iter().map(|timing| timing.wall + timing.start_up).sum();
-            sink.leave(start + point, state, seconds, Ok(Measured::Point(Box::new(measured))));
-        });
-    }
-}
-
-impl Study for CostStudy {
     fn report(&self, results: Vec<Option<Result<Measured, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose()?;
         let (results, has_crash) = outputs(results, how);

@@ -1,7 +1,7 @@
 //! Tasks of an effects study: one for each effect in each scene of a case.
 
 use super::arguments::Arguments;
-use super::study::{ReportOptions, Study, Tasks, outputs};
+use super::study::{ReportOptions, Study, outputs};
 use crate::cli::exit::{Fault, Outcome};
 use crate::cli::own;
 use crate::cli::subject::{SelectedVariants, selected};
@@ -41,7 +41,17 @@ impl EffectStudy {
     }
 }
 
-impl Tasks for EffectStudy {
+impl TaskList for EffectStudy {
+    type Output = Option<Entry>;
+
+    fn perform(&self, place: usize, sink: &ResultSink<'_, Option<Entry>>) -> (State, Option<Entry>) {
+        let (number, piece) = &self.pieces[place];
+        sink.now(&format!("{} · {}", piece.variant, piece.effect.word()));
+        (State::Done, self.ledgers[*number].entry(piece))
+    }
+}
+
+impl Study for EffectStudy {
     fn is_timed(&self) -> bool {
         true
     }
@@ -60,19 +70,7 @@ impl Tasks for EffectStudy {
         };
         Ok(self.pieces.iter().map(task).collect())
     }
-}
 
-impl TaskList for EffectStudy {
-    type Output = Option<Entry>;
-
-    fn perform(&self, place: usize, sink: &ResultSink<'_, Option<Entry>>) -> (State, Option<Entry>) {
-        let (number, piece) = &self.pieces[place];
-        sink.now(&format!("{} · {}", piece.variant, piece.effect.word()));
-        (State::Done, self.ledgers[*number].entry(piece))
-    }
-}
-
-impl Study for EffectStudy {
     fn report(&self, results: Vec<Option<Result<Option<Entry>, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
         let mut study = how.study(self.arguments.command_words("effects"));

@@ -2,7 +2,7 @@
 
 use super::arguments::{Arguments, StudyOptions};
 use super::from_arguments;
-use super::study::{ReportOptions, plan_of};
+use super::study::ReportOptions;
 use super::watch::Follower;
 use super::work::worker;
 use crate::cli::cores::cores;
@@ -43,7 +43,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
         grainbench::reports::study::points_of(path)?;
     }
     check_writable(out)?;
-    let plan = plan_of(&*study, arguments)?;
+    let plan = study.plan(arguments)?;
     for folder in EARLIER.map(|name| out.join(name)).iter().filter(|folder| folder.is_dir()) {
         let what = "finished parts of an earlier version are not read, and their folder can be deleted";
         exit::say("note", &format!("{}: {what}", folder.display()));
@@ -67,7 +67,7 @@ fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>
             *written = Instant::now();
         }
     };
-    let jobs = if study.is_timed() { 1 } else { cores() };
+    let jobs = if plan.head.timed { 1 } else { cores() };
     let asked = WorkRequest { shard: Shard::WHOLE, again: &[State::Crashed], jobs };
     let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks", Some(&draft)))?;
     // The folder of leases is empty unless another process works on the same directory.

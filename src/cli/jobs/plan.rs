@@ -2,7 +2,6 @@
 
 use super::arguments::Arguments;
 use super::from_arguments;
-use super::study::plan_of;
 use crate::cli::exit::{Fault, Outcome, print, print_json};
 use grainbench::jobs::plan::{Head, Plan, check_place};
 use grainbench::reports::number;
@@ -22,8 +21,7 @@ struct Summary<'a> {
 /// Computes the tasks of a plan, writes it to `--out` and returns it.
 pub(crate) fn write(arguments: &Arguments) -> Result<Plan, Fault> {
     check_place(&arguments.out).map_err(|fault| Fault::input(format!("--out: {fault}")))?;
-    let Plan { path, head, tasks } = plan_of(&*from_arguments(arguments, true)?, arguments)?;
-    Ok(Plan::write(&path, head, tasks)?)
+    Ok(from_arguments(arguments, true)?.plan(arguments)?.write()?)
 }
 
 /// Writes a plan and prints the number of tasks and their expected duration.

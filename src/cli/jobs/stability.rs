@@ -1,7 +1,7 @@
 //! Tasks of a stability study: one for each stability limit or hard case, with its solver.
 
 use super::arguments::Arguments;
-use super::study::{ReportOptions, Study, Tasks, outputs};
+use super::study::{ReportOptions, Study, outputs};
 use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::strangers::NamedSolvers;
 use grainbench::cases::registry;
@@ -96,16 +96,6 @@ impl StabilityStudy {
     }
 }
 
-impl Tasks for StabilityStudy {
-    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
-        Ok(self.items.iter().map(|item| self.task(item, program)).collect())
-    }
-
-    fn inputs(&self) -> BTreeMap<String, String> {
-        self.solvers.inputs()
-    }
-}
-
 impl TaskList for StabilityStudy {
     type Output = Tested;
 
@@ -131,6 +121,14 @@ impl TaskList for StabilityStudy {
 }
 
 impl Study for StabilityStudy {
+    fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
+        Ok(self.items.iter().map(|item| self.task(item, program)).collect())
+    }
+
+    fn inputs(&self) -> BTreeMap<String, String> {
+        self.solvers.inputs()
+    }
+
     fn report(&self, results: Vec<Option<Result<Tested, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
         let mut study = how.study(self.arguments.command_words("stability"));

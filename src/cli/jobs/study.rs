@@ -18,8 +18,8 @@ use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
-/// Tasks of one kind of work.
-pub(crate) trait Tasks: Sync {
+/// Kind of work.
+pub(crate) trait Study: TaskList {
     /// Returns true if the tasks measure times.
     fn is_timed(&self) -> bool {
         false
@@ -34,6 +34,9 @@ pub(crate) trait Tasks: Sync {
     fn check(&self, plan: &Plan) -> Result<(), Fault> {
         check_ids(plan, &self.tasks(&plan.head.program)?)
     }
+    /// Writes the report of the finished tasks. `results` has an entry for each task: `None` if it is not finished, an
+    /// error if it crashed.
+    fn report(&self, results: Vec<Option<Result<Self::Output, String>>>, how: &ReportOptions<'_>) -> Outcome;
 }
 
 /// Returns an error if a plan has other tasks.
@@ -44,15 +47,12 @@ pub(crate) fn check_ids(plan: &Plan, tasks: &[Task]) -> Result<(), Fault> {
     if is_same { Ok(()) } else { Err(Fault::input(format!("{path}: {message}"))) }
 }
 
-/// Kind of work.
-pub(crate) trait Study: Tasks + TaskList {
-    /// Writes the report of the finished tasks. `results` has an entry for each task: `None` if it is not finished, an
-    /// error if it crashed.
-    fn report(&self, results: Vec<Option<Result<Self::Output, String>>>, how: &ReportOptions<'_>) -> Outcome;
-}
-
 /// Kind of work whose results have any type.
-pub(crate) trait AnyStudy: Tasks {
+pub(crate) trait AnyStudy: Sync {
+    /// Returns the plan of all tasks in the directory that the arguments name, without writing it.
+    fn plan(&self, arguments: &Arguments) -> Result<Plan, Fault>;
+    /// Returns an error if the cases or programs have changed since the plan was written.
+    fn check(&self, plan: &Plan) -> Result<(), Fault>;
     /// Runs a shard of a plan.
     fn work(&self, plan: &Plan, asked: &WorkRequest, worker: &Worker, watch: &dyn Watch) -> Result<Summary, Fault>;
     /// Writes the report of the finished tasks of a plan, and adds to the options how much is finished. A study with
@@ -61,6 +61,27 @@ pub(crate) trait AnyStudy: Tasks {
 }
 
 impl<S: Study> AnyStudy for S {
+    fn plan(&self, arguments: &Arguments) -> Result<Plan, Fault> {
+        let words = toml::Value::try_from(arguments)?;
+        let mut head = Head::new(words, self.is_timed());
+        head.shards = arguments.shards.unwrap_or(0);
+        head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
+        head.date = provenance::now();
+        head.inputs = self.inputs();
+        let tasks = self.tasks(&head.program)?;
+        if tasks.is_empty() {
+            refuse!("expected at least one task, found none for the selected cases and solvers");
+        }
+        if tasks.len() > u32::MAX as usize {
+            refuse!("expected at most 4294967295 tasks, found {}", tasks.len());
+        }
+        Ok(Plan { path: arguments.out.clone(), head, tasks })
+    }
+
+    fn check(&self, plan: &Plan) -> Result<(), Fault> {
+        Study::check(self, plan)
+    }
+
     fn work(&self, plan: &Plan, asked: &WorkRequest, worker: &Worker, watch: &dyn Watch) -> Result<Summary, Fault> {
         Ok(work(plan, asked, worker, watch, self)?)
     }
@@ -75,24 +96,6 @@ impl<S: Study> AnyStudy for S {
         let results = plan.tasks.iter().map(|task| finished.result(task.id)).collect();
         self.report(results, &ReportOptions { unfinished, words, update_stored, seconds, ..how })
     }
-}
-
-/// Returns the plan of a study in a directory, without writing it.
-pub(crate) fn plan_of(study: &dyn AnyStudy, arguments: &Arguments) -> Result<Plan, Fault> {
-    let words = toml::Value::try_from(arguments)?;
-    let mut head = Head::new(words, study.is_timed());
-    head.shards = arguments.shards.unwrap_or(0);
-    head.version = format!("{} ({})", env!("CARGO_PKG_VERSION"), env!("GRAINBENCH_COMMIT"));
-    head.date = provenance::now();
-    head.inputs = study.inputs();
-    let tasks = study.tasks(&head.program)?;
-    if tasks.is_empty() {
-        refuse!("expected at least one task, found none for the selected cases and solvers");
-    }
-    if tasks.len() > u32::MAX as usize {
-        refuse!("expected at most 4294967295 tasks, found {}", tasks.len());
-    }
-    Ok(Plan { path: arguments.out.clone(), head, tasks })
 }
 
 /// Directory, format and comparison of a report.

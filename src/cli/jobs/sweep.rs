@@ -1,6 +1,6 @@
 //! Plan of a parameter sweep.
 
-use super::study::{ReportOptions, Study, Tasks};
+use super::study::{ReportOptions, Study};
 use crate::cli::cache;
 use crate::cli::exit::{Fault, Outcome, RED, print, refuse};
 use crate::cli::provenance::provenance;
@@ -49,7 +49,19 @@ impl SweepStudy {
     }
 }
 
-impl Tasks for SweepStudy {
+impl TaskList for SweepStudy {
+    type Output = PointOutput;
+
+    fn perform(&self, place: usize, _: &ResultSink<'_, PointOutput>) -> (State, PointOutput) {
+        let solvers = self.cached.get_or_init(|| {
+            let cache = if self.is_timed() { None } else { cache::open(false) };
+            cache::with(self.solvers.clone(), cache.as_ref())
+        });
+        self.sweep.run(place, &**solvers, &self.names)
+    }
+}
+
+impl Study for SweepStudy {
     fn is_timed(&self) -> bool {
         self.sweep.is_timed()
     }
@@ -73,21 +85,7 @@ impl Tasks for SweepStudy {
         // The sweep file is an input of the plan.
         Ok(())
     }
-}
 
-impl TaskList for SweepStudy {
-    type Output = PointOutput;
-
-    fn perform(&self, place: usize, _: &ResultSink<'_, PointOutput>) -> (State, PointOutput) {
-        let solvers = self.cached.get_or_init(|| {
-            let cache = if self.is_timed() { None } else { cache::open(false) };
-            cache::with(self.solvers.clone(), cache.as_ref())
-        });
-        self.sweep.run(place, &**solvers, &self.names)
-    }
-}
-
-impl Study for SweepStudy {
     fn report(&self, results: Vec<Option<Result<PointOutput, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
