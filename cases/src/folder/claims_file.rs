@@ -105,10 +105,12 @@ impl SolverNames {
 }
 
 /// Number, or arithmetic expression over numbers of the scene. In `equals` the expression may contain the time `t`.
-#[derive(Deserialize)]
+#[derive(Clone, Deserialize)]
 #[serde(untagged, expecting = "another value, expected a number or an expression")]
-pub(super) enum Formula {
+pub enum Formula {
+    /// Number.
     Number(f64),
+    /// Arithmetic expression.
     Text(String),
 }
 

@@ -9,7 +9,7 @@ mod numbers;
 mod read;
 mod row;
 
-pub use claims_file::SampleReduction;
+pub use claims_file::{Formula, SampleReduction};
 pub use expression::Expression;
 pub use numbers::Numbers;
 pub use read::RecordExpression;

@@ -1,6 +1,6 @@
 //! Contents of `SWEEP.toml`: a design over scene keys, solvers and levels, and the quantities to evaluate.
 
-use grainbench_cases::folder::SampleReduction;
+use grainbench_cases::folder::{Formula, SampleReduction};
 use indexmap::IndexMap;
 use serde::Deserialize;
 use toml::{Table, Value};
@@ -158,22 +158,4 @@ pub(super) struct QuantityEntry {
     pub(super) scale: Option<Formula>,
     /// Largest relative error (error divided by the scale) that passes; required with `equals`.
     pub(super) allowed: Option<f64>,
-}
-
-/// Number, or arithmetic expression as text.
-#[derive(Clone, Deserialize)]
-#[serde(untagged)]
-pub(super) enum Formula {
-    Number(f64),
-    Text(String),
-}
-
-impl Formula {
-    /// Returns the number or the expression as text.
-    pub(super) fn text(&self) -> String {
-        match self {
-            Self::Number(value) => format!("{value:?}"),
-            Self::Text(text) => text.clone(),
-        }
-    }
 }

@@ -2,7 +2,7 @@
 
 use super::file::{QuantityEntry, SweepClaim};
 use crate::fault::Fault;
-use grainbench_cases::folder::{Expression, Numbers, RecordExpression, SampleReduction};
+use grainbench_cases::folder::{Expression, Formula, Numbers, RecordExpression, SampleReduction};
 use grainbench_harness::case::Case;
 use grainbench_harness::claim::Claim;
 use grainbench_harness::expect::Measurement;
@@ -92,6 +92,10 @@ impl EvaluatedQuantity {
         let read = |key: &str, text: &str| {
             Expression::read(text).map_err(|error| wrong(key, "arithmetic", &format!("`{text}`: {error}")))
         };
+        let formula = |key: &str, formula: &Formula| match formula {
+            Formula::Number(value) => read(key, &format!("{value:?}")),
+            Formula::Text(text) => read(key, text),
+        };
         if recorded.at.is_some() && recorded.over.is_some() {
             return Err(wrong("at", "only one of `at` and `over`", "both"));
         }
@@ -113,8 +117,8 @@ impl EvaluatedQuantity {
             value: read("value", &recorded.value)?,
             at: recorded.at,
             over: recorded.over,
-            equals: recorded.equals.as_ref().map(|formula| read("equals", &formula.text())).transpose()?,
-            scale: recorded.scale.as_ref().map(|formula| read("scale", &formula.text())).transpose()?,
+            equals: recorded.equals.as_ref().map(|equals| formula("equals", equals)).transpose()?,
+            scale: recorded.scale.as_ref().map(|scale| formula("scale", scale)).transpose()?,
             allowed: recorded.allowed,
         })))
     }
