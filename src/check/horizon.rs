@@ -2,7 +2,7 @@
 //! walls, and of numbers of grains.
 
 use super::covered::CheckedOutput;
-use super::ours::{ConventionChoice, FLOOR, Plan, compare, convention, is_compared, nearest_first, ours, until};
+use super::ours::{FLOOR, Plan, compare, convention, is_compared, nearest_first, ours, until};
 use grainbench_harness::compare::peers::{Peer, WIDE, together};
 use grainbench_harness::expect::Measurement;
 use grainbench_harness::statistics::{BLOCKS, CONFIDENCE, next_mean, next_value};
@@ -53,7 +53,8 @@ fn parted(run: &Series, other: &Series, fraction: f64, moved: bool) -> Option<f6
 /// Our runs of a scene.
 pub(super) struct OwnRuns {
     pub(super) plan: Plan,
-    choice: ConventionChoice,
+    /// Name of the chosen contact convention; `None` for the nearest one.
+    choice: Option<&'static str>,
     /// Runs, with the nearest or chosen convention first.
     pub(super) peers: Vec<Peer>,
     /// Last snapshot of the first run.
@@ -72,21 +73,21 @@ impl OwnRuns {
         scene: &Scene,
         plan: Plan,
         observed: &DumpRecord,
-        choice: ConventionChoice,
+        choice: Option<&'static str>,
     ) -> Result<Self, String> {
         let (mut peers, mut ends) = ours(scene, &plan)?;
         let perturbed_run =
             |times: u32, peer: &Peer| plan.run(&moved(scene, times), convention(peer), 1).map(|record| record.series);
         let (mut horizon, mut perturbed) = (None, Vec::new());
         if scene.grains.len() > 1 {
-            let own = peers.iter().find(|peer| choice.only() == Some(&peer.name)).unwrap_or(&peers[0]);
+            let own = peers.iter().find(|peer| choice == Some(&peer.name)).unwrap_or(&peers[0]);
             perturbed.push(perturbed_run(1, own)?);
             horizon = parted(&own.series, &perturbed[0], PARTED, false);
         }
         let nearest = nearest_first(scene, &plan, &mut peers, observed, horizon, choice)?;
         if let Some(time) = horizon {
             for times in 2..=PERTURBED {
-                let place = if choice == ConventionChoice::Nearest { times as usize % peers.len() } else { 0 };
+                let place = if choice.is_none() { times as usize % peers.len() } else { 0 };
                 perturbed.push(perturbed_run(times, &peers[place])?);
             }
             horizon = Some(shortened(time, &peers[0]));
@@ -167,7 +168,7 @@ impl OwnRuns {
     /// Compares means over the time after the horizon (s). Only columns of the whole system and of walls are compared.
     fn beyond(&self, horizon: f64, output: &CheckedOutput<'_>) -> Vec<Verdict> {
         let (scene, observed) = (&output.candidate.scene, output.observed);
-        let conventions = if self.choice == ConventionChoice::Nearest { &self.peers[..] } else { &self.peers[..1] };
+        let conventions = if self.choice.is_none() { &self.peers[..] } else { &self.peers[..1] };
         let half_step = self.peers[0].half_step.as_ref();
         let runs: Vec<&Series> =
             conventions.iter().map(|peer| &peer.series).chain(half_step).chain(&self.perturbed).collect();

@@ -16,7 +16,7 @@ mod subject;
 mod summary;
 
 pub use error::CheckError;
-pub use ours::ConventionChoice;
+pub use ours::CONVENTION_NAMES;
 pub use power::{Power, is_of_power, power_words};
 pub use subject::{DeclaredScene, StartFile};
 pub use summary::sentence;
@@ -49,8 +49,10 @@ pub struct Options {
     pub allow_unstable: bool,
     /// Extent of the search for changes of the scene that the output reveals.
     pub power: Power,
-    /// Contact convention with which the output is compared.
-    pub convention: ConventionChoice,
+    /// Name of our solver with whose contact convention the output is compared. Every error outside its own tolerance is
+    /// red. `None` selects the nearest of our conventions. An error outside its own tolerance is then amber if it is smaller
+    /// than the difference between our conventions, because the output may have a convention that we do not have.
+    pub convention: Option<&'static str>,
 }
 
 /// Checks output against a case or a scene file. If no variant of a case is named, the first sample selects the variant.

@@ -13,37 +13,8 @@ use grainbench_solver::Solver;
 use grainbench_solver::record::{Record, Series, Snapshot};
 use grainbench_solver::refined::refined;
 
-/// Contact convention with which the output is compared.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
-pub enum ConventionChoice {
-    /// The nearest of our conventions. An error outside its own tolerance is amber if it is smaller than the difference
-    /// between our conventions, because the output may have a convention that we do not have.
-    #[default]
-    Nearest,
-    /// The convention of the solver with this name. Every error outside its own tolerance is red.
-    Named(&'static str),
-}
-
-impl ConventionChoice {
-    /// Names on the command line.
-    pub const NAMES: [&'static str; 5] = ["nearest", "dem", "dem:1979", "dem:lammps", "dem:liggghts"];
-
-    /// Returns the choice with a name from [`Self::NAMES`].
-    #[must_use]
-    pub fn by_name(name: &str) -> Option<Self> {
-        match name {
-            "nearest" => Some(Self::Nearest),
-            name => CONVENTIONS.iter().find(|other| other.name == name).map(|other| Self::Named(other.name)),
-        }
-    }
-
-    pub(super) const fn only(self) -> Option<&'static str> {
-        match self {
-            Self::Named(name) => Some(name),
-            Self::Nearest => None,
-        }
-    }
-}
+/// Names of the contact conventions on the command line. The first one stands for the nearest of the others.
+pub const CONVENTION_NAMES: [&str; 5] = ["nearest", "dem", "dem:1979", "dem:lammps", "dem:liggghts"];
 
 /// Returns the first `samples` samples of a series.
 pub(super) fn truncated(mut series: Series, samples: usize) -> Series {
@@ -166,7 +137,7 @@ pub(super) fn nearest_first(
     peers: &mut [Peer],
     observed: &DumpRecord,
     horizon: Option<f64>,
-    choice: ConventionChoice,
+    choice: Option<&str>,
 ) -> Result<usize, String> {
     let (runs, seen) = until(horizon, peers, observed);
     let name = against_runs(scene, &runs, &seen, choice).map(|(name, _)| name);
@@ -198,7 +169,7 @@ fn is_count(name: &str) -> bool {
 
 /// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the
 /// change that smaller time steps cause in this run.
-pub(super) fn compare(ours: &[Peer], choice: ConventionChoice, output: &CheckedOutput<'_>) -> Vec<Verdict> {
+pub(super) fn compare(ours: &[Peer], choice: Option<&str>, output: &CheckedOutput<'_>) -> Vec<Verdict> {
     let compared = against_runs(&output.candidate.scene, ours, output.observed, choice);
     let Some((name, columns)) = compared else { return Vec::new() };
     columns.into_iter().map(|compared| column(&compared, name, choice, output)).collect()
@@ -209,7 +180,7 @@ fn against_runs<'a>(
     scene: &Scene,
     ours: &'a [Peer],
     observed: &'a DumpRecord,
-    choice: ConventionChoice,
+    choice: Option<&str>,
 ) -> Option<(&'a str, Vec<ColumnComparison<'a>>)> {
     let radius = scene.grains.iter().map(|grain| grain.radius).fold(0.0, f64::max);
     let mass: f64 = scene.grains.iter().map(|grain| grain.mass).sum();
@@ -229,23 +200,18 @@ fn against_runs<'a>(
             _ => extent("J").max(0.5 * mass * (1e-3 * speed).powi(2)),
         }
     };
-    against(&observed.series, &observed.uncertainty, ours, choice.only(), is_compared, scale)
+    against(&observed.series, &observed.uncertainty, ours, choice, is_compared, scale)
 }
 
-fn column(
-    compared: &ColumnComparison<'_>,
-    name: &str,
-    choice: ConventionChoice,
-    output: &CheckedOutput<'_>,
-) -> Verdict {
+fn column(compared: &ColumnComparison<'_>, name: &str, choice: Option<&str>, output: &CheckedOutput<'_>) -> Verdict {
     // Programs print forces that depend on velocities half a step later than the velocities that moved the grains. For
     // a dashpot, this difference is twice the change due to half the time step, so three times this change is allowed.
     let times = if matches!(compared.unit, "N" | "Pa") { 3.0 } else { 1.0 };
     // A grain may cross the edge of a box between two samples in one run and after them in the other.
     let floor = if is_count(compared.name) { 1.0 / compared.scale } else { FLOOR };
     let (how, between) = match choice {
-        ConventionChoice::Named(_) => ("the chosen convention", Between::Refused),
-        ConventionChoice::Nearest => ("our nearest convention", Between::Inconclusive),
+        Some(_) => ("the chosen convention", Between::Refused),
+        None => ("our nearest convention", Between::Inconclusive),
     };
     let row = Verdict {
         source: format!("{name}, {how}, at the time step of the file"),

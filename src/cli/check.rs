@@ -9,7 +9,7 @@ use super::value::{path_and_value, positive};
 use glob::Pattern;
 use grainbench::adapt::AdaptedScene;
 use grainbench::check::{
-    ConventionChoice, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, power_words, sentence,
+    CONVENTION_NAMES, DeclaredScene, Options, Power, StartFile, check as judge, is_of_power, power_words, sentence,
 };
 use grainbench::harness::expect::ExpectedValue;
 use grainbench::harness::verdict::{self, Verdict};
@@ -38,7 +38,7 @@ pub(crate) struct Arguments {
     like: Option<PathBuf>,
     /// Contact convention with which your output is compared: a solver such as `dem:lammps`, or the `nearest` one. An
     /// error outside the tolerance is red. For the nearest one, it is amber if our conventions differ by more.
-    #[arg(long, value_name = "NAME", default_value = "nearest", value_parser = ConventionChoice::NAMES)]
+    #[arg(long, value_name = "NAME", default_value = "nearest", value_parser = CONVENTION_NAMES)]
     convention: String,
     /// Output files, plain or compressed by gzip or zstd. Formats: dumps of grains and of contacts (`dump local`) at
     /// the same steps; VTK files (`.vtk`, `.vtp`, `.vtu`, `.vtkhdf`, `.pvd`); NumPy arrays (`.npz`); CSV tables of
@@ -153,7 +153,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         _ => Power::Limited,
     };
     let Arguments { partial, allow_unstable, .. } = *arguments;
-    let convention = ConventionChoice::by_name(&arguments.convention).unwrap_or_default();
+    let convention = CONVENTION_NAMES.into_iter().skip(1).find(|name| *name == arguments.convention);
     let options = Options { partial, allow_unstable, power, convention };
     let section = judge(&subject, &outputs, options)?;
     Ok((section, outputs.name()))
