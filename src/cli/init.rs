@@ -12,8 +12,8 @@ pub(crate) enum Command {
         /// New or empty directory.
         dir: PathBuf,
         /// Language of the program. A compiled language needs `make` and its compiler.
-        #[arg(long, value_enum, default_value = "python")]
-        language: Language,
+        #[arg(long, default_value = "python", value_parser = SOLVERS.map(|(language, _)| language))]
+        language: String,
     },
     /// Write a case without Rust code: `scene.toml` and `claims.toml`.
     Case {
@@ -28,13 +28,6 @@ pub(crate) enum Command {
     },
 }
 
-#[derive(Clone, Copy, clap::ValueEnum)]
-pub(crate) enum Language {
-    Python,
-    Cpp,
-    Rust,
-}
-
 /// Files of an example with their names.
 type Files = &'static [(&'static str, &'static str)];
 
@@ -44,21 +37,19 @@ macro_rules! example {
     };
 }
 
-const PYTHON: Files = example!("python": "SOLVER.toml" "one_grain.py");
-const CPP: Files = example!("cpp": "SOLVER.toml" "Makefile" "one_grain.cpp");
-const RUST: Files = example!("rust": "SOLVER.toml" "Makefile" "one_grain.rs");
+/// Files of a solver, by the language of its program.
+const SOLVERS: [(&str, Files); 3] = [
+    ("python", example!("python": "SOLVER.toml" "one_grain.py")),
+    ("cpp", example!("cpp": "SOLVER.toml" "Makefile" "one_grain.cpp")),
+    ("rust", example!("rust": "SOLVER.toml" "Makefile" "one_grain.rs")),
+];
 const CASE: Files = example!("case": "scene.toml" "claims.toml");
 
 /// Writes the files and prints the command that runs them.
 pub(crate) fn init(command: &Command) -> Outcome {
     let next = match command {
         Command::Solver { dir, language } => {
-            let files = match language {
-                Language::Python => PYTHON,
-                Language::Cpp => CPP,
-                Language::Rust => RUST,
-            };
-            write(dir, files)?;
+            SOLVERS.iter().filter(|(known, _)| known == language).try_for_each(|(_, files)| write(dir, files))?;
             format!("grainbench judge {} incline-disc backspin", dir.join("SOLVER.toml").display())
         }
         Command::Case { dir } => {

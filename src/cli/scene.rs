@@ -20,19 +20,13 @@ pub(crate) struct Arguments {
     #[arg(long, value_name = "PATH=VALUE", value_parser = path_and_value)]
     set: Vec<(String, String)>,
     /// Format of the resolved scene.
-    #[arg(long, value_enum, default_value = "json")]
-    format: Format,
+    #[arg(long, default_value = "json", value_parser = ["json", "toml"])]
+    format: String,
     #[command(flatten)]
     step: Step,
     /// Number of cells per reference length, instead of a time step, for solvers with deformable bodies.
     #[arg(long, value_name = "NUMBER", value_parser = positive, conflicts_with_all = ["time_step", "time_step_fraction"])]
     cells: Option<f64>,
-}
-
-#[derive(Clone, Copy, clap::ValueEnum)]
-enum Format {
-    Json,
-    Toml,
 }
 
 #[derive(Clone, Copy, clap::ValueEnum)]
@@ -73,10 +67,7 @@ pub(crate) fn scene(arguments: &Arguments) -> Outcome {
         return Err(Fault::input(reason));
     }
     let given = DiscretizedScene::new(&scene, &resolution).map_err(Fault::input)?;
-    let format = match arguments.format {
-        Format::Json => SceneFormat::Json,
-        Format::Toml => SceneFormat::Toml,
-    };
+    let format = if arguments.format == "toml" { SceneFormat::Toml } else { SceneFormat::Json };
     let resolved = Resolved::new(&given);
     print_with(|out| {
         resolved.write(format, out)?;

@@ -11,33 +11,31 @@ use grainbench::solver::Solver;
 use grainbench::solver::terms::Terms;
 use std::sync::Arc;
 
-/// Solver whose conformance properties are tested.
-pub(crate) struct ConformingSolver {
-    pub(crate) solver: Arc<dyn Solver>,
-    terms: Terms,
-    /// True if the solver is built in. An external solver may have the name of a built-in solver.
-    is_ours: bool,
-}
+/// Solver with the conformance properties that are tested.
+pub(crate) type ConformingSolver = (Arc<dyn Solver>, Terms);
 
 /// Returns the named built-in and external solvers with their conformance properties. Without names, returns all
 /// built-in solvers.
 pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
-    let mut solvers: Vec<ConformingSolver> =
-        ours.map(|(solver, terms)| ConformingSolver { solver: Arc::from(solver), terms, is_ours: true }).collect();
+    let mut solvers: Vec<ConformingSolver> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();
     for path in named.iter().filter(|name| solver::is_manifest(name)) {
         let solver = solver::outside(path)?;
         let terms = solver.terms();
-        solvers.push(ConformingSolver { solver, terms, is_ours: false });
+        solvers.push((solver, terms));
     }
     Ok(solvers)
 }
 
-/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache.
-pub(crate) fn judge(asked: &ConformingSolver, solvers: &Arc<dyn Solvers>) -> (Vec<Verdict>, Vec<ControlResult>) {
-    let of_cache = if asked.is_ours { solvers.find(&asked.solver.name()) } else { None };
-    conformance::judge_with_cache(&*asked.solver, of_cache.as_deref().unwrap_or(&*asked.solver), &asked.terms)
+/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache. An external solver
+/// never has the name of a built-in solver, so it is not found there.
+pub(crate) fn judge(
+    (solver, terms): &ConformingSolver,
+    solvers: &Arc<dyn Solvers>,
+) -> (Vec<Verdict>, Vec<ControlResult>) {
+    let of_cache = solvers.find(&solver.name());
+    conformance::judge_with_cache(&**solver, of_cache.as_deref().unwrap_or(&**solver), terms)
 }
 
 /// Returns a report section with results of conformance properties.

@@ -233,7 +233,7 @@ impl TaskList for ClaimTasks {
         let task = self.all[place];
         match task {
             ClaimTask::Claim(case, _) | ClaimTask::Figures(case) => sink.now(self.selected[case].case.name),
-            ClaimTask::Conformance(solver) => sink.now(&self.conforming[solver].solver.name()),
+            ClaimTask::Conformance(solver) => sink.now(&self.conforming[solver].0.name()),
         }
         match task {
             ClaimTask::Claim(case, claim) => self.claim(case, claim),
@@ -315,8 +315,8 @@ impl ClaimTasks {
                 ..Task::new(Id::of_words(program, &["figures", &rows, &settings]), FIGURES)
             });
         }
-        for conforming in &self.conforming {
-            let solver = conforming.solver.name();
+        for (solver, _) in &self.conforming {
+            let solver = solver.name();
             let id = Id::of_words(program, &["owed", &solver, &self.strangers.edition(&solver)]);
             let what = "conformance properties".to_owned();
             tasks.push(Task { scene: "conformance".to_owned(), solver, what, ..Task::new(id, CONFORMANCE) });
