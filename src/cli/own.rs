@@ -106,26 +106,24 @@ impl Input<'_> {
         words
     }
 
-    /// Returns the study of a scene with the named solvers, or with the usual ones if none is named.
-    fn scene_study<'s>(
-        &self,
-        scene: &'s Scene,
-        (solvers, named): (&'s NamedSolvers, Vec<String>),
-        cache: &'s Directory,
-        stop: &'s (dyn Fn() -> bool + Sync),
-    ) -> SceneStudy<'s> {
-        SceneStudy {
+    /// Calls a function with the study of a scene with the named solvers, or with the usual ones if none is named.
+    fn study(&self, scene: &Scene, work: impl FnOnce(&SceneStudy<'_>) -> Outcome) -> Outcome {
+        let (solvers, named) = NamedSolvers::read_for(self.solvers, true)?;
+        check_writable(self.out)?;
+        let cache = Directory::open(&self.out.join(RUNS), JSON, self.study.no_cache)?;
+        let interrupt = Interrupt::listen();
+        work(&SceneStudy {
             name: self.path.clone(),
             scene,
             names: if named.is_empty() { DEFAULT.map(str::to_owned).into() } else { named },
-            solvers,
+            solvers: &solvers,
             quantities: self.quantities.to_vec(),
             window: self.window,
             budget: self.budget,
-            cache,
+            cache: &cache,
             program: key::of_this_program(),
-            stop,
-        }
+            stop: &|| interrupt.is_asked(),
+        })
     }
 }
 
@@ -186,33 +184,29 @@ fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
 pub(crate) fn cost(input: &Input<'_>) -> Outcome {
     let scene = read(&input.path, input.quantities)?;
     let input = &input.within(&scene)?;
-    let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
-    check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), JSON, input.study.no_cache)?;
     let words = input.words("cost");
-    let interrupt = Interrupt::listen();
-    let stop = || interrupt.is_asked();
-    let study = input.scene_study(&scene, (&solvers, named), &cache, &stop);
-    let mut follower = Follower::new(&study, input.out, &words);
-    let mut measured = Measurement::new(&study);
-    measured.levels(&mut follower)?;
-    measured.variations(&mut follower)?;
-    let (ledger, skipped) = effects::measure(&study, &measured, &mut follower)?;
-    follower.ledger = ledger;
-    // A note tells why a solver has no level. Its stable step would take too long or does not exist.
-    let names = measured.measured_solvers();
-    follower.limits = limits((&study, &names), &mut |part| measured.remaining(part), &mut follower.bar)?;
-    measured.repetitions(&mut follower)?;
-    let mut result = measured.result();
-    result.notes.extend(skipped);
-    let is_stopped = stop();
-    let study = follower.study(result, is_stopped);
-    drop(follower);
-    if is_stopped {
-        write_study(input.out, &study)?;
-        return Err(stopped());
-    }
-    publish_study(&study, Output::new(input.out, input.study.json, false))
+    input.study(&scene, |study| {
+        let mut follower = Follower::new(study, input.out, &words);
+        let mut measured = Measurement::new(study);
+        measured.levels(&mut follower)?;
+        measured.variations(&mut follower)?;
+        let (ledger, skipped) = effects::measure(study, &measured, &mut follower)?;
+        follower.ledger = ledger;
+        // A note tells why a solver has no level. Its stable step would take too long or does not exist.
+        let names = measured.measured_solvers();
+        follower.limits = limits((study, &names), &mut |part| measured.remaining(part), &mut follower.bar)?;
+        measured.repetitions(&mut follower)?;
+        let mut result = measured.result();
+        result.notes.extend(skipped);
+        let is_stopped = measured.is_stopped();
+        let result = follower.study(result, is_stopped);
+        drop(follower);
+        if is_stopped {
+            write_study(input.out, &result)?;
+            return Err(stopped());
+        }
+        publish_study(&result, Output::new(input.out, input.study.json, false))
+    })
 }
 
 /// Returns the error of a study that the user stops.
@@ -243,25 +237,21 @@ fn limits(
 /// Finds the largest stable step of each solver in a scene, and writes the report.
 pub(crate) fn stability(input: &Input<'_>) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
-    let (solvers, named) = NamedSolvers::read_for(input.solvers, true)?;
-    check_writable(input.out)?;
-    let cache = Directory::open(&input.out.join(RUNS), JSON, input.study.no_cache)?;
-    let interrupt = Interrupt::listen();
-    let stop = || interrupt.is_asked();
-    let study = input.scene_study(&scene, (&solvers, named), &cache, &stop);
-    let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
-    let mut bar = Bar::new(budget);
-    // The bisection may use the whole budget.
-    let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
-    let limits = limits((&study, &study.names), &mut remaining, &mut bar)?;
-    drop(bar);
-    if stop() {
-        return Err(stopped());
-    }
-    let mut written = Study::new(provenance(input.words("stability"), start.elapsed().as_secs_f64()));
-    written.limits = limits;
-    written.sources = sources(&study.names);
-    publish_study(&written, Output::new(input.out, input.study.json, false))
+    input.study(&scene, |study| {
+        let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
+        let mut bar = Bar::new(budget);
+        // The bisection may use the whole budget.
+        let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
+        let limits = limits((study, &study.names), &mut remaining, &mut bar)?;
+        drop(bar);
+        if (study.stop)() {
+            return Err(stopped());
+        }
+        let mut written = Study::new(provenance(input.words("stability"), start.elapsed().as_secs_f64()));
+        written.limits = limits;
+        written.sources = sources(&study.names);
+        publish_study(&written, Output::new(input.out, input.study.json, false))
+    })
 }
 
 /// Returns hashes of the solvers' sources, by solver name.
