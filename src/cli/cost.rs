@@ -2,7 +2,7 @@
 
 use super::exit::{Outcome, refuse};
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
-use super::jobs::here::plan_or_perform;
+use super::jobs::plan::plan_or_perform;
 use super::own;
 use super::value::window;
 use std::path::PathBuf;

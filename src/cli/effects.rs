@@ -3,15 +3,14 @@
 use super::exit::{Fault, Outcome, check_writable, refuse};
 use super::interrupt::Interrupt;
 use super::jobs::arguments::{Arguments as Planned, StudyOptions};
-use super::jobs::here::plan_or_perform;
+use super::jobs::plan::plan_or_perform;
 use super::own;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
 use super::solver;
-use super::step::Step;
 use super::subject;
-use super::value::{duration, positive};
+use super::value::{Step, duration, positive};
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::solvers::Solvers as _;
 use grainbench::reports::number;

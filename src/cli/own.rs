@@ -6,7 +6,7 @@ use super::jobs::arguments::StudyOptions;
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::{Output, publish_study};
-use super::strangers::NamedSolvers;
+use super::solver::NamedSolvers;
 use super::subject::{self, Variant, is_scene_file};
 use super::value::duration;
 use grainbench::cases::folder::{self as case_folder, CLAIMS};

@@ -1,13 +1,16 @@
 //! Output of commands: files and text of a report, and the exit code.
 
 use super::exit::{Fault, Outcome, RED, print, print_text};
-use super::github;
 use super::terminal::width;
+use grainbench::reports::github::{annotations, summary};
 use grainbench::reports::results::results_json;
 use grainbench::reports::study::{Study, study_json, write_study};
 use grainbench::reports::terminal::failing_lines;
 use grainbench::reports::{Headline, Report, summary_table_within, write_report};
 use grainbench::store::StagedDir;
+use std::env;
+use std::fs::OpenOptions;
+use std::io::Write;
 use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
@@ -74,8 +77,23 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
         print_text(&text)?;
         print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
-    github::tell(report, output.json)?;
+    tell_github(report, output.json)?;
     Ok(exit_code(report, output.strict))
+}
+
+/// Appends to the job summary, and prints annotations unless the standard output is JSON. Outside GitHub Actions, does nothing.
+fn tell_github(report: &Report, is_json: bool) -> Result<(), Fault> {
+    if let Some(path) = env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) {
+        let file = OpenOptions::new().create(true).append(true).open(&path);
+        let written = file.and_then(|mut file| file.write_all(summary(report).as_bytes()));
+        written.map_err(|error| Fault::input(format!("GITHUB_STEP_SUMMARY: {}: {error}", path.display())))?;
+    }
+    if !is_json && env::var_os("GITHUB_ACTIONS").is_some_and(|set| set == "true") {
+        for line in annotations(report) {
+            print(&(line + "\n"))?;
+        }
+    }
+    Ok(())
 }
 
 /// Writes and prints a study, and returns the exit code.

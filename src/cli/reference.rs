@@ -1,7 +1,6 @@
 //! `grainbench reference`: makes and verifies stored runs of other programs, and updates stored results and estimates.
 
 use super::exit::{Fault, Outcome, check_writable, print, say};
-use super::fetch::{Fetch, fetch};
 use super::kept_runs::{KeepArguments, keep};
 use super::progress::Progress;
 use super::provenance::{self, provenance};
@@ -12,12 +11,15 @@ use grainbench::cases::uncertainty::{self, StoredEstimates};
 use grainbench::cases::{Case, runner};
 use grainbench::harness::run::Set;
 use grainbench::harness::tolerance::ToleranceOrigin;
+use grainbench::reference::data::{installed, unpack};
 use grainbench::reference::stored::{folder, make};
 use grainbench::reports::{Report, Section, line};
 use grainbench::solver::failure::RunError;
-use grainbench::store::{StagedDir, write_file};
+use grainbench::store::{StagedDir, temporary_in, write_file};
 use grainbench::verify::verify as compare;
-use std::path::PathBuf;
+use std::io;
+use std::path::{Path, PathBuf};
+use std::process::Command as Process;
 use std::time::Instant;
 
 #[derive(clap::Subcommand)]
@@ -65,6 +67,16 @@ pub(crate) struct Verify {
     /// Print the results as JSON instead of a table.
     #[arg(long)]
     json: bool,
+}
+
+#[derive(clap::Args)]
+pub(crate) struct Fetch {
+    /// ZIP archive of the data for this version: a file, or an `https://` address that `curl` downloads.
+    #[arg(value_name = "URL|FILE")]
+    source: String,
+    /// Directory for the data; name it in GRAINBENCH_DATA. Default: the directory of this user and version.
+    #[arg(long, value_name = "DIR")]
+    out: Option<PathBuf>,
 }
 
 pub(crate) fn reference(command: &Command) -> Outcome {
@@ -127,6 +139,38 @@ fn build(arguments: &Build) -> Outcome {
     drop(progress);
     let printed = print(&lines)?;
     if failed { Err(Fault::Broken("not every run could be made".to_owned())) } else { Ok(printed) }
+}
+
+/// Installs the data of cases and stored runs, which only a source tree contains.
+fn fetch(arguments: &Fetch) -> Outcome {
+    arguments.out.as_deref().map(check_writable).transpose()?;
+    let none = || Fault::Input("--out: expected a directory for the data, found no home directory".to_owned());
+    let target = arguments.out.clone().or_else(installed).ok_or_else(none)?;
+    let mut out = StagedDir::new(&target)?.without_manifest();
+    let scratch = temporary_in(&std::env::temp_dir())?;
+    let archive = if arguments.source.starts_with("https://") {
+        let file = scratch.path().join("data.zip");
+        download(&arguments.source, &file)?;
+        file
+    } else {
+        PathBuf::from(&arguments.source)
+    };
+    let count = unpack(&archive, |name, bytes| out.write(name, bytes).map_err(io::Error::other));
+    let count = count.map_err(Fault::input)?;
+    out.commit()?;
+    print(&format!("{count} files in {}\n", target.display()))
+}
+
+fn download(address: &str, file: &Path) -> Result<(), Fault> {
+    let words = ["--fail", "--location", "--silent", "--show-error", "--output"];
+    let done = Process::new("curl").args(words).arg(file).arg(address).output();
+    let done =
+        done.map_err(|error| Fault::Input(format!("curl: expected the program for the download, found {error}")))?;
+    if done.status.success() {
+        return Ok(());
+    }
+    let found = String::from_utf8_lossy(&done.stderr).trim().to_owned();
+    Err(Fault::Input(format!("{address}: expected the archive of the data, found {found}")))
 }
 
 /// Estimates the discretization errors of claims with an estimated tolerance, and stores the estimates.

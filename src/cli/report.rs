@@ -1,8 +1,7 @@
 //! `grainbench report`: writes a page from stored results.
 
 use super::exit::{Fault, Outcome, print, print_text, refuse};
-use super::jobs::collect::{CollectOptions, collect};
-use super::jobs::status::status;
+use super::jobs::collect::{CollectOptions, collect, status};
 use super::publish::{exit_code, study_code};
 use super::terminal::width;
 use super::value::{positive, whole, window};

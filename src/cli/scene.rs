@@ -1,9 +1,8 @@
 //! `grainbench scene`: prints the resolved scene that external solvers get, or the schema of scene files.
 
 use super::exit::{Fault, Outcome, print_json, print_with};
-use super::step::Step;
 use super::subject;
-use super::value::{path_and_value, positive};
+use super::value::{Step, path_and_value, positive};
 use grainbench::reference::outside::{self, DiscretizedScene, Resolved, SceneFormat};
 use grainbench::solver::resolution::Resolution;
 

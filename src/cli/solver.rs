@@ -1,11 +1,17 @@
-//! Solver named on the command line: a built-in solver, or an external solver by its manifest.
+//! Solvers named on the command line: built-in solvers, and external solvers by their manifests.
 
 use super::exit::{Fault, refuse};
-use grainbench::cases::solvers;
+use grainbench::cases::solvers::{self, Registry};
+use grainbench::harness::solvers::{ExternalSolver, References, Solvers};
 use grainbench::reference::outside::ExternalProgram;
-use grainbench::solver::Solver;
+use grainbench::solver::{Defect, Solver};
+use grainbench::store::key;
+use std::collections::BTreeMap;
+use std::env;
 use std::path::Path;
+use std::process;
 use std::sync::Arc;
+use std::time::{Duration, SystemTime, UNIX_EPOCH};
 
 /// Returns the solver with this name, or the external solver of this manifest.
 pub(crate) fn find(name: &str) -> Result<Arc<dyn Solver>, Fault> {
@@ -35,4 +41,105 @@ pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
         refuse!("{path}: name: expected an unused name, found `{name}`");
     }
     Ok(Arc::new(outside))
+}
+
+/// Solvers that a command line names.
+#[derive(Clone, Default)]
+pub(crate) struct NamedSolvers {
+    strangers: Vec<Arc<ExternalProgram>>,
+    /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
+    /// results were made.
+    read: String,
+    /// True to identify an external solver by the contents of its files; false to identify it by the time of reading.
+    by_content: bool,
+}
+
+impl NamedSolvers {
+    /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with each path replaced by its
+    /// solver's name. If several processes share the work, an external solver is identified by the contents of its files.
+    pub(crate) fn read_for(names: &[String], is_shared: bool) -> Result<(Self, Vec<String>), Fault> {
+        let (mut strangers, mut known) = (Vec::new(), Vec::new());
+        for name in names {
+            if is_manifest(name) {
+                let stranger = outside(name)?;
+                known.push(stranger.name());
+                strangers.push(stranger);
+            } else {
+                find(name)?;
+                known.push(name.clone());
+            }
+        }
+        let now = SystemTime::now().duration_since(UNIX_EPOCH).unwrap_or_default();
+        let read = format!("{}-{}", now.as_nanos(), process::id());
+        if is_shared {
+            // The identification must not differ between processes, so a file that cannot be read is an error.
+            for stranger in &strangers {
+                stranger.edition().map_err(Fault::input)?;
+            }
+        }
+        Ok((Self { strangers, read, by_content: is_shared }, known))
+    }
+
+    /// Returns the hashes of the files of the external solvers, by path. Paths below the current directory are relative.
+    pub(crate) fn inputs(&self) -> BTreeMap<String, String> {
+        let here = env::current_dir().unwrap_or_default();
+        // A folder that cannot be read causes an error when the solvers are read.
+        let files = self.strangers.iter().flat_map(|stranger| stranger.files().unwrap_or_default());
+        let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).display().to_string();
+        files.map(|path| (shown(&path), key::of_file(&path))).collect()
+    }
+
+    /// Returns the names of the external solvers.
+    pub(crate) fn names(&self) -> Vec<String> {
+        self.strangers.iter().map(|stranger| stranger.name()).collect()
+    }
+
+    fn stranger(&self, name: &str) -> Option<&Arc<ExternalProgram>> {
+        self.strangers.iter().find(|stranger| stranger.manifest().name == name)
+    }
+}
+
+impl Solvers for NamedSolvers {
+    fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
+        let stranger = self.stranger(name).map(|stranger| Arc::<ExternalProgram>::clone(stranger) as Arc<dyn Solver>);
+        stranger.or_else(|| Registry.find(name))
+    }
+
+    fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
+        // The time limit of an external solver is in its manifest.
+        if self.stranger(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
+    }
+
+    fn with_defect(&self, name: &str, defect: Defect) -> Option<Arc<dyn Solver>> {
+        Registry.with_defect(name, defect)
+    }
+
+    fn is_program(&self, name: &str) -> bool {
+        self.stranger(name).is_some() || solvers::is_program(name)
+    }
+
+    fn strangers(&self) -> Vec<ExternalSolver> {
+        let description = |stranger: &Arc<ExternalProgram>| {
+            let manifest = stranger.manifest();
+            ExternalSolver {
+                name: stranger.name(),
+                fractions: manifest.knobs.critical_fraction.clone(),
+                cells: manifest.knobs.cells.clone(),
+                has_springs: stranger.has_springs(),
+                deforms: stranger.deforms(),
+                stays: !manifest.worker.is_empty(),
+            }
+        };
+        self.strangers.iter().map(description).collect()
+    }
+
+    fn edition(&self, name: &str) -> String {
+        let Some(stranger) = self.stranger(name) else { return Registry.edition(name) };
+        let content = if self.by_content { stranger.edition().ok() } else { None };
+        content.unwrap_or_else(|| self.read.clone())
+    }
+
+    fn references(&self) -> &dyn References {
+        &Registry
+    }
 }

@@ -1,5 +1,6 @@
-//! Parsers of option values.
+//! Parsers of option values, and the options that set the time step.
 
+use grainbench::solver::resolution::Resolution;
 use std::fmt::Display;
 use std::str::FromStr;
 use std::time::Duration;
@@ -57,6 +58,36 @@ pub(crate) fn window(text: &str) -> Result<(f64, f64), String> {
     };
     let (from, to) = (read(from, f64::NEG_INFINITY)?, read(to, f64::INFINITY)?);
     if from <= to { Ok((from, to)) } else { Err(format!("expected a later time after `..`, found `{text}`")) }
+}
+
+/// Time step, as a fraction of the critical one or in seconds.
+#[derive(clap::Args)]
+pub(crate) struct Step {
+    /// Time step as a fraction of the critical one, 2√(m_min/k_max).
+    #[arg(
+        long,
+        value_name = "FRACTION",
+        default_value_t = Resolution::FRACTION,
+        value_parser = positive,
+        allow_hyphen_values = true,
+        conflicts_with = "time_step"
+    )]
+    time_step_fraction: f64,
+    /// Time step in seconds.
+    #[arg(long, value_name = "SECONDS", value_parser = positive, allow_hyphen_values = true)]
+    time_step: Option<f64>,
+}
+
+impl Step {
+    /// Returns true if the time step is the default fraction of the critical one.
+    pub(crate) fn is_usual(&self) -> bool {
+        self.resolution() == Resolution::CriticalFraction(Resolution::FRACTION)
+    }
+
+    /// Returns the time step as a resolution.
+    pub(crate) fn resolution(&self) -> Resolution {
+        self.time_step.map_or(Resolution::CriticalFraction(self.time_step_fraction), Resolution::TimeStep)
+    }
 }
 
 #[cfg(test)]

@@ -4,7 +4,7 @@ use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, outputs};
 use crate::cli::exit::{Fault, Outcome, refuse};
 use crate::cli::own;
-use crate::cli::strangers::NamedSolvers;
+use crate::cli::solver::NamedSolvers;
 use crate::cli::subject::selected;
 use grainbench::cases::solvers::Registry;
 use grainbench::harness::case::Case;

@@ -1,12 +1,24 @@
-//! `--plan DIR`: writes a plan as a file with one task per line.
+//! Tasks of a command: written as a plan with `--plan DIR`, otherwise performed in its output directory. An interrupted
+//! command continues there.
 
-use super::arguments::Arguments;
+use super::arguments::{Arguments, StudyOptions};
 use super::from_arguments;
-use crate::cli::exit::{Fault, Outcome, print, print_json};
-use grainbench::jobs::plan::{Head, Plan, check_place};
+use super::study::ReportOptions;
+use super::watch::Follower;
+use super::work::worker;
+use crate::cli::cores::cores;
+use crate::cli::exit::{self, Fault, Outcome, RED, check_writable, print, print_json, refuse};
+use grainbench::jobs::plan::{Head, Plan, RUNNING, check_place};
+use grainbench::jobs::shard::Shard;
+use grainbench::jobs::work::WorkRequest;
 use grainbench::reports::number;
+use grainbench::store::log::State;
+use grainbench::store::results::{self, FinishedTasks};
 use serde::Serialize;
-use std::path::PathBuf;
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::sync::Mutex;
+use std::time::{Duration, Instant};
 
 /// Summary of a plan, printed as JSON.
 #[derive(Serialize)]
@@ -39,4 +51,69 @@ pub(crate) fn plan(arguments: &Arguments) -> Outcome {
         number::counted(shards as usize, "shard"),
         arguments.out.display()
     ))
+}
+
+/// Shortest time between two updates of the report while tasks run.
+const EVERY: Duration = Duration::from_secs(5);
+/// Directories with finished parts that an earlier version of this program wrote to the output directory.
+const EARLIER: [&str; 2] = ["points", "pieces"];
+
+/// Writes a plan if `--plan` is given. Otherwise performs the tasks. `against` is the `results.json` of an earlier report.
+pub(crate) fn plan_or_perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>) -> Outcome {
+    let arguments = &Arguments { json: options.json, ..arguments.clone() };
+    match options.plan.planned(arguments) {
+        Some(planned) => plan(&planned),
+        None => perform(arguments, options, against),
+    }
+}
+
+/// Performs the tasks that are not finished and writes the report. The report is also written while tasks run.
+fn perform(arguments: &Arguments, options: &StudyOptions, against: Option<&Path>) -> Outcome {
+    let out = &arguments.out;
+    let study = from_arguments(arguments, false)?;
+    if Plan::is_in(out) {
+        let there = out.display();
+        refuse!("--out: {there}: expected a directory without a plan, found a plan");
+    }
+    if let Some(path) = against {
+        grainbench::reports::study::points_of(path)?;
+    }
+    check_writable(out)?;
+    let plan = study.plan(arguments)?;
+    for folder in EARLIER.map(|name| out.join(name)).iter().filter(|folder| folder.is_dir()) {
+        let what = "finished parts of an earlier version are not read, and their folder can be deleted";
+        exit::say("note", &format!("{}: {what}", folder.display()));
+    }
+    if options.no_cache {
+        results::remove(out)?;
+    }
+    let how = ReportOptions { out: out.clone(), json: arguments.json, against, ..ReportOptions::default() };
+    let report = |how: ReportOptions<'_>| {
+        let finished = FinishedTasks::read(out, true).map_err(Fault::input)?;
+        study.report_of(&plan, &finished, how)
+    };
+    let written = Mutex::new(Instant::now());
+    let draft = || {
+        // One thread writes the report, and the others continue.
+        if let Ok(mut written) = written.try_lock()
+            && written.elapsed() > EVERY
+        {
+            // An error of the disk is reported with the last report.
+            let _ = report(ReportOptions { is_draft: true, ..how.clone() });
+            *written = Instant::now();
+        }
+    };
+    let jobs = if plan.head.timed { 1 } else { cores() };
+    let asked = WorkRequest { shard: Shard::WHOLE, again: &[State::Crashed], jobs };
+    let summary = study.work(&plan, &asked, &worker(), &Follower::new("tasks", Some(&draft)))?;
+    // The folder of leases is empty unless another process works on the same directory.
+    let _ = fs::remove_dir(out.join(RUNNING));
+    let end = format!("{} of {} tasks were finished before\n", summary.before, summary.tasks);
+    let update_stored = options.update_stored.then_some(arguments.what.as_str());
+    let code = report(ReportOptions { end, update_stored, ..how.clone() })?;
+    if summary.left > 0 {
+        exit::say("warning", &format!("{} tasks remain; the same command continues the work", summary.left));
+        return Ok(RED);
+    }
+    Ok(code)
 }

@@ -3,7 +3,7 @@
 use super::arguments::Arguments;
 use super::study::{ReportOptions, Study, outputs};
 use crate::cli::exit::{Fault, Outcome, refuse};
-use crate::cli::strangers::NamedSolvers;
+use crate::cli::solver::NamedSolvers;
 use grainbench::cases::registry;
 use grainbench::harness::case::PLAIN;
 use grainbench::harness::solvers::Solvers;
