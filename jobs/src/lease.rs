@@ -51,7 +51,8 @@ impl LeaseContents {
 #[derive(Debug)]
 pub struct Lease {
     path: PathBuf,
-    said: LeaseContents,
+    /// Contents of its file, apart from the number of finished tasks.
+    pub contents: LeaseContents,
 }
 
 impl Lease {
@@ -93,15 +94,9 @@ impl Lease {
             return Ok((None, others));
         }
         let path = folder.join(format!("{}.{ENDING}", contents.worker));
-        let lease = Self { path, said: LeaseContents { tasks, ..contents.clone() } };
+        let lease = Self { path, contents: LeaseContents { tasks, ..contents.clone() } };
         lease.renew(0)?;
         Ok((Some(lease), others))
-    }
-
-    /// Returns true if the lease covers the task with the index `place`.
-    #[must_use]
-    pub fn has(&self, place: usize) -> bool {
-        self.said.has(place)
     }
 
     /// Renews the lease and records the number of finished tasks.
@@ -109,7 +104,7 @@ impl Lease {
     /// # Errors
     /// When the disk rejects the write.
     pub fn renew(&self, done: usize) -> Result<(), WriteError> {
-        let contents = LeaseContents { done, ..self.said.clone() };
+        let contents = LeaseContents { done, ..self.contents.clone() };
         write_file(&self.path, serde_json::to_string(&contents).unwrap_or_default())
     }
 }
@@ -170,12 +165,12 @@ mod tests {
         let (second, others) = Lease::take(plan.path(), 0..10, &lease_contents("b", own), 60.0).unwrap();
         let (first, second) = (first.unwrap(), second.unwrap());
         assert_eq!((others.len(), &others[0].tasks), (1, &vec![[2, 6]]));
-        assert_eq!(second.said.tasks, [[0, 2], [6, 10]]);
-        assert!((0..10).all(|place| first.has(place) != second.has(place)));
+        assert_eq!(second.contents.tasks, [[0, 2], [6, 10]]);
+        assert!((0..10).all(|place| first.contents.has(place) != second.contents.has(place)));
         assert!(Lease::take(plan.path(), 3..8, &lease_contents("c", own), 60.0).unwrap().0.is_none());
         drop(first);
         let (third, _) = Lease::take(plan.path(), 3..8, &lease_contents("c", own), 60.0).unwrap();
-        assert_eq!(third.unwrap().said.tasks, [[3, 6]]);
+        assert_eq!(third.unwrap().contents.tasks, [[3, 6]]);
     }
 
     #[test]
@@ -205,7 +200,7 @@ mod tests {
             (0..8).map(ask).collect::<Vec<_>>().into_iter().map(|thread| thread.join().unwrap()).collect()
         });
         for place in 0..12 {
-            assert_eq!(leases.iter().flatten().filter(|lease| lease.has(place)).count(), 1, "{place}");
+            assert_eq!(leases.iter().flatten().filter(|lease| lease.contents.has(place)).count(), 1, "{place}");
         }
     }
 }

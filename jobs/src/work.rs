@@ -120,7 +120,7 @@ pub fn work<L: TaskList>(
         let open: Vec<usize> = range.clone().filter(|place| is_open(*place)).collect();
         summary.before = *before.get_or_insert(range.len() - open.len());
         summary.left = open.len();
-        let is_mine = |place: &usize| lease.as_ref().is_some_and(|lease| lease.has(*place));
+        let is_mine = |place: &usize| lease.as_ref().is_some_and(|lease| lease.contents.has(*place));
         let mine: Vec<usize> = open.iter().copied().filter(is_mine).collect();
         let others: Vec<LeaseContents> =
             others.into_iter().filter(|other| open.iter().any(|place| other.has(*place))).collect();

@@ -18,6 +18,7 @@ use grainbench::reports::study::step::Model;
 use grainbench::store::key;
 use grainbench::store::log::State;
 use grainbench::studies::cost::against::{compare, shared};
+use grainbench::studies::cost::knobs::SweepPoint;
 use grainbench::studies::cost::run::{PointSelection, PointSet};
 use grainbench::studies::cost::{load, step};
 use serde::{Deserialize, Serialize};
@@ -123,16 +124,16 @@ impl Study for CostStudy {
             });
         }
         for (number, set) in (0..).zip(&self.sets) {
-            for point in set.planned() {
+            for (id, SweepPoint { solver, resolution, knobs, .. }, seconds) in set.planned() {
                 tasks.push(Task {
                     scene: format!("{}/{}", set.subject.case.name, set.subject.variant),
-                    solver: point.solver,
-                    level: point.setting,
+                    solver: solver.clone(),
+                    level: if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") },
                     what: set.subject.quantity.clone(),
                     repetitions: if self.wanted.counts { 1 } else { 5 },
                     // One worker measures all points of a target quantity, with their repetitions in alternation.
                     group: if self.wanted.counts { None } else { Some(number) },
-                    ..Task::new(point.id, point.seconds)
+                    ..Task::new(id, seconds)
                 });
             }
         }

@@ -56,19 +56,6 @@ pub struct PointSelection {
     pub counts: bool,
 }
 
-/// Description of a point before its measurement.
-#[derive(Clone, Debug, PartialEq)]
-pub struct PointPlan {
-    /// Id of the task that measures the point.
-    pub id: Id,
-    /// Solver name with its settings.
-    pub solver: String,
-    /// Resolution and further parameters as text.
-    pub setting: String,
-    /// Expected time of all repetitions (s).
-    pub seconds: f64,
-}
-
 /// Point to measure.
 struct Task {
     turn: SweepPoint,
@@ -126,20 +113,15 @@ impl PointSet {
         self.tasks.len()
     }
 
-    /// Returns the points in the order of their first measurement.
-    #[must_use]
-    pub fn planned(&self) -> Vec<PointPlan> {
-        let planned = |task: &Task| {
+    /// Returns the id and the expected time of all repetitions (s) of each point, in the order of their first measurement.
+    pub fn planned(&self) -> impl Iterator<Item = (Id, &SweepPoint, f64)> {
+        self.tasks.iter().map(|task| {
             let once = knobs::nominal_seconds(&task.scene, &task.turn.resolution);
             let once = if task.is_program { PROGRAM * once } else { once };
             let times = if self.counts || once >= SHORT { 1.0 } else { 1.0 + REPETITIONS as f64 };
             // A repetition lasts at least `LEAST`, because of the resolution of the clock.
-            let seconds = times * once.max(if self.counts { 0.0 } else { LEAST });
-            let SweepPoint { solver, resolution, knobs, .. } = &task.turn;
-            let setting = if knobs.is_empty() { resolution.to_string() } else { format!("{resolution}, {knobs}") };
-            PointPlan { id: task.id, solver: solver.clone(), setting, seconds }
-        };
-        self.tasks.iter().map(planned).collect()
+            (task.id, &task.turn, times * once.max(if self.counts { 0.0 } else { LEAST }))
+        })
     }
 
     /// Measures the points with the given indices, one at a time, with repetitions in alternation. Calls `now` with the
