@@ -110,7 +110,7 @@ pub(crate) fn figure(diagram: &Diagram) -> Figure {
             None => format!("{line} (not measured)"),
             Some(_) if !own.is_empty() => line.to_owned(),
             Some(point) if point.standing == PointStatus::Unsupported => format!("{line} (unsupported)"),
-            Some(point) => format!("{line} ({})", word(point.standing)),
+            Some(point) => format!("{line} ({})", point.standing.word("cannot")),
         };
         curves.push(Curve::new(label, Stroke::MarkedLine, own.iter().filter_map(|point| drawn(point)).collect()));
         let others = of_line(diagram, line).filter(|point| !is_own(point)).filter_map(drawn);
@@ -139,15 +139,6 @@ pub(crate) fn figure(diagram: &Diagram) -> Figure {
         [Axis::log("wall-clock time of the stepping loop (s)"), Axis::log("|error| / scale")],
         curves,
     )
-}
-
-const fn word(standing: PointStatus) -> &'static str {
-    match standing {
-        PointStatus::Measured => "measured",
-        PointStatus::Failed => "failed",
-        PointStatus::Unsupported => "cannot",
-        PointStatus::NotAvailable => "not installed",
-    }
 }
 
 /// Returns the bars at the error floors of a solver, each from the first to the last point on the floor.
@@ -234,7 +225,7 @@ pub(super) fn points_table(diagrams: &[Diagram]) -> Table<'_> {
     let counts = Counts::default().named().map(|(name, _)| Column::new(name, Format::Count));
     let rows = diagrams.iter().flat_map(|diagram| &diagram.points).map(|point| {
         let names = [&point.case, &point.variant, &point.quantity, &point.solver, &point.resolution, &point.knobs];
-        let names = names.map(Cell::from).into_iter().chain([word(point.standing).into()]);
+        let names = names.map(Cell::from).into_iter().chain([point.standing.word("cannot").into()]);
         let times = [point.error, point.wall_seconds, point.wall_spread, point.cpu_seconds, point.start_up_seconds];
         names.chain(times.map(Cell::from)).chain(point.counts.named().map(|(_, count)| count.into())).collect()
     });

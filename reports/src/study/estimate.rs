@@ -1,6 +1,7 @@
 //! Cost of accuracy of a scene without an exact solution. Errors are estimates from the levels of each solver.
 
 use super::cost::TARGETS;
+use super::point::PointStatus;
 use super::stability::Limit;
 use crate::distinct;
 use crate::number;
@@ -21,6 +22,8 @@ const MARGIN: f64 = 0.5;
 const CRITICAL_STEP: &str = "2√(m/k)";
 /// Number of quantities whose figures are visible without a click.
 const OPEN: usize = 3;
+/// Status in words of a solver that cannot represent the scene.
+const CANNOT: &str = "cannot run the scene";
 /// Smallest plotted error.
 const LEAST: f64 = 1e-12;
 
@@ -76,34 +79,6 @@ impl Basis {
     }
 }
 
-/// Status of a run at one level.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize, Deserialize)]
-#[serde(rename_all = "kebab-case")]
-pub enum LevelStatus {
-    /// The run ended, and its quantities are finite.
-    Measured,
-    /// The run broke.
-    Failed,
-    /// The run was ended because it would exceed the time budget.
-    OverBudget,
-    /// The solver cannot represent the scene.
-    Unsupported,
-    /// The program is not installed.
-    NotAvailable,
-}
-
-impl LevelStatus {
-    pub(crate) const fn word(self) -> &'static str {
-        match self {
-            Self::Measured => "measured",
-            Self::Failed => "failed",
-            Self::OverBudget => "over the budget",
-            Self::Unsupported => "cannot run the scene",
-            Self::NotAvailable => "not installed",
-        }
-    }
-}
-
 /// Run of a solver at one level.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Level {
@@ -112,7 +87,7 @@ pub struct Level {
     /// Resolution in words, with the change of the scene if there is one.
     pub setting: String,
     /// Status of the run.
-    pub status: LevelStatus,
+    pub status: PointStatus,
     /// Median wall-clock time of the stepping loop (s). For a failed run, the time until the failure.
     pub wall_seconds: Option<f64>,
     /// Number of timed repetitions.
@@ -256,10 +231,10 @@ impl SceneCost {
     fn reason(&self, solver: &str) -> String {
         let own = || self.levels.iter().filter(|level| level.solver == solver);
         let count = |status| own().filter(|level| level.status == status).count();
-        match (count(LevelStatus::Measured), count(LevelStatus::Failed), own().next_back()) {
+        match (count(PointStatus::Measured), count(PointStatus::Failed), own().next_back()) {
             (_, _, None) => "no run".to_owned(),
-            (0, failed, Some(last)) if last.status == LevelStatus::Failed => format!("{failed} levels failed"),
-            (0, _, Some(last)) => last.status.word().to_owned(),
+            (0, failed, Some(last)) if last.status == PointStatus::Failed => format!("{failed} levels failed"),
+            (0, _, Some(last)) => last.status.word(CANNOT).to_owned(),
             (1, ..) => "only one level ended, and two are needed".to_owned(),
             _ => "no finite value".to_owned(),
         }
@@ -548,12 +523,12 @@ fn softer(cost: &SceneCost) -> Markup {
 fn levels(rows: &[Level]) -> Markup {
     Columns::<&Level>::new(Column::heading("Solver"), |level| &level.solver)
         .and(Column::text("Setting"), |level| &level.setting)
-        .and(Column::text("Run"), |level| level.status.word())
+        .and(Column::text("Run"), |level| level.status.word(CANNOT))
         .and(Column::new("Wall time", Format::Seconds), |level| level.wall_seconds)
         .and(Column::new("Repetitions", Format::Count), |level| level.repetitions)
         .and(Column::new("Steps", Format::Count), |level| level.steps)
         .and(Column::text("Message").class("wide"), |level| level.detail.as_deref().unwrap_or_default())
-        .table("Every run", rows, |level| if level.status == LevelStatus::Measured { "" } else { "amber" })
+        .table("Every run", rows, |level| if level.status == PointStatus::Measured { "" } else { "amber" })
         .page("rows")
 }
 

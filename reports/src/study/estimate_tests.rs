@@ -29,7 +29,7 @@ fn cost(quantities: Vec<Quantity>) -> SceneCost {
     let level = |point: &EstimatedPoint| Level {
         solver: point.solver.clone(),
         setting: point.setting.clone(),
-        status: LevelStatus::Measured,
+        status: PointStatus::Measured,
         wall_seconds: Some(point.wall_seconds),
         repetitions: 1,
         steps: 1,
@@ -87,9 +87,9 @@ fn a_solver_without_a_value_is_named() {
     let measured = cost.levels[0].clone();
     let level = |solver: &str, status| Level { solver: solver.to_owned(), status, ..measured.clone() };
     cost.names = ["rigid", "dem", "mpm", "other", "slow"].map(str::to_owned).to_vec();
-    cost.levels.extend([LevelStatus::Failed; 5].map(|status| level("dem", status)));
-    cost.levels.push(level("mpm", LevelStatus::Unsupported));
-    cost.levels.push(level("slow", LevelStatus::Measured));
+    cost.levels.extend([PointStatus::Failed; 5].map(|status| level("dem", status)));
+    cost.levels.push(level("mpm", PointStatus::Unsupported));
+    cost.levels.push(level("slow", PointStatus::Measured));
     let sentences = [cost.sentence(0.01, &[]), cost.sentence_of(&cost.quantities[0], 0.01, &[])];
     for sentence in sentences {
         for words in [

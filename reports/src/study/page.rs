@@ -170,7 +170,7 @@ fn points(diagram: &Diagram) -> Markup {
     let class = |point: &Point| match point.standing {
         PointStatus::Measured => "",
         PointStatus::Failed => "fail",
-        PointStatus::Unsupported | PointStatus::NotAvailable => "amber",
+        PointStatus::OverBudget | PointStatus::Unsupported | PointStatus::NotAvailable => "amber",
     };
     Columns::<&Point>::new(Column::heading("Solver"), |point| &point.solver)
         .and(Column::text("Setting"), Point::setting)

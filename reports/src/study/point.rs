@@ -3,19 +3,34 @@
 use grainbench_solver::record::Cost;
 use serde::{Deserialize, Serialize};
 
-/// Status of a point.
+/// Status of a point, or of a run at one level.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
 #[serde(rename_all = "kebab-case")]
 pub enum PointStatus {
-    /// The point has an error and a computing time.
+    /// The point has an error and a computing time. The quantities of a level are finite.
     Measured,
     /// The run crashed, or its error is not finite. The point is plotted at the time until the failure.
     #[default]
     Failed,
+    /// The run was ended because it would exceed the time budget.
+    OverBudget,
     /// The solver cannot represent the scene, or the record lacks the quantity.
     Unsupported,
     /// The program is not installed.
     NotAvailable,
+}
+
+impl PointStatus {
+    /// Returns the status in words. `unsupported` stands for a solver that cannot represent the scene.
+    pub(crate) const fn word(self, unsupported: &'static str) -> &'static str {
+        match self {
+            Self::Measured => "measured",
+            Self::Failed => "failed",
+            Self::OverBudget => "over the budget",
+            Self::Unsupported => unsupported,
+            Self::NotAvailable => "not installed",
+        }
+    }
 }
 
 /// Operation counts of a run. They do not depend on the machine, and are equal in repeated runs. A count that a program

@@ -11,9 +11,8 @@ use grainbench_harness::evidence::Evidence;
 use grainbench_harness::solvers::Solvers;
 use grainbench_harness::statistics::median;
 use grainbench_reports::number;
-use grainbench_reports::study::estimate::{
-    Estimate, EstimatedPoint, Level, LevelStatus, Quantity, Reduction, SceneCost,
-};
+use grainbench_reports::study::estimate::{Estimate, EstimatedPoint, Level, Quantity, Reduction, SceneCost};
+use grainbench_reports::study::point::PointStatus;
 use grainbench_scene::contact_law::ContactLaw;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::Solver;
@@ -252,9 +251,9 @@ impl<'a> Measurement<'a> {
         self.finished[at].levels.push((fineness, seconds));
         self.runs.push(run);
         let is_last_factor = last > 0.0 && self.ladders[at].listed.is_empty() && fineness < 1.9 * last;
-        let failures = self.own(at).rev().take_while(|run| run.stored.status == LevelStatus::Failed).count();
+        let failures = self.own(at).rev().take_while(|run| run.stored.status == PointStatus::Failed).count();
         let most = FAILURES[usize::from(self.ladders[at].has_cells())];
-        let is_over = !matches!(status, LevelStatus::Measured | LevelStatus::Failed);
+        let is_over = !matches!(status, PointStatus::Measured | PointStatus::Failed);
         if is_over || is_last_factor || failures >= most || self.is_converged(at) {
             self.finished[at].closed = true;
         }
@@ -308,7 +307,7 @@ impl<'a> Measurement<'a> {
         self.stored += std::mem::take(&mut self.repeated);
         while !self.is_stopped() {
             let time =
-                |run: &Run| if run.stored.status == LevelStatus::Measured { run.stored.seconds } else { f64::INFINITY };
+                |run: &Run| if run.stored.status == PointStatus::Measured { run.stored.seconds } else { f64::INFINITY };
             // Softer contacts are timed once.
             let is_softer = |run: &Run| matches!(run.purpose, Purpose::Softer(_));
             let count = |run: &Run| if is_softer(run) { REPETITIONS } else { run.stored.walls.len() };
@@ -335,7 +334,7 @@ impl<'a> Measurement<'a> {
 
     /// Returns the measured runs of a solver for a purpose, from coarse to fine.
     fn measured(&self, solver: usize, purpose: Purpose) -> Vec<&Run> {
-        let is_measured = |run: &&Run| run.purpose == purpose && run.stored.status == LevelStatus::Measured;
+        let is_measured = |run: &&Run| run.purpose == purpose && run.stored.status == PointStatus::Measured;
         self.own(solver).filter(is_measured).collect()
     }
 
@@ -367,19 +366,19 @@ impl<'a> Measurement<'a> {
             }
             Err(_) => {
                 let stored = self.measure(at, &scene, &resolution);
-                self.is_reused &= stored.status == LevelStatus::OverBudget;
+                self.is_reused &= stored.status == PointStatus::OverBudget;
                 // An external program fails when it is stopped.
-                if self.is_stopped() && stored.status != LevelStatus::Measured {
+                if self.is_stopped() && stored.status != PointStatus::Measured {
                     return Ok(None);
                 }
-                if stored.status != LevelStatus::OverBudget {
+                if stored.status != PointStatus::OverBudget {
                     self.study.cache.put(&name, &stored)?;
                 }
                 stored
             }
         };
         match stored.status {
-            LevelStatus::Measured | LevelStatus::Failed => {}
+            PointStatus::Measured | PointStatus::Failed => {}
             _ => {
                 let detail = stored.detail.clone().unwrap_or_default();
                 let is_named = detail.starts_with(solver_name.as_str());
@@ -390,15 +389,11 @@ impl<'a> Measurement<'a> {
     }
 
     fn measure(&self, at: usize, scene: &Scene, resolution: &Resolution) -> StoredRun {
-        let mut stored = StoredRun {
-            status: LevelStatus::NotAvailable,
-            seconds: 0.0,
-            walls: Vec::new(),
-            steps: 0,
-            detail: Some("there is no such solver".to_owned()),
-            columns: Vec::new(),
+        let mut stored = StoredRun::default();
+        let Some(solver) = &self.found[at] else {
+            let detail = Some("there is no such solver".to_owned());
+            return StoredRun { status: PointStatus::NotAvailable, detail, ..stored };
         };
-        let Some(solver) = &self.found[at] else { return stored };
         // A first whole run of unknown cost must not use the time of the other solvers.
         let limit = match self.measured(at, Purpose::Level).is_empty() {
             true => FIRST * self.remaining(PARTS[0]),
@@ -410,15 +405,14 @@ impl<'a> Measurement<'a> {
         stored.seconds = begin.elapsed().as_secs_f64();
         match record {
             Ok(record) => {
-                stored.status = LevelStatus::Measured;
+                stored.status = PointStatus::Measured;
                 stored.walls = vec![wall_seconds(&record, stored.seconds)];
                 stored.steps = record.cost.steps;
-                stored.detail = None;
                 stored.columns = columns(&record, self.study.window);
             }
             Err(error) => {
                 (stored.status, stored.detail) = failure(&error, within.0.completed(), stored.seconds, resolution);
-                if stored.status == LevelStatus::Failed {
+                if stored.status == PointStatus::Failed {
                     stored.walls = vec![stored.seconds];
                 }
             }
@@ -534,12 +528,12 @@ impl<'a> Measurement<'a> {
             let is_known = is_over && self.found[at].is_some();
             return is_known.then(|| format!("{name}: no run fits into the time that the other solvers leave."));
         };
-        let mut failed = levels.iter().filter(|run| run.stored.status == LevelStatus::Failed);
+        let mut failed = levels.iter().filter(|run| run.stored.status == PointStatus::Failed);
         let (count, finest) = (failed.clone().count(), failed.next_back()?);
-        if levels.iter().any(|run| run.stored.status == LevelStatus::Measured) {
+        if levels.iter().any(|run| run.stored.status == PointStatus::Measured) {
             return None;
         }
-        let is_cut = is_over && last.stored.status == LevelStatus::Failed && !self.finished[at].closed;
+        let is_cut = is_over && last.stored.status == PointStatus::Failed && !self.finished[at].closed;
         let end = if is_cut { "; a finer one does not fit into the budget" } else { "" };
         let detail = finest.stored.detail.as_deref().unwrap_or_default();
         Some(format!("{name}: {count} levels failed, the finest at {}{end}: {detail}", finest.setting))

@@ -283,7 +283,7 @@ fn a_stopped_study_has_whole_runs_only() {
     };
     let (stopped, whole) = (levels(100), levels(usize::MAX));
     assert!(stopped.levels.len() < whole.levels.len(), "{} {}", stopped.levels.len(), whole.levels.len());
-    assert!(stopped.levels.iter().all(|level| level.status == LevelStatus::Measured) && stopped.notes.is_empty());
+    assert!(stopped.levels.iter().all(|level| level.status == PointStatus::Measured) && stopped.notes.is_empty());
 }
 
 /// The solver `dem`, which breaks above a fraction of the critical time step.
@@ -324,9 +324,9 @@ fn a_solver_that_breaks_at_coarse_levels_gets_finer_ones() {
         })
     };
     let late = levels(0.4 / 50.0);
-    let failed = late.levels.iter().take_while(|level| level.status == LevelStatus::Failed).count();
+    let failed = late.levels.iter().take_while(|level| level.status == PointStatus::Failed).count();
     assert_eq!(failed, 6);
-    assert!(late.levels[failed..].iter().filter(|level| level.status == LevelStatus::Measured).count() >= 2);
+    assert!(late.levels[failed..].iter().filter(|level| level.status == PointStatus::Measured).count() >= 2);
     assert!(!late.sentence(0.01, &[]).contains("no value"), "{}", late.sentence(0.01, &[]));
     let never = levels(0.0);
     assert!(never.levels.len() == FAILURES[0] && never.quantities.is_empty());

@@ -2,7 +2,7 @@
 
 use crate::chaos::scale_of;
 use grainbench_reports::number;
-use grainbench_reports::study::estimate::LevelStatus;
+use grainbench_reports::study::point::PointStatus;
 use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::{Column, Record};
@@ -23,9 +23,9 @@ pub(super) struct StoredColumn {
     pub(super) scale: f64,
 }
 
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub(super) struct StoredRun {
-    pub(super) status: LevelStatus,
+    pub(super) status: PointStatus,
     /// Time of the first run (s), start-up included.
     pub(super) seconds: f64,
     /// Times of the stepping loop (s).
@@ -91,17 +91,17 @@ pub(super) fn failure(
     completed: Option<f64>,
     seconds: f64,
     resolution: &Resolution,
-) -> (LevelStatus, Option<String>) {
+) -> (PointStatus, Option<String>) {
     let status = match error {
-        RunError::Unsupported { .. } => LevelStatus::Unsupported,
-        RunError::NotAvailable { .. } => LevelStatus::NotAvailable,
+        RunError::Unsupported { .. } => PointStatus::Unsupported,
+        RunError::NotAvailable { .. } => PointStatus::NotAvailable,
         RunError::Interrupted { .. } => {
             let whole = completed.map(|fraction| number::seconds(seconds / fraction));
             let whole = whole.map_or_else(String::new, |whole| format!(": the whole run takes about {whole}"));
             let detail = format!("the run at {resolution} was ended after {}{whole}", number::seconds(seconds));
-            return (LevelStatus::OverBudget, Some(detail));
+            return (PointStatus::OverBudget, Some(detail));
         }
-        _ => LevelStatus::Failed,
+        _ => PointStatus::Failed,
     };
     (status, Some(error.to_string()))
 }
