@@ -30,14 +30,14 @@ pub(super) const HIDDEN: [&str; 4] = ["resume", "shard", "on", "resubmit"];
 pub(crate) fn judge(arguments: Arguments) -> Outcome {
     let Arguments { solver, cases, rest } = arguments;
     if !is_function(&solver) {
-        return judge_by(&cases, vec![solver], rest);
+        return judge_by(cases, vec![solver], rest);
     }
     if rest.plan.plan.is_some() {
         let found = format!("--plan: expected a manifest or the name of a solver, found the function `{solver}`");
         return Err(Fault::input(found));
     }
     let (folder, manifest) = manifest_of_function(&solver)?;
-    let done = judge_by(&cases, vec![manifest.display().to_string()], rest);
+    let done = judge_by(cases, vec![manifest.display().to_string()], rest);
     drop(folder);
     done
 }

@@ -2,21 +2,22 @@
 
 use super::cache;
 use super::claims::tasks::ClaimTasks;
-use super::claims::{ClaimOptions, narrow, report};
+use super::claims::{ClaimOptions, report};
 use super::cores::at_once;
 use super::earlier::EarlierReport;
 use super::exit::{self, Fault, Outcome, RED, check_writable, refuse};
 use super::filter::Filters;
 use super::jobs;
-use super::jobs::arguments::PlanOptions;
+use super::jobs::arguments::{Arguments as Planned, PlanOptions};
 use super::jobs::watch::Follower;
 use super::jobs::work::WorkOptions;
 use super::keep::{self, keep};
 use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish};
-use super::select::{self, CaseSelection};
+use super::select::CaseSelection;
 use super::undeclared;
 use grainbench::harness::run::{Data, SceneDataError};
+use grainbench::harness::runner::RunnerOptions;
 use grainbench::jobs::execute::in_memory;
 use grainbench::reports::{Section, line};
 use std::path::{Path, PathBuf};
@@ -56,49 +57,50 @@ pub(super) struct RunOptions {
 
 /// Runs the cases, writes a plan, or runs the tasks of a plan.
 pub(crate) fn command(arguments: Arguments) -> Outcome {
-    judge_by(&arguments.cases, arguments.solver, arguments.rest)
+    judge_by(arguments.cases, arguments.solver, arguments.rest)
 }
 
 /// Judges solvers by the cases, writes a plan, or runs the tasks of a plan.
-pub(super) fn judge_by(cases: &[String], solver: Vec<String>, rest: RunOptions) -> Outcome {
+pub(super) fn judge_by(cases: Vec<String>, solver: Vec<String>, rest: RunOptions) -> Outcome {
     let RunOptions { options, plan, resume, work } = rest;
-    let options = &ClaimOptions { solver, ..options };
     if let Some(plan) = resume {
         return jobs::work::work(&plan, &work, options.jobs, options.retry_failed);
     }
-    let planned = plan.planned(&jobs::arguments::Arguments {
+    let arguments = Planned {
         what: "run".to_owned(),
-        cases: cases.to_vec(),
-        solver: options.solver.clone(),
+        cases,
+        solver,
         levels: options.levels.clone(),
         filter: options.filter.clone(),
         no_controls: options.no_controls,
         live: options.live,
         json: options.json,
-        ..jobs::arguments::Arguments::default()
-    });
-    planned.map_or_else(|| run(cases, options), |planned| jobs::plan::plan(&planned))
+        ..Planned::default()
+    };
+    plan.planned(&arguments).map_or_else(|| run(arguments, &options), |planned| jobs::plan::plan(&planned))
 }
 
 /// Runs the named cases, or all cases if none is named.
-fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
-    let filters = Filters::read(&options.filter)?;
+fn run(mut arguments: Planned, options: &ClaimOptions) -> Outcome {
+    let filters = Filters::read(&arguments.filter)?;
     // With `--retry-failed` and without names, the cases of the earlier run are used.
     let before = if options.retry_failed { Some(EarlierReport::read("--retry-failed", &options.out)?) } else { None };
-    let of_before = before.as_ref().map(EarlierReport::cases).unwrap_or_default();
-    let cases = if cases.is_empty() { &of_before[..] } else { cases };
+    if let Some(before) = before.as_ref().filter(|_| arguments.cases.is_empty()) {
+        arguments.cases = before.cases();
+    }
     let earlier = options.against.as_deref().map(|path| EarlierReport::read("--against", path)).transpose()?;
-    let mut selected = select::select(cases, &options.solver, &options.levels)?;
-    narrow(&mut selected, options, &filters, before.as_ref())?;
+    let (threads, data) = (usize::from(options.threads), options.data.clone());
+    let of_runs = RunnerOptions { threads, data, ..RunnerOptions::default() };
+    let tasks = ClaimTasks::new(&arguments, &filters, before.as_ref(), of_runs)?;
     if let Some(folder) = &options.data {
-        refuse_without_use(&selected, folder)?;
+        refuse_without_use(&tasks.selected, folder)?;
     }
     check_writable(&options.out)?;
-    let is_whole = cases.is_empty() && options.filter.is_empty() && !options.retry_failed;
-    let tasks = ClaimTasks::new(cases, selected, options, is_whole)?.cached(cache::open(options.no_cache));
+    let tasks = tasks.cached(cache::open(options.no_cache));
     let selected = &tasks.selected;
     let kept = if options.expect_stored { Some(keep::read(keep::program(selected)?)?) } else { None };
-    if let Some(part) = cases.iter().chain(&options.filter).next().filter(|_| options.update_stored) {
+    let named = arguments.cases.iter().chain(&arguments.filter).next();
+    if let Some(part) = named.filter(|_| options.update_stored) {
         refuse!("--update-stored: expected all cases, found `{part}` named");
     }
     let keeping = if options.update_stored { Some(keep::program(selected)?) } else { None };
@@ -137,7 +139,7 @@ fn run(cases: &[String], options: &ClaimOptions) -> Outcome {
     let code = publish(&report, &output)?;
     undeclared::tell(&report);
     if let Some(earlier) = &earlier {
-        let changes = earlier.changes(&report, is_whole);
+        let changes = earlier.changes(&report, named.is_none() && before.is_none());
         let none = ["nothing: every result and every control has the same outcome, value and tolerance".to_owned()];
         let lines = if changes.is_empty() { &none[..] } else { &changes[..] };
         lines.iter().for_each(|line| exit::say("changed", line));

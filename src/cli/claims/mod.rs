@@ -7,6 +7,7 @@ use super::cores::MOST_THREADS;
 use super::earlier::EarlierReport;
 use super::exit::{Fault, refuse};
 use super::filter::Filters;
+use super::jobs::arguments::Arguments;
 use super::select::CaseSelection;
 use super::value::whole;
 use grainbench::harness::claim::Claim;
@@ -15,11 +16,8 @@ use grainbench::reports::{Provenance, Report, Section};
 use std::path::PathBuf;
 
 /// Options of `run` and `judge`.
-#[derive(Default, clap::Args)]
+#[derive(clap::Args)]
 pub(crate) struct ClaimOptions {
-    /// Solvers of `run --solver` or of `judge`, by name or manifest.
-    #[arg(skip)]
-    pub(crate) solver: Vec<String>,
     /// Resolution levels: `default`, `all`, or names such as `dt=.1`.
     #[arg(long, value_name = "default|all|NAME,…", value_delimiter = ',')]
     pub(crate) levels: Vec<String>,
@@ -98,9 +96,9 @@ pub(crate) fn report(provenance: Provenance, sections: Vec<Section>, is_whole: b
 
 /// Removes the claims that the filters exclude. With the earlier report of `--retry-failed`, also removes the claims that were
 /// not red in it, unless an interrupted run omitted them.
-pub(crate) fn narrow(
+fn narrow(
     selected: &mut Vec<CaseSelection>,
-    options: &ClaimOptions,
+    arguments: &Arguments,
     filters: &Filters,
     before: Option<&EarlierReport>,
 ) -> Result<(), Fault> {
@@ -109,7 +107,7 @@ pub(crate) fn narrow(
         let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
         let is_meant = |claim: &Claim| {
             let solver = stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default();
-            before.is_none_or(|before| before.is_open(case, solver, claim, !options.no_controls))
+            before.is_none_or(|before| before.is_open(case, solver, claim, !arguments.no_controls))
         };
         let asked = of_case.claims.len();
         of_case.claims.retain(|claim| filters.means(claim) && is_meant(claim));
@@ -125,17 +123,16 @@ pub(crate) fn narrow(
 }
 
 /// Returns the cases, and the given options that select claims or change runs, for the provenance of the report.
-pub(crate) fn words(cases: &[String], options: &ClaimOptions) -> Vec<String> {
-    let mut words = cases.to_vec();
-    words.extend(options.solver.iter().map(|solver| format!("--solver {solver}")));
-    if !options.levels.is_empty() {
-        words.push(format!("--levels {}", options.levels.join(",")));
+fn words(arguments: &Arguments, has_data: bool, retry_failed: bool) -> Vec<String> {
+    let Arguments { cases, solver, levels, filter, live, no_controls, .. } = arguments;
+    let mut words = cases.clone();
+    words.extend(solver.iter().map(|solver| format!("--solver {solver}")));
+    if !levels.is_empty() {
+        words.push(format!("--levels {}", levels.join(",")));
     }
-    let given = [("--live", options.live), ("--no-controls", options.no_controls), ("--data", options.data.is_some())];
+    let given = [("--live", *live), ("--no-controls", *no_controls), ("--data", has_data)];
     words.extend(given.into_iter().filter(|(_, is_given)| *is_given).map(|(name, _)| name.to_owned()));
-    words.extend(options.filter.iter().map(|filter| format!("--filter {filter}")));
-    if options.retry_failed {
-        words.push("--retry-failed".to_owned());
-    }
+    words.extend(filter.iter().map(|filter| format!("--filter {filter}")));
+    words.extend(retry_failed.then(|| "--retry-failed".to_owned()));
     words
 }

@@ -1,9 +1,9 @@
 //! Tasks of `run` and `conform`, in memory or from a plan: one for each claim with its negative control, one for the
 //! figures of each case, and one for the conformance of each solver.
 
-use super::ClaimOptions;
 use super::conformance::{self as conform, ConformingSolver};
 use crate::cli::cache;
+use crate::cli::earlier::EarlierReport;
 use crate::cli::exit::{self, Fault, Outcome, refuse};
 use crate::cli::filter::Filters;
 use crate::cli::jobs::arguments::Arguments;
@@ -80,45 +80,43 @@ enum ClaimTask {
 impl ClaimTasks {
     /// Returns the tasks of a plan.
     pub(crate) fn from_arguments(arguments: &Arguments) -> Result<Self, Fault> {
-        let Arguments { cases, solver, levels, filter, no_controls, live, .. } = arguments.clone();
-        let options = ClaimOptions { solver, levels, filter, no_controls, live, threads: 1, ..ClaimOptions::default() };
-        let filters = Filters::read(&options.filter)?;
+        let filters = Filters::read(&arguments.filter)?;
         if !filters.outcomes().is_empty() {
             refuse!("--filter: expected quantity, source or evidence (`outcome` is unknown before the run)");
         }
-        let mut selected = select::select(&cases, &options.solver, &options.levels)?;
-        super::narrow(&mut selected, &options, &filters, None)?;
-        let is_whole = cases.is_empty() && options.filter.is_empty();
-        let tasks = Self::new(&cases, selected, &options, is_whole)?.cached(cache::open(false));
-        let manifests: Vec<String> = options.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
+        let tasks = Self::new(arguments, &filters, None, RunnerOptions::default())?.cached(cache::open(false));
+        let manifests: Vec<String> = arguments.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
         let (strangers, _) = NamedSolvers::read_for(&manifests, true)?;
         Ok(Self { strangers, ..tasks })
     }
 
-    /// Returns the tasks of the selected claims of the named cases. The conformance of solvers is included if the whole
-    /// registry is selected (`is_whole`) at its default levels or at all levels.
+    /// Returns the tasks of the claims that the arguments, the filters and the earlier report of `--retry-failed` select.
+    /// The conformance of solvers is included if the whole registry is selected at its default levels or at all levels.
+    /// `options` contains the number of threads and the directory of third-party data.
     pub(crate) fn new(
-        cases: &[String],
-        selected: Vec<CaseSelection>,
-        options: &ClaimOptions,
-        is_whole: bool,
+        arguments: &Arguments,
+        filters: &Filters,
+        before: Option<&EarlierReport>,
+        options: RunnerOptions,
     ) -> Result<Self, Fault> {
-        let thorough = options.levels.iter().any(|level| level == "all");
-        let conforms = is_whole && (options.levels.is_empty() || thorough);
-        let conforming = if conforms { conform::owing(&options.solver)? } else { Vec::new() };
+        let Arguments { cases, solver, levels, filter, no_controls, live, .. } = arguments;
+        let mut selected = select::select(cases, solver, levels)?;
+        super::narrow(&mut selected, arguments, filters, before)?;
+        let is_whole = cases.is_empty() && filter.is_empty() && before.is_none();
+        let thorough = levels.iter().any(|level| level == "all");
+        let conforms = is_whole && (levels.is_empty() || thorough);
+        let conforming = if conforms { conform::owing(solver)? } else { Vec::new() };
         Ok(Self {
+            is_whole: is_whole && solver.is_empty(),
+            words: super::words(arguments, options.data.is_some(), before.is_some()),
+            // With all levels, runs with stored results are repeated too.
             options: RunnerOptions {
-                stranger: None,
-                live: options.live,
+                live: *live,
                 thorough,
-                controlled: !options.no_controls,
-                threads: usize::from(options.threads),
-                // With all levels, runs with stored results are repeated too.
+                controlled: !no_controls,
                 afresh: thorough.then_some(Set::Paper),
-                data: options.data.clone(),
+                ..options
             },
-            is_whole: is_whole && options.solver.is_empty(),
-            words: super::words(cases, options),
             ..Self::with(selected, conforming)
         })
     }
