@@ -18,43 +18,32 @@ use thiserror::Error;
 use crate::scratch::{remove_leftovers, temporary_in};
 use crate::write::WriteError;
 
-/// Reason why a stored file cannot be used.
+/// Reason why a stored file cannot be used: it cannot be read, is truncated, or has another format, key or hash than expected.
 #[derive(Debug, Error)]
-pub enum ReadError {
-    /// The file is absent or cannot be read.
-    #[error("{}: expected a readable file, found {source}", one_line(&path.to_string_lossy()))]
-    Unreadable {
-        /// Path of the file.
-        path: PathBuf,
-        /// Error of the operating system.
-        source: io::Error,
-    },
-    /// The file has another format, key or hash than expected.
-    #[error("{}: expected {}, found {}", one_line(&path.to_string_lossy()), one_line(expected), one_line(found))]
-    Other {
-        /// Path of the file.
-        path: PathBuf,
-        /// Expected content.
-        expected: String,
-        /// Content found.
-        found: String,
-    },
-    /// The file is truncated, or not of its kind.
-    #[error("{}{place}: {reason}", one_line(&path.to_string_lossy()))]
-    Damaged {
-        /// Path of the file.
-        path: PathBuf,
-        /// Position in the file, such as `, line 3, column 4, at key`; empty for the file as a whole.
-        place: String,
-        /// Expected content and content found.
-        reason: String,
-    },
+#[error("{}{place}: {reason}", one_line(&path.to_string_lossy()))]
+pub struct ReadError {
+    path: PathBuf,
+    /// Position in the file, such as `, line 3, column 4, at key`; empty for the file as a whole.
+    place: String,
+    /// Expected content and content found.
+    reason: String,
 }
 
 impl ReadError {
     /// Returns the error of a file with other content than expected.
     pub fn other(path: &Path, expected: impl Into<String>, found: impl Into<String>) -> Self {
-        Self::Other { path: path.to_owned(), expected: expected.into(), found: found.into() }
+        Self::at(path, String::new(), &expected.into(), &found.into())
+    }
+
+    /// Returns the error of other content than expected at a position in a file.
+    fn at(path: &Path, place: String, expected: &str, found: &str) -> Self {
+        let reason = format!("expected {}, found {}", one_line(expected), one_line(found));
+        Self { path: path.to_owned(), place, reason }
+    }
+
+    /// Returns the error of a file that is absent or cannot be read.
+    fn unreadable(path: &Path, error: &io::Error) -> Self {
+        Self::other(path, "a readable file", error.to_string())
     }
 }
 
@@ -64,7 +53,7 @@ fn one_line(text: &str) -> String {
 }
 
 fn read(path: &Path) -> Result<Vec<u8>, ReadError> {
-    fs::read(path).map_err(|source| ReadError::Unreadable { path: path.to_owned(), source })
+    fs::read(path).map_err(|error| ReadError::unreadable(path, &error))
 }
 
 /// Reads a JSON file.
@@ -94,7 +83,7 @@ pub fn parse_json<T: DeserializeOwned>(path: &Path, bytes: &[u8]) -> Result<T, R
             None => one_line(words),
         };
         let place = format!(", line {}, column {}, at `{}`", error.line(), error.column(), one_line(&place));
-        ReadError::Damaged { path: path.to_owned(), place, reason }
+        ReadError { path: path.to_owned(), place, reason }
     })
 }
 
@@ -114,8 +103,7 @@ pub fn read_toml<T: DeserializeOwned>(path: &Path) -> Result<T, ReadError> {
     let text = read_text(path)?;
     toml::from_str(&text).map_err(|error| {
         let TomlError { line, expected, found, .. } = TomlError::new(&text, &error);
-        let reason = format!("expected {}, found {}", one_line(&expected), one_line(&found));
-        ReadError::Damaged { path: path.to_owned(), place: format!(":{line}"), reason }
+        ReadError::at(path, format!(":{line}"), &expected, &found)
     })
 }
 
@@ -196,7 +184,7 @@ impl Directory {
     pub fn read(&self, key: &str) -> Result<Vec<u8>, ReadError> {
         let path = self.path(key);
         if self.is_fresh {
-            return Err(ReadError::Unreadable { path, source: io::ErrorKind::NotFound.into() });
+            return Err(ReadError::unreadable(&path, &io::ErrorKind::NotFound.into()));
         }
         read(&path)
     }
