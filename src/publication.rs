@@ -26,28 +26,11 @@ const PIXELS: f32 = 300.0 / 96.0;
 /// Largest number of pixels of a PNG picture. A figure of the page has about 4 million.
 const MOST_PIXELS: u64 = 100_000_000;
 
-/// File format of a figure.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum FigureFormat {
-    /// Scalable picture with letters that can be selected.
-    Pdf,
-    /// Picture with 300 pixels in an inch.
-    Png,
-}
+/// Format of a figure: ending of the file names, and function that converts a drawing.
+pub type FigureFormat = (&'static str, fn(&Tree) -> Result<Vec<u8>, String>);
 
-impl FigureFormat {
-    /// All formats.
-    pub const ALL: [Self; 2] = [Self::Pdf, Self::Png];
-
-    /// Returns the ending of the file names.
-    #[must_use]
-    pub const fn ending(self) -> &'static str {
-        match self {
-            Self::Pdf => "pdf",
-            Self::Png => "png",
-        }
-    }
-}
+/// All formats: scalable pictures with letters that can be selected, and pictures with 300 pixels in an inch.
+pub const FORMATS: [FigureFormat; 2] = [("pdf", pdf), ("png", png)];
 
 /// Draws figures again in a style, as `dir/figures/NAME.svg`. All other files stay.
 ///
@@ -75,19 +58,19 @@ pub fn write_figures<F: Borrow<Figure>>(
 pub fn convert_figures<'a>(
     dir: &Path,
     names: impl Iterator<Item = &'a str>,
-    format: FigureFormat,
+    (ending, draw): FigureFormat,
     families: Option<&str>,
 ) -> Result<(), SaveError> {
     let paths = names.map(|name| dir.join("figures").join(format!("{name}.svg")));
-    let paths: Vec<PathBuf> = paths.filter(|path| format != FigureFormat::Png || !is_film(path)).collect();
+    let paths: Vec<PathBuf> = paths.filter(|path| ending != "png" || !is_film(path)).collect();
     let options = options(families)?;
     let converted: Vec<(PathBuf, Vec<u8>)> = paths
         .par_iter()
         .map(|path| {
             let svg = fs::read_to_string(path).map_err(|error| wrong(path, &error.to_string()))?;
-            let bytes = convert(&svg, format, &options).map_err(|reason| wrong(path, &reason))?;
+            let bytes = convert(&svg, draw, &options).map_err(|reason| wrong(path, &reason))?;
             let name = path.file_name().unwrap_or_default();
-            Ok((Path::new("figures").join(name).with_extension(format.ending()), bytes))
+            Ok((Path::new("figures").join(name).with_extension(ending), bytes))
         })
         .collect::<Result<_, SaveError>>()?;
     let mut out = StagedDir::new(dir)?;
@@ -137,15 +120,11 @@ fn options(families: Option<&str>) -> Result<Options<'static>, SaveError> {
     Ok(Options { fontdb: Arc::new(fonts), font_family, image_href_resolver: resolver, ..Options::default() })
 }
 
-/// Converts an SVG document.
-fn convert(svg: &str, format: FigureFormat, options: &Options<'_>) -> Result<Vec<u8>, String> {
+/// Converts an SVG document by a function for its drawing.
+fn convert(svg: &str, draw: fn(&Tree) -> Result<Vec<u8>, String>, options: &Options<'_>) -> Result<Vec<u8>, String> {
     // A dot is a line of length zero with a round end, which the reader of SVG would leave out.
     let dots = svg.replace("h0\"", "h.01\"").replace("h0M", "h.01M");
-    let tree = Tree::from_str(&dots, options).map_err(|error| error.to_string())?;
-    match format {
-        FigureFormat::Pdf => pdf(&tree),
-        FigureFormat::Png => png(&tree),
-    }
+    draw(&Tree::from_str(&dots, options).map_err(|error| error.to_string())?)
 }
 
 fn pdf(tree: &Tree) -> Result<Vec<u8>, String> {
@@ -183,7 +162,7 @@ mod tests {
 
     #[test]
     fn a_picture_has_300_pixels_in_an_inch() {
-        let png = convert(BAR, FigureFormat::Png, &options(None).unwrap()).unwrap();
+        let png = convert(BAR, png, &options(None).unwrap()).unwrap();
         let picture = Pixmap::decode_png(&png).unwrap();
         assert_eq!((picture.width(), picture.height()), (300, 150));
         let color = |x, y| picture.pixel(x, y).map(|pixel| (pixel.red(), pixel.green(), pixel.blue()));
@@ -197,7 +176,7 @@ mod tests {
 
     #[test]
     fn a_document_has_the_size_of_the_figure_and_its_font() {
-        let pdf = convert(BAR, FigureFormat::Pdf, &options(None).unwrap()).unwrap();
+        let pdf = convert(BAR, pdf, &options(None).unwrap()).unwrap();
         let text = String::from_utf8_lossy(&pdf).replace(' ', "");
         assert!(text.starts_with("%PDF-") && text.contains("+DejaVuSans"), "{text}");
         let size = text.split("/MediaBox[").nth(1).and_then(|rest| rest.split(']').next());
@@ -208,10 +187,10 @@ mod tests {
     fn wrong_figures_and_fonts_are_errors() {
         let options = options(None).unwrap();
         for svg in ["", "<svg", "{}", r#"<svg xmlns="http://www.w3.org/2000/svg" width="0" height="1"/>"#] {
-            assert!(convert(svg, FigureFormat::Pdf, &options).is_err(), "{svg}");
+            assert!(convert(svg, pdf, &options).is_err(), "{svg}");
         }
         let large = r#"<svg xmlns="http://www.w3.org/2000/svg" width="1e5" height="1e5"/>"#;
-        assert!(convert(large, FigureFormat::Png, &options).is_err_and(|reason| reason.contains("pixels")));
+        assert!(convert(large, png, &options).is_err_and(|reason| reason.contains("pixels")));
         let missing = super::options(Some("'No Such Family', serif")).err().map(|error| error.to_string());
         assert_eq!(
             missing.as_deref(),
@@ -220,7 +199,7 @@ mod tests {
             )
         );
         let dir = tempfile::tempdir().unwrap();
-        let missing = convert_figures(dir.path(), ["a"].into_iter(), FigureFormat::Pdf, None).unwrap_err().to_string();
+        let missing = convert_figures(dir.path(), ["a"].into_iter(), FORMATS[0], None).unwrap_err().to_string();
         assert!(missing.contains("a.svg"), "{missing}");
     }
 }

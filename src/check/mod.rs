@@ -79,11 +79,9 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         match misplaced(&candidate.scene, outputs, &observed) {
             None => matching.push((candidate, observed)),
             Some((expected, found)) => {
-                first_miss.get_or_insert_with(|| CheckError::OtherScene {
-                    file: outputs.name(),
-                    case: subject.place(),
-                    expected,
-                    found: found + &stiffness::at_start(&candidate.scene, &observed),
+                first_miss.get_or_insert_with(|| {
+                    let found = found + &stiffness::at_start(&candidate.scene, &observed);
+                    other_scene(outputs, &subject.place(), &expected, &found)
                 });
             }
         }
@@ -91,8 +89,11 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
     let mut variants: Vec<&str> = matching.iter().map(|(candidate, _)| candidate.variant.as_str()).collect();
     variants.dedup();
     if variants.len() > 1 {
-        let variants = variants.join(", ");
-        return Err(CheckError::Ambiguous { file: outputs.name(), case: subject.name(), variants });
+        let (file, case, variants) = (outputs.name(), subject.name(), variants.join(", "));
+        return Err(CheckError::Other(format!(
+            "{file}: expected the name of a variant, because several variants of {case} have this start; found none of \
+             {variants}"
+        )));
     }
     // If few digits are printed, several scenes of a variant can match. The nearest scene is used.
     let starts = matching.len();
@@ -103,8 +104,12 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         // At or above the critical time step, our own solvers would be unstable.
         let is_unstable = |step: &f64| candidate.scene.is_unstable_at(*step) && !options.allow_unstable;
         if let Some(step) = outputs.time_step().filter(is_unstable) {
-            let critical = candidate.scene.critical_time_step();
-            return Err(CheckError::Unstable { file: outputs.name(), critical, step });
+            let (file, critical) = (outputs.name(), candidate.scene.critical_time_step());
+            return Err(CheckError::Other(format!(
+                "{file}: expected a time step below the critical one of the scene, 2√(m_min/k_max) = {critical:.6e} s; found \
+                 {step} s, {:.3} of it (--allow-unstable permits it)",
+                step / critical
+            )));
         }
         let open = open(subject, candidate, outputs);
         let output = CheckedOutput { candidate, outputs, observed, covered, open };
@@ -115,12 +120,14 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
         }
         return Ok(section);
     }
-    Err(first_miss.unwrap_or_else(|| CheckError::OtherScene {
-        file: outputs.name(),
-        case: subject.name(),
-        expected: "a variant with a scene".to_owned(),
-        found: "none".to_owned(),
-    }))
+    Err(first_miss.unwrap_or_else(|| other_scene(outputs, &subject.name(), "a variant with a scene", "none")))
+}
+
+/// Returns the error of output that belongs to another scene. `expected` and `found` are the values in the scene and in the
+/// output of the first quantity that differs.
+fn other_scene(outputs: &Outputs, case: &str, expected: &str, found: &str) -> CheckError {
+    let file = outputs.name();
+    CheckError::Other(format!("{file}: expected the start of a scene of {case}, {expected}; found {found}"))
 }
 
 /// Returns a result without a quantity, for the files and the scene to which they belong.

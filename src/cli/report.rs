@@ -7,7 +7,7 @@ use super::terminal::width;
 use super::value::{positive, whole, window};
 use grainbench::harness::figure::Figure;
 use grainbench::jobs::plan::Plan;
-use grainbench::publication::{FigureFormat, convert_figures, write_figures};
+use grainbench::publication::{FORMATS, convert_figures, write_figures};
 use grainbench::reports::export::BROKEN_FILE;
 use grainbench::reports::export::record_json::{self, RECORD_FILE};
 use grainbench::reports::pictures;
@@ -111,8 +111,8 @@ fn publish<F: Borrow<Figure>>(arguments: &Arguments, style: &FigureStyle, figure
     if arguments.style.is_some() {
         write_figures(dir, figures, style)?;
     }
-    for format in FigureFormat::ALL {
-        if arguments.figures.iter().any(|asked| asked == format.ending()) {
+    for format in FORMATS {
+        if arguments.figures.iter().any(|asked| asked == format.0) {
             let names = figures.iter().map(|(name, _)| name.as_str());
             convert_figures(dir, names, format, style.font.as_deref())?;
         }
