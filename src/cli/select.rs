@@ -66,7 +66,12 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     };
     let mut selected: Vec<CaseSelection> = by_case(&named).into_iter().map(of_case).collect();
     refuse_unknown_solvers(&selected, solvers)?;
-    let levels = wanted_levels(&selected, levels)?;
+    let is_all = levels.iter().any(|level| level == "all");
+    let is_default = levels.is_empty() || levels.iter().any(|level| level == "default");
+    if !is_all && !is_default {
+        refuse_unknown_levels(&selected, levels)?;
+    }
+    let levels: Vec<String> = levels.iter().map(|level| unified(level)).collect();
     for CaseSelection { case, claims, .. } in &mut selected {
         if !solvers.is_empty() {
             let wanted = |run: &Run| solvers.iter().any(|name| name == run.solver);
@@ -74,15 +79,11 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
             let asked = |run: &Run| wanted(run) && grainbench::cases::solvers::is_program(run.solver);
             claims.retain(|claim| claim.runs.first().is_some_and(wanted) || claim.runs.iter().any(asked));
         }
-        match &levels {
-            Levels::Default => claims.retain(|claim| claim.set() == Set::Main),
-            Levels::All => {}
-            Levels::Named(names) => {
-                let spellings = |run: &Run| [level_of(case, run), run.resolution.to_string()];
-                let is_at = |run: &Run| spellings(run).iter().any(|name| names.contains(&unified(name)));
-                claims.retain(|claim| claim.runs.iter().any(is_at));
-            }
-        }
+        let spellings = |run: &Run| [level_of(case, run), run.resolution.to_string()];
+        let is_at = |run: &Run| spellings(run).iter().any(|name| levels.contains(&unified(name)));
+        // The default level has the claims of the quick tier.
+        let is_meant = |claim: &Claim| if is_default { claim.set() == Set::Main } else { claim.runs.iter().any(is_at) };
+        claims.retain(|claim| is_all || is_meant(claim));
     }
     selected.retain(|selected| !selected.claims.is_empty());
     // Without any claim, the run would be green although nothing was checked.
@@ -104,22 +105,8 @@ fn refuse_unknown_solvers(selected: &[CaseSelection], names: &[String]) -> Resul
     }
 }
 
-/// Resolution levels that are selected.
-enum Levels {
-    /// Only claims of the quick tier.
-    Default,
-    All,
-    Named(Vec<String>),
-}
-
-/// Returns the selected levels. Returns an error if no selected case has one of the named levels.
-fn wanted_levels(selected: &[CaseSelection], names: &[String]) -> Result<Levels, Fault> {
-    if names.iter().any(|name| name == "all") {
-        return Ok(Levels::All);
-    }
-    if names.is_empty() || names.iter().any(|name| name == "default") {
-        return Ok(Levels::Default);
-    }
+/// Returns an error if no selected case has one of the named levels.
+fn refuse_unknown_levels(selected: &[CaseSelection], names: &[String]) -> Result<(), Fault> {
     let mut known: Vec<String> = vec!["default".to_owned(), "all".to_owned()];
     for name in selected.iter().flat_map(|CaseSelection { case, claims, .. }| levels(case, claims)) {
         push_new(&mut known, name);
@@ -127,7 +114,7 @@ fn wanted_levels(selected: &[CaseSelection], names: &[String]) -> Result<Levels,
     let is_unknown = |name: &&String| known.iter().all(|known| unified(known) != unified(name));
     match names.iter().find(is_unknown) {
         Some(name) => Err(Fault::unknown("a level", name, known.iter().map(String::as_str))),
-        None => Ok(Levels::Named(names.iter().map(|name| unified(name)).collect())),
+        None => Ok(()),
     }
 }
 
