@@ -1,5 +1,6 @@
 //! Executor of a list of tasks. It distributes the tasks over threads and hands over each result as soon as it is known.
 
+use crate::shard::is_one_group;
 use crate::task::Task;
 use grainbench_store::WriteError;
 use grainbench_store::log::State;
@@ -189,6 +190,5 @@ pub fn in_memory<L: TaskList>(
 /// Divides tasks into groups: consecutive tasks with the same group number, and single tasks without one.
 #[must_use]
 pub fn groups(tasks: &[Task], places: &[usize]) -> Vec<Vec<usize>> {
-    let is_one = |a: &usize, b: &usize| tasks[*a].group.is_some() && tasks[*a].group == tasks[*b].group;
-    places.chunk_by(is_one).map(<[usize]>::to_vec).collect()
+    places.chunk_by(|a, b| is_one_group(&tasks[*a], &tasks[*b])).map(<[usize]>::to_vec).collect()
 }

@@ -80,19 +80,11 @@ impl Lease {
         })?;
         let others: Vec<LeaseContents> =
             held(plan, seconds)?.into_iter().filter(|other| other.worker != contents.worker).collect();
-        let mut tasks: Vec<[usize; 2]> = Vec::new();
-        for place in range {
-            if others.iter().any(|other| other.has(place)) {
-                continue;
-            }
-            match tasks.last_mut() {
-                Some([_, to]) if *to == place => *to = place + 1,
-                _ => tasks.push([place, place + 1]),
-            }
-        }
-        if tasks.is_empty() {
+        let free: Vec<usize> = range.filter(|&place| !others.iter().any(|other| other.has(place))).collect();
+        if free.is_empty() {
             return Ok((None, others));
         }
+        let tasks = free.chunk_by(|a, b| a + 1 == *b).map(|run| [run[0], run[run.len() - 1] + 1]).collect();
         let path = folder.join(format!("{}.{ENDING}", contents.worker));
         let lease = Self { path, contents: LeaseContents { tasks, ..contents.clone() } };
         lease.renew(0)?;

@@ -52,16 +52,14 @@ impl fmt::Display for Shard {
 pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
     let total: f64 = tasks.iter().map(length).sum();
     let mut ends = vec![0; count as usize];
-    let (mut before, mut from) = (0.0, 0);
-    while from < tasks.len() {
-        let group = tasks[from].group;
-        let others = tasks[from + 1..].iter().take_while(|task| group.is_some() && task.group == group).count();
-        let to = from + 1 + others;
-        let long: f64 = tasks[from..to].iter().map(length).sum();
+    let (mut before, mut to) = (0.0, 0);
+    for group in tasks.chunk_by(is_one_group) {
+        to += group.len();
+        let long: f64 = group.iter().map(length).sum();
         // A group belongs to the shard that contains its midpoint.
         let place = ((before + 0.5 * long) / total * f64::from(count)) as usize;
         ends[place.min(count as usize - 1)] = to;
-        (before, from) = (before + long, to);
+        before += long;
     }
     let mut start = 0;
     ends.into_iter()
@@ -78,8 +76,13 @@ pub fn all(tasks: &[Task], count: u32) -> Vec<Range<usize>> {
 #[must_use]
 pub fn count(tasks: &[Task]) -> u32 {
     let total: f64 = tasks.iter().map(length).sum();
-    let groups = tasks.chunk_by(|a, b| a.group.is_some() && a.group == b.group).count();
+    let groups = tasks.chunk_by(is_one_group).count();
     ((total / SECONDS) as u32).clamp(1, MOST).min(u32::try_from(groups).unwrap_or(MOST).max(1))
+}
+
+/// Returns true if two tasks belong to the same group.
+pub(crate) fn is_one_group(a: &Task, b: &Task) -> bool {
+    a.group.is_some() && a.group == b.group
 }
 
 fn length(task: &Task) -> f64 {
