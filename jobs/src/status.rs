@@ -67,10 +67,4 @@ impl Status {
         status.workers = workers;
         Ok(status)
     }
-
-    /// Returns true if every task has a result.
-    #[must_use]
-    pub const fn is_whole(&self) -> bool {
-        self.done + self.failed + self.crashed == self.tasks
-    }
 }

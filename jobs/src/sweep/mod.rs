@@ -56,7 +56,7 @@ pub struct Sweep {
     points: Vec<Vec<Value>>,
     source: SceneSource,
     /// Path of the scene file; `None` if the scene belongs to a case.
-    scene_file: Option<PathBuf>,
+    pub scene_file: Option<PathBuf>,
     looks: Vec<EvaluatedQuantity>,
     levels: Vec<Level>,
     /// Curve on the map.
@@ -168,12 +168,6 @@ impl Sweep {
     #[must_use]
     pub fn solvers(&self) -> Vec<String> {
         self.file.solvers.iter().map(|asked| asked.solver.clone()).collect()
-    }
-
-    /// Returns the path of the scene file, or `None` if the scene belongs to a case.
-    #[must_use]
-    pub fn scene_file(&self) -> Option<&Path> {
-        self.scene_file.as_deref()
     }
 
     /// Returns the files that the scenes of the points refer to: meshes, states and tables of grains.

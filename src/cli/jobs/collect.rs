@@ -169,7 +169,7 @@ pub(crate) fn status(plan: &Path, json: bool) -> Outcome {
         Ok(count) => text.push_str(&format!("queued    {} shards\n", number::count(count as u64))),
         Err(fault) => text.push_str(&format!("queued    not known: {fault}\n")),
     }
-    if !status.is_whole() {
+    if status.running + status.waiting > 0 {
         text.push_str(&format!("left      about {}\n", number::seconds(status.seconds_left)));
     }
     print(&text)

@@ -58,7 +58,7 @@ impl Study for EffectStudy {
 
     fn tasks(&self, program: &str) -> Result<Vec<Task>, Fault> {
         let task = |(number, piece): &(usize, SceneEffect)| {
-            let case = self.ledgers[*number].case();
+            let case = self.ledgers[*number].case;
             let (program, case) = (program.to_owned() + &own::edition(case), case.name);
             Task {
                 scene: format!("{case}/{}", piece.variant),

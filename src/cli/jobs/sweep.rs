@@ -70,7 +70,7 @@ impl Study for SweepStudy {
     }
 
     fn inputs(&self) -> BTreeMap<String, String> {
-        let scene = self.sweep.scene_file().map(|path| path.display().to_string());
+        let scene = self.sweep.scene_file.as_ref().map(|path| path.display().to_string());
         let manifests = self.asked.iter().filter(|name| is_manifest(name)).cloned();
         // An invalid scene causes an error when the tasks are listed.
         let named = self.sweep.files().unwrap_or_default().into_iter().map(|path| path.display().to_string());

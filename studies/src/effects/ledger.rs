@@ -31,7 +31,8 @@ pub struct SceneEffect {
 
 /// Effects study of a case. All claims share the runs without an effect.
 pub struct Ledger {
-    case: &'static Case,
+    /// Case whose claims are evaluated.
+    pub case: &'static Case,
     solvers: Arc<dyn Solvers>,
     runner: Runner,
     claims: Vec<Claim>,
@@ -49,12 +50,6 @@ impl Ledger {
             claim.standing() == ExpectedOutcome::Passes && claim.runs.iter().all(is_short) && runner.is_available(claim)
         });
         Self { case, solvers, runner, claims }
-    }
-
-    /// Returns the case.
-    #[must_use]
-    pub const fn case(&self) -> &'static Case {
-        self.case
     }
 
     /// Returns each pair of an effect and a variant that the claims use. The effect may be on or off.
