@@ -179,7 +179,7 @@ fn of_scene(name: &str, arguments: &Arguments) -> Outcome {
     let stored_chaos = cache.get::<bool>(&id(CHAOS)).ok();
     let is_chaotic = stored_chaos.unwrap_or_else(|| whole.is_some_and(|whole| !whole.perturbed.is_empty()));
     let text = study.text() + &scale_words(matters, is_chaotic, &left_out);
-    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.study.json, false) };
+    let output = Output { text: Some(text), ..Output::new(&arguments.out, arguments.study.json) };
     publish_study(&study, output)
 }
 

@@ -29,6 +29,11 @@ pub(crate) enum Fault {
 /// Exit code if a result is red, a control does not fail, or a run fails.
 pub(crate) const RED: ExitCode = ExitCode::FAILURE;
 
+/// Returns the exit code of a command with red or without red results.
+pub(crate) const fn exit_code(is_red: bool) -> ExitCode {
+    if is_red { RED } else { ExitCode::SUCCESS }
+}
+
 /// Largest number of known names that fit on one line.
 const MOST_ON_A_LINE: usize = 6;
 

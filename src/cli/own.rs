@@ -205,7 +205,7 @@ pub(crate) fn cost(input: &Input<'_>) -> Outcome {
             write_study(input.out, &result)?;
             return Err(stopped());
         }
-        publish_study(&result, Output::new(input.out, input.study.json, false))
+        publish_study(&result, Output::new(input.out, input.study.json))
     })
 }
 
@@ -250,7 +250,7 @@ pub(crate) fn stability(input: &Input<'_>) -> Outcome {
         let mut written = Study::new(provenance(input.words("stability"), start.elapsed().as_secs_f64()));
         written.limits = limits;
         written.sources = sources(&study.names);
-        publish_study(&written, Output::new(input.out, input.study.json, false))
+        publish_study(&written, Output::new(input.out, input.study.json))
     })
 }
 

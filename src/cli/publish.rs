@@ -1,6 +1,6 @@
 //! Output of commands: files and text of a report, and the exit code.
 
-use super::exit::{Fault, Outcome, RED, print, print_text};
+use super::exit::{Fault, Outcome, exit_code, print, print_text};
 use super::terminal::width;
 use grainbench::reports::github::{annotations, summary};
 use grainbench::reports::results::results_json;
@@ -12,7 +12,6 @@ use std::env;
 use std::fs::OpenOptions;
 use std::io::Write;
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 
 /// Options for the report of `check`, `compare` and `conform`.
 #[derive(Clone, clap::Args)]
@@ -33,7 +32,7 @@ impl ReportArguments {
     /// is the summary of the results.
     pub(crate) fn publish(&self, mut report: Report, is_mute: bool, text: Option<String>) -> Outcome {
         add_reasons(&mut report, is_mute, self.strict);
-        publish(&report, &Output { text, ..Output::new(&self.out, self.json, self.strict) })
+        publish(&report, &Output { text, ..Output::new(&self.out, self.json) })
     }
 }
 
@@ -48,13 +47,11 @@ pub(crate) struct Output<'a> {
     pub(crate) quiet: bool,
     /// Text that is printed before the path of the page. Default: the summary of the results.
     pub(crate) text: Option<String>,
-    /// True to treat amber results as red.
-    pub(crate) strict: bool,
 }
 
 impl<'a> Output<'a> {
-    pub(crate) const fn new(out: &'a Path, json: bool, strict: bool) -> Self {
-        Self { out, json, strict, parquet: false, quiet: false, text: None }
+    pub(crate) const fn new(out: &'a Path, json: bool) -> Self {
+        Self { out, json, parquet: false, quiet: false, text: None }
     }
 }
 
@@ -78,7 +75,7 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
         print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
     tell_github(report, output.json)?;
-    Ok(exit_code(report, output.strict))
+    Ok(exit_code(!report.passes()))
 }
 
 /// Appends to the job summary, and prints annotations unless the standard output is JSON. Outside GitHub Actions, does nothing.
@@ -105,12 +102,7 @@ pub(crate) fn publish_study(study: &Study, output: Output<'_>) -> Outcome {
         print_text(&output.text.unwrap_or_else(|| study.text()))?;
         print(&format!("{}\n", output.out.join("index.html").display()))?;
     }
-    Ok(study_code(study))
-}
-
-/// Returns the exit code of a study.
-pub(crate) fn study_code(study: &Study) -> ExitCode {
-    if study.is_red() { RED } else { ExitCode::SUCCESS }
+    Ok(exit_code(study.is_red()))
 }
 
 /// Adds reasons why a report is red although no result is red: nothing was judged, or amber results count as red.
@@ -124,10 +116,4 @@ pub(crate) fn add_reasons(report: &mut Report, is_mute: bool, strict: bool) {
     if strict && amber > 0 {
         report.red_because.push(format!("strict: {amber} amber"));
     }
-}
-
-/// Returns the exit code. It is red if the report does not pass. With `strict`, an amber result is red too.
-pub(crate) fn exit_code(report: &Report, strict: bool) -> ExitCode {
-    let is_red = !report.passes() || strict && Headline::of_report(report).amber() > 0;
-    if is_red { RED } else { ExitCode::SUCCESS }
 }

@@ -1,6 +1,6 @@
 //! `grainbench race`: measures the throughput of our solvers and of other programs, in turn on the same scenes.
 
-use super::exit::{Fault, Outcome, RED, check_writable, print, print_text, refuse};
+use super::exit::{Fault, Outcome, check_writable, exit_code, print, print_text, refuse};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::write_files;
@@ -13,7 +13,6 @@ use grainbench::solver::resolution::Resolution;
 use grainbench::store::StagedDir;
 use grainbench::studies::race::{BenchmarkedSolver, SceneThroughput, ThroughputBenchmark, Track, heat};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 /// Default benchmark scenes: dense discs, dense spheres, a sparse gas, Hertz contacts, few grains, and the impact of a
@@ -118,7 +117,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     write_files(StagedDir::new(&arguments.out)?, &[("race.json", json), ("race.md", race.markdown())])?;
     print_text(&race.text())?;
     print(&format!("\n{}\n", arguments.out.join("race.md").display()))?;
-    Ok(if has_run { ExitCode::SUCCESS } else { RED })
+    Ok(exit_code(!has_run))
 }
 
 /// Returns a benchmark scene with grains. Its time step is the default time step of its case, or 0.1 of the critical one.

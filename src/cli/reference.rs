@@ -247,5 +247,5 @@ fn verify(arguments: &Verify) -> Outcome {
     let words = [vec!["reference verify".to_owned()], arguments.ids.clone()].concat();
     let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), vec![section]);
     let text = line::results(&report.verdicts().collect::<Vec<_>>());
-    publish(&report, &Output { text: Some(text), ..Output::new(&arguments.out, arguments.json, false) })
+    publish(&report, &Output { text: Some(text), ..Output::new(&arguments.out, arguments.json) })
 }

@@ -1,8 +1,7 @@
 //! `grainbench report`: writes a page from stored results.
 
-use super::exit::{Fault, Outcome, print, print_text, refuse};
+use super::exit::{Fault, Outcome, exit_code, print, print_text, refuse};
 use super::jobs::collect::{CollectOptions, collect, status};
-use super::publish::{exit_code, study_code};
 use super::terminal::width;
 use super::value::{positive, whole, window};
 use grainbench::harness::figure::Figure;
@@ -96,13 +95,13 @@ pub(crate) fn report(arguments: &Arguments) -> Outcome {
         let study = read_json(&arguments.dir.join(STUDY_FILE))?;
         write_study(&arguments.dir, &study)?;
         publish(arguments, &style, &study::named_figures(&study))?;
-        return Ok(study_code(&study));
+        return Ok(exit_code(study.is_red()));
     }
     let report = Report::load(&arguments.dir)?;
     write_report(&arguments.dir, &report, false)?;
     print_text(&format!("{}\n", summary_table_within(&report, width())))?;
     publish(arguments, &style, &named_figures(&report))?;
-    Ok(exit_code(&report, false))
+    Ok(exit_code(!report.passes()))
 }
 
 /// Draws figures in a style, converts them to the requested formats and prints the path of the page.

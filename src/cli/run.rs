@@ -5,7 +5,7 @@ use super::claims::tasks::ClaimTasks;
 use super::claims::{ClaimOptions, report};
 use super::cores::at_once;
 use super::earlier::EarlierReport;
-use super::exit::{self, Fault, Outcome, RED, check_writable, refuse};
+use super::exit::{self, Fault, Outcome, check_writable, exit_code, refuse};
 use super::filter::Filters;
 use super::jobs;
 use super::jobs::arguments::{Arguments as Planned, PlanOptions};
@@ -21,7 +21,6 @@ use grainbench::harness::runner::RunnerOptions;
 use grainbench::jobs::execute::in_memory;
 use grainbench::reports::{Section, line};
 use std::path::{Path, PathBuf};
-use std::process::ExitCode;
 use std::time::Instant;
 
 #[derive(clap::Args)]
@@ -134,8 +133,8 @@ fn run(mut arguments: Planned, options: &ClaimOptions) -> Outcome {
     };
     report.red_because.extend(otherwise.iter().map(|line| format!("differs from the stored results: {line}")));
     report.shown = filters.outcomes();
-    let ClaimOptions { out, parquet, json, strict, .. } = options;
-    let output = Output { parquet: *parquet, quiet: options.quiet, ..Output::new(out, *json, *strict) };
+    let ClaimOptions { out, parquet, json, .. } = options;
+    let output = Output { parquet: *parquet, quiet: options.quiet, ..Output::new(out, *json) };
     let code = publish(&report, &output)?;
     undeclared::tell(&report);
     if let Some(earlier) = &earlier {
@@ -146,7 +145,7 @@ fn run(mut arguments: Planned, options: &ClaimOptions) -> Outcome {
     }
     if kept.is_some() {
         otherwise.iter().for_each(|line| exit::say("differs from the stored results", line));
-        return Ok(if report.red_because.is_empty() { ExitCode::SUCCESS } else { RED });
+        return Ok(exit_code(!report.red_because.is_empty()));
     }
     Ok(code)
 }

@@ -266,7 +266,7 @@ impl Study for ClaimTasks {
         let mut report = super::report(provenance(words, how.seconds), sections, self.is_whole)?;
         report.red_because.extend(how.unfinished.clone());
         add_reasons(&mut report, false, how.strict);
-        publish(&report, &Output { parquet: how.parquet, ..Output::new(&how.out, how.json, how.strict) })
+        publish(&report, &Output { parquet: how.parquet, ..Output::new(&how.out, how.json) })
     }
 }
 

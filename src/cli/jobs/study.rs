@@ -143,7 +143,7 @@ impl ReportOptions<'_> {
             keep_study(name, &study)?;
         }
         let text = Some(study.text() + &self.end);
-        let code = publish_study(&study, Output { text, ..Output::new(&self.out, self.json, false) })?;
+        let code = publish_study(&study, Output { text, ..Output::new(&self.out, self.json) })?;
         Ok(if has_crash { RED } else { code })
     }
 }

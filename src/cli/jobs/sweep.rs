@@ -2,7 +2,7 @@
 
 use super::study::{ReportOptions, Study};
 use crate::cli::cache;
-use crate::cli::exit::{Fault, Outcome, RED, print, refuse};
+use crate::cli::exit::{Fault, Outcome, exit_code, print, refuse};
 use crate::cli::provenance::provenance;
 use crate::cli::solver::{NamedSolvers, is_manifest};
 use grainbench::harness::solvers::Solvers;
@@ -17,7 +17,6 @@ use grainbench::store::key;
 use grainbench::store::log::State;
 use std::collections::BTreeMap;
 use std::path::Path;
-use std::process::ExitCode;
 use std::sync::{Arc, OnceLock};
 
 /// Sweep over parameters, with its solvers.
@@ -108,6 +107,6 @@ impl Study for SweepStudy {
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
         let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.is_judged());
         let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
-        Ok(if is_red { RED } else { ExitCode::SUCCESS })
+        Ok(exit_code(is_red))
     }
 }
