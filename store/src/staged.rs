@@ -365,8 +365,10 @@ mod tests {
     use super::*;
 
     #[test]
-    fn appears_whole_at_commit() {
+    fn appears_whole_at_commit_and_leaves_nothing_when_dropped() {
         let dir = tempfile::tempdir().unwrap();
+        drop(staged_files(&dir.path().join("deep/er/out"), &["a.txt"], "a"));
+        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
         let target = dir.path().join("deep/out");
         let staged = staged_files(&target, &["a.txt", "figures/b.svg"], "b");
         assert!(!target.exists());
@@ -389,13 +391,6 @@ mod tests {
             assert_eq!(Manifest::read(&target).unwrap().files.len(), count);
         }
         assert_eq!(fs::read_dir(&target).unwrap().count(), 10_001);
-    }
-
-    #[test]
-    fn leaves_nothing_when_dropped() {
-        let dir = tempfile::tempdir().unwrap();
-        drop(staged_files(&dir.path().join("deep/er/out"), &["a.txt"], "a"));
-        assert_eq!(fs::read_dir(dir.path()).unwrap().count(), 0);
     }
 
     #[test]

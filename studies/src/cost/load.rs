@@ -31,19 +31,12 @@ const LONG: f64 = 0.5;
 /// Minimum and maximum number of steps of a long run.
 const STEPS: [f64; 2] = [40.0, 400_000.0];
 
-/// Solver with its scene and the timings so far.
-struct Entrant {
-    solver: Option<Arc<dyn Solver>>,
-    scene: Arc<Scene>,
-    resolution: Resolution,
-    load: Load,
-}
-
 /// Measures the cost of a step of each solver in a number of rounds.
 ///
 /// # Errors
 /// When the scene cannot be read, which does not occur for the scene of this study.
 pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result<Vec<Load>, SceneError> {
+    // Each solver with its scene, its resolution and the timings so far.
     let mut entrants = Vec::new();
     for edge in EDGES {
         let scene = Arc::new(box_of_discs(edge)?);
@@ -60,11 +53,11 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result
                 laps: Vec::new(),
                 absent,
             };
-            entrants.push(Entrant { solver, scene: Arc::clone(&scene), resolution, load });
+            entrants.push((solver, Arc::clone(&scene), resolution, load));
         }
     }
     for round in 1..=rounds {
-        for Entrant { solver, scene, resolution, load } in &mut entrants {
+        for (solver, scene, resolution, load) in &mut entrants {
             now(&format!("{} discs, {}, lap {round} of {rounds}", load.grains, load.solver));
             if let (Some(solver), None) = (solver, &load.absent) {
                 match lap(&**solver, scene, resolution) {
@@ -74,7 +67,7 @@ pub fn measure(solvers: &dyn Solvers, rounds: u32, now: &dyn Fn(&str)) -> Result
             }
         }
     }
-    Ok(entrants.into_iter().map(|entrant| entrant.load).collect())
+    Ok(entrants.into_iter().map(|(.., load)| load).collect())
 }
 
 /// Runs a solver for one step and for many steps, and returns the difference.
