@@ -67,7 +67,6 @@ pub struct Sweep {
 struct Level {
     asked: usize,
     resolution: Resolution,
-    words: String,
     /// Scene keys whose values are computed from the factors.
     formulas: Vec<(String, Formula)>,
     /// Scene keys with changed values.
@@ -232,16 +231,14 @@ impl Sweep {
                     patience -= start.elapsed().as_secs_f64();
                 }
                 let key = serde_json::to_string(&set).map_err(|error| Fault::Input(error.to_string()))?;
+                let id = Id::of_words(program, &["sweep", &common, &key, name, &edition, &step]);
                 tasks.push(Task {
-                    id: Id::of_words(program, &["sweep", &common, &key, name, &edition, &step]),
                     scene: self.file.scene.clone(),
                     set,
                     solver: self.file.solvers[level.asked].solver.clone(),
-                    level: level.words.clone(),
-                    what: String::new(),
+                    level: level.resolution.to_string(),
                     repetitions: self.file.repetitions,
-                    seconds,
-                    group: None,
+                    ..Task::new(id, seconds)
                 });
             }
         }
@@ -344,7 +341,7 @@ impl Sweep {
             points.push(grainbench_reports::sweep::Point {
                 factors: point.to_vec(),
                 solver: names[level.asked].clone(),
-                resolution: level.words.clone(),
+                resolution: level.resolution.to_string(),
                 left,
             });
         }
@@ -452,10 +449,10 @@ fn read_levels(path: &Path, file: &File, (place, asked): (usize, &SolverEntry)) 
             return Err(wrong("levels", &expected, &format!("`{words}`")));
         }
         let words = resolution.to_string();
-        if levels.iter().any(|known| known.words == words) {
+        if levels.iter().any(|known| known.resolution.to_string() == words) {
             return Err(wrong("levels", "each level once", &format!("`{words}` again")));
         }
-        levels.push(Level { asked: place, resolution, words, formulas: formulas.clone(), set: set.clone() });
+        levels.push(Level { asked: place, resolution, formulas: formulas.clone(), set: set.clone() });
     }
     Ok(levels)
 }

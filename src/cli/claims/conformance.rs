@@ -38,8 +38,8 @@ pub(crate) fn judge(
     conformance::judge_with_cache(&**solver, of_cache.as_deref().unwrap_or(&**solver), terms)
 }
 
-/// Returns a report section with results of conformance properties.
-pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<ControlResult>) -> Section {
+/// Returns the report section of conformance properties without results.
+pub(crate) fn section() -> Section {
     Section {
         name: "conformance".to_owned(),
         physics: Physics::Properties,
@@ -53,8 +53,6 @@ pub(crate) fn section_of(verdicts: Vec<Verdict>, controls: Vec<ControlResult>) -
         weak: "A solver can satisfy all properties and still be wrong. For example, it may conserve momentum and be \
                symmetric but have the wrong stiffness. Grid methods run in two dimensions, with two cells per radius."
             .to_owned(),
-        verdicts,
-        controls,
         ..Section::default()
     }
 }

@@ -183,7 +183,7 @@ impl ClaimTasks {
     pub(crate) fn sections(&self, results: Vec<Option<Result<Section, String>>>) -> Vec<Section> {
         let mut cases: Vec<(Section, Vec<&Claim>)> =
             self.selected.iter().map(|selected| (blank(selected), Vec::new())).collect();
-        let mut conformance = conform::section_of(Vec::new(), Vec::new());
+        let mut conformance = conform::section();
         for (&task, result) in self.all.iter().zip(results) {
             let finished = match (result, task) {
                 (None, _) => continue,

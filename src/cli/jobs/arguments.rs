@@ -70,8 +70,8 @@ pub(crate) struct StudyOptions {
 
 impl Arguments {
     /// Returns the command, the cases and the solvers for the provenance of the report.
-    pub(super) fn command_words(&self, command: &str) -> Vec<String> {
-        let words = std::iter::once(command.to_owned()).chain(self.cases.iter().cloned());
+    pub(super) fn command_words(&self) -> Vec<String> {
+        let words = std::iter::once(&self.what).chain(&self.cases).cloned();
         words.chain(self.solver.iter().map(|solver| format!("--solver {solver}"))).collect()
     }
 

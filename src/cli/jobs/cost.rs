@@ -147,7 +147,7 @@ impl Study for CostStudy {
     fn report(&self, results: Vec<Option<Result<Measured, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let old = how.against.map(points_of).transpose()?;
         let (results, has_crash) = outputs(results, how);
-        let mut words = self.arguments.command_words("cost");
+        let mut words = self.arguments.command_words();
         if self.wanted.all {
             words.push("--levels all".to_owned());
         }

@@ -73,7 +73,7 @@ impl Study for EffectStudy {
 
     fn report(&self, results: Vec<Option<Result<Option<Entry>, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.command_words("effects"));
+        let mut study = how.study(self.arguments.command_words());
         study.ledger.extend(results.into_iter().flatten().flatten());
         how.publish(study, has_crash)
     }

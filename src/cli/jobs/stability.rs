@@ -131,7 +131,7 @@ impl Study for StabilityStudy {
 
     fn report(&self, results: Vec<Option<Result<Tested, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let (results, has_crash) = outputs(results, how);
-        let mut study = how.study(self.arguments.command_words("stability"));
+        let mut study = how.study(self.arguments.command_words());
         for tested in results.into_iter().flatten() {
             match tested {
                 Tested::Limit(limit) => study.limits.push(limit),
