@@ -1,7 +1,6 @@
 //! Shards: ranges of consecutive tasks with about equal expected run times.
 
 use crate::task::Task;
-use std::fmt;
 use std::ops::Range;
 use std::str::FromStr;
 
@@ -36,12 +35,6 @@ impl FromStr for Shard {
             Some((index, count)) if index <= count => Ok(Self { index, count }),
             _ => Err(format!("expected i/n, two whole numbers from 1 to {MOST}, the first at most the second")),
         }
-    }
-}
-
-impl fmt::Display for Shard {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{}/{}", self.index, self.count)
     }
 }
 
