@@ -46,6 +46,7 @@ mod value;
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};
 use exit::Fault;
 use grainbench::lanes::Processor;
+use std::path::PathBuf;
 use std::process::ExitCode;
 
 /// Version of the program, and the commit from which it is built.
@@ -103,15 +104,26 @@ enum Command {
     Scene(scene::Arguments),
     /// Old spelling of `scene --schema`.
     #[command(hide = true)]
-    Schema(scene::SchemaArguments),
+    Schema {
+        /// Print the schema of resolved scenes.
+        #[arg(long)]
+        resolved: bool,
+    },
     /// Write the page and figures of a stored report, simulation or plan. No solver runs.
     Report(report::Arguments),
     /// Print the completion script of a shell.
     #[command(hide = true)]
-    Completions(completions::Arguments),
+    Completions {
+        /// Shell that reads the completion script.
+        shell: clap_complete::Shell,
+    },
     /// Print the manual page of grainbench, or write one page for each command to a directory.
     #[command(hide = true)]
-    Man(completions::ManArguments),
+    Man {
+        /// Directory for the pages of all commands. Default: print the page of `grainbench`.
+        #[arg(long, value_name = "DIR")]
+        out: Option<PathBuf>,
+    },
 }
 
 /// Groups of commands in the help text.
@@ -184,13 +196,13 @@ pub(crate) fn main() -> ExitCode {
         Command::Reference(command) => reference::reference(&command),
         Command::Conform(arguments) => conform::conform(&arguments),
         Command::Scene(arguments) => scene::scene(&arguments),
-        Command::Schema(arguments) => {
+        Command::Schema { resolved } => {
             spelling::say_command("schema", "scene --schema");
-            scene::old_schema(&arguments)
+            scene::print_schema(if resolved { scene::Schema::Resolved } else { scene::Schema::File })
         }
         Command::Report(arguments) => report::report(&arguments),
-        Command::Completions(arguments) => completions::completions(&arguments, command_line()),
-        Command::Man(arguments) => completions::man(&arguments, command_line()),
+        Command::Completions { shell } => completions::completions(shell, command_line()),
+        Command::Man { out } => completions::man(out.as_deref(), command_line()),
     };
     done.unwrap_or_else(|fault: Fault| fault.report())
 }

@@ -36,19 +36,7 @@ pub(crate) enum Schema {
     Resolved,
 }
 
-#[derive(clap::Args)]
-pub(crate) struct SchemaArguments {
-    /// Print the schema of resolved scenes.
-    #[arg(long)]
-    resolved: bool,
-}
-
-/// Prints a schema for the old command `schema`.
-pub(crate) fn old_schema(arguments: &SchemaArguments) -> Outcome {
-    print_schema(if arguments.resolved { Schema::Resolved } else { Schema::File })
-}
-
-fn print_schema(kind: Schema) -> Outcome {
+pub(crate) fn print_schema(kind: Schema) -> Outcome {
     match kind {
         Schema::File => print_json(&grainbench::scene::schema()),
         Schema::Resolved => print_json(&outside::schema()),
