@@ -2,6 +2,7 @@
 //! archives of the program do not, because the data are large.
 
 use crate::read::read_error::{one_line, quoted};
+use grainbench_store::machine::user_directory;
 use std::env;
 use std::fs::File;
 use std::io::{self, Read, Seek};
@@ -51,15 +52,8 @@ pub fn missing() -> Option<String> {
 /// Returns the default directory of the installed data, for this user and this version.
 #[must_use]
 pub fn installed() -> Option<PathBuf> {
-    let path = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let base = if cfg!(windows) {
-        path("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        path("HOME").map(|home| home.join("Library/Application Support"))
-    } else {
-        path("XDG_DATA_HOME").or_else(|| path("HOME").map(|home| home.join(".local/share")))
-    };
-    base.map(|base| base.join("grainbench").join(env!("CARGO_PKG_VERSION")))
+    let directory = user_directory("Library/Application Support", "XDG_DATA_HOME", ".local/share");
+    directory.map(|directory| directory.join(env!("CARGO_PKG_VERSION")))
 }
 
 /// Calls `take` with the name and the content of each file of a ZIP archive of the data, and returns their number.

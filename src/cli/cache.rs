@@ -5,6 +5,7 @@
 
 use super::exit;
 use grainbench::harness::solvers::Solvers;
+use grainbench::store::machine::user_directory;
 use grainbench::studies::run_cache::{CachingSolvers, RunCache};
 use std::env;
 #[cfg(unix)]
@@ -27,7 +28,7 @@ pub(crate) fn open(fresh: bool) -> Option<Arc<RunCache>> {
         Some(word) if word == "off" => return None,
         Some(folder) if !folder.is_empty() => PathBuf::from(folder),
         _ if is_ci => return None,
-        _ => usual()?,
+        _ => user_directory("Library/Caches", "XDG_CACHE_HOME", ".cache")?,
     };
     let warn = |reason: String| exit::say("warning", &format!("the cache of finished runs is not used: {reason}"));
     let cache = RunCache::open(&folder, MOST, fresh, edition).map_err(|error| warn(error.to_string())).ok()?;
@@ -92,18 +93,4 @@ pub(crate) fn with(solvers: impl Solvers + 'static, cache: Option<&Arc<RunCache>
 fn edition(solver: &str) -> Option<String> {
     let sources = grainbench::kept::sources(solver)?;
     Some(format!("{sources} {}", env!("GRAINBENCH_BUILD")))
-}
-
-/// Returns the default cache folder of the operating system.
-fn usual() -> Option<PathBuf> {
-    let path_variable = |name: &str| env::var_os(name).map(PathBuf::from).filter(|path| path.is_absolute());
-    let home = || path_variable("HOME");
-    let base = if cfg!(windows) {
-        path_variable("LOCALAPPDATA")
-    } else if cfg!(target_os = "macos") {
-        home().map(|home| home.join("Library/Caches"))
-    } else {
-        path_variable("XDG_CACHE_HOME").or_else(|| home().map(|home| home.join(".cache")))
-    };
-    base.map(|base| base.join("grainbench"))
 }
