@@ -104,7 +104,7 @@ fn of_snapshot<'o>(scene: &'o Scene, step: Option<f64>, observed: &'o DumpRecord
 }
 
 /// Returns a difference of coordinates (m), reduced by whole periods along a periodic axis.
-fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
+pub(super) fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
     match scene.domain.filter(|domain| domain.periodic[axis]) {
         Some(domain) => off - (off / (domain.high - domain.low)[axis]).round() * (domain.high - domain.low)[axis],
         None => off,

@@ -2,6 +2,7 @@
 //! output.
 
 use super::covered::CheckedOutput;
+use super::start::to_nearest_image;
 use grainbench_harness::verdict::{Outcome, Verdict};
 use grainbench_reference::observer::DumpRecord;
 use grainbench_reports::number;
@@ -33,12 +34,7 @@ fn mean_overlap(scene: &Scene, positions: &[(usize, Vector3<f64>)]) -> Option<f6
         }
         for &(other, second) in positions.iter().take(if positions.len() > MOST_GRAINS { 0 } else { place }) {
             let mut apart = position - second;
-            if let Some(domain) = scene.domain {
-                for axis in (0..3).filter(|&axis| domain.periodic[axis]) {
-                    let period = (domain.high - domain.low)[axis];
-                    apart[axis] -= (apart[axis] / period).round() * period;
-                }
-            }
+            (0..3).for_each(|axis| apart[axis] = to_nearest_image(scene, axis, apart[axis]));
             let second = scene.grains[other].radius;
             add(radius + second - apart.norm(), radius.min(second));
         }
