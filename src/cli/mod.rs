@@ -40,7 +40,6 @@ mod spelling;
 mod stability;
 mod subject;
 mod terminal;
-mod undeclared;
 mod value;
 
 use clap::{CommandFactory, FromArgMatches, Parser, Subcommand};

@@ -15,11 +15,12 @@ use super::keep::{self, keep};
 use super::provenance::provenance;
 use super::publish::{Output, add_reasons, publish};
 use super::select::CaseSelection;
-use super::undeclared;
 use grainbench::harness::run::{Data, SceneDataError};
 use grainbench::harness::runner::RunnerOptions;
 use grainbench::jobs::execute::in_memory;
-use grainbench::reports::{Section, line};
+use grainbench::reference::outside::named_features;
+use grainbench::reports::{Report, Section, line, number};
+use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
@@ -136,7 +137,7 @@ fn run(mut arguments: Planned, options: &ClaimOptions) -> Outcome {
     let ClaimOptions { out, parquet, json, .. } = options;
     let output = Output { parquet: *parquet, quiet: options.quiet, ..Output::new(out, *json) };
     let code = publish(&report, &output)?;
-    undeclared::tell(&report);
+    tell_undeclared(&report);
     if let Some(earlier) = &earlier {
         let changes = earlier.changes(&report, named.is_none() && before.is_none());
         let none = ["nothing: every result and every control has the same outcome, value and tolerance".to_owned()];
@@ -185,4 +186,55 @@ fn perform(tasks: &ClaimTasks, options: &ClaimOptions) -> Vec<Option<Result<Sect
     };
     let jobs = options.jobs.map_or_else(|| at_once(usize::from(options.threads)), usize::from);
     in_memory(tasks, &tasks.order(), jobs, &follower, &tell)
+}
+
+/// Prints the number of unsupported results and the features that they need, most frequent first. Nothing is printed if
+/// no result needs such a feature.
+fn tell_undeclared(report: &Report) {
+    let rows = report.verdicts();
+    if let Some(message) = undeclared(rows.filter_map(|row| row.detail.as_deref())) {
+        exit::say("note", &message);
+    }
+}
+
+/// Returns the message about features that results need and that the manifest of an external solver does not declare.
+fn undeclared<'a>(reasons: impl Iterator<Item = &'a str>) -> Option<String> {
+    let (mut results, mut counts) = (0, BTreeMap::<(&str, &str), usize>::new());
+    for features in reasons.map(named_features).filter(|found| !found.is_empty()) {
+        results += 1;
+        features.into_iter().for_each(|feature| *counts.entry(feature).or_default() += 1);
+    }
+    let mut counts: Vec<_> = counts.into_iter().collect();
+    counts.sort_by_key(|(_, count)| std::cmp::Reverse(*count));
+    let words: Vec<String> = counts.iter().map(|((_, name), count)| format!("{name} ({count})")).collect();
+    let mut keys: Vec<String> = counts.iter().map(|((key, _), _)| format!("`can.{key}`")).collect();
+    keys.sort();
+    keys.dedup();
+    let message = format!(
+        "{} unsupported: {}; a solver that has these features declares them in SOLVER.toml, {}",
+        number::counted(results, "result"),
+        words.join(", "),
+        keys.join(" and ")
+    );
+    (results > 0).then_some(message)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn each_feature_is_counted_once_for_each_result() {
+        let reasons = [
+            "it does not declare effects `friction`",
+            "one cannot run this scene: it does not declare walls `mesh`; effects `friction`, `cohesion`",
+            "it moves one grain",
+        ];
+        assert_eq!(
+            undeclared(reasons.into_iter()).unwrap(),
+            "2 results unsupported: friction (2), cohesion (1), mesh (1); a solver that has these features declares them in \
+             SOLVER.toml, `can.effects` and `can.walls`"
+        );
+        assert_eq!(undeclared(reasons[2..].iter().copied()), None);
+    }
 }
