@@ -87,13 +87,11 @@ impl Input<'_> {
     fn within(&self, scene: &Scene) -> Result<Self, Fault> {
         let duration = scene.duration.seconds().unwrap_or_default();
         let window = self.window.map(|(from, to)| (from.max(0.0), to.min(duration)));
-        match window {
-            Some((from, to)) if from >= to => Err(Fault::input(format!(
-                "--window: expected a window within 0..{duration}, the duration of {}, found {from}..",
-                self.path
-            ))),
-            window => Ok(Self { window, path: self.path.clone(), ..*self }),
+        if let Some((from, _)) = window.filter(|(from, to)| from >= to) {
+            let path = &self.path;
+            refuse!("--window: expected a window within 0..{duration}, the duration of {path}, found {from}..");
         }
+        Ok(Self { window, path: self.path.clone(), ..*self })
     }
 
     /// Returns the words of the command for the report.
@@ -184,9 +182,8 @@ fn read(path: &str, quantities: &[String]) -> Result<Scene, Fault> {
 pub(crate) fn cost(input: &Input<'_>) -> Outcome {
     let scene = read(&input.path, input.quantities)?;
     let input = &input.within(&scene)?;
-    let words = input.words("cost");
     input.study(&scene, |study| {
-        let mut follower = Follower::new(study, input.out, &words);
+        let mut follower = Follower::new(study, input, "cost");
         let mut measured = Measurement::new(study);
         measured.levels(&mut follower)?;
         measured.variations(&mut follower)?;
@@ -194,12 +191,12 @@ pub(crate) fn cost(input: &Input<'_>) -> Outcome {
         follower.ledger = ledger;
         // A note tells why a solver has no level. Its stable step would take too long or does not exist.
         let names = measured.measured_solvers();
-        follower.limits = limits((study, &names), &mut |part| measured.remaining(part), &mut follower.bar)?;
+        limits(&names, &mut |part| measured.remaining(part), &mut follower)?;
         measured.repetitions(&mut follower)?;
         let mut result = measured.result();
         result.notes.extend(skipped);
         let is_stopped = measured.is_stopped();
-        let result = follower.study(result, is_stopped);
+        let result = follower.study(Some(result), is_stopped);
         drop(follower);
         if is_stopped {
             write_study(input.out, &result)?;
@@ -215,23 +212,19 @@ pub(crate) fn stopped() -> Fault {
 }
 
 /// Finds the largest stable step of each solver.
-fn limits(
-    (study, names): (&SceneStudy<'_>, &[String]),
-    remaining: &mut dyn FnMut(f64) -> f64,
-    bar: &mut Bar,
-) -> Result<Vec<Limit>, Fault> {
-    let mut found = Vec::new();
+fn limits(names: &[String], remaining: &mut dyn FnMut(f64) -> f64, follower: &mut Follower<'_>) -> Result<(), Fault> {
+    let study = follower.study;
     for (at, solver) in names.iter().enumerate() {
-        bar.now(&format!("{solver}: largest stable step"), study.budget.as_secs_f64() - remaining(1.0));
+        follower.now(&format!("{solver}: largest stable step"), study.budget.as_secs_f64() - remaining(1.0));
         let share = remaining(PARTS[3]).max(0.0) / (names.len() - at) as f64;
         let deadline = Instant::now() + Duration::from_secs_f64(share);
         let limit = limit::of_scene(study, solver, deadline)?;
         if (study.stop)() {
             break;
         }
-        found.push(limit);
+        follower.limits.push(limit);
     }
-    Ok(found)
+    Ok(())
 }
 
 /// Finds the largest stable step of each solver in a scene, and writes the report.
@@ -239,18 +232,16 @@ pub(crate) fn stability(input: &Input<'_>) -> Outcome {
     let (scene, _) = subject::scene(&input.path, &[])?;
     input.study(&scene, |study| {
         let (start, budget) = (Instant::now(), study.budget.as_secs_f64());
-        let mut bar = Bar::new(budget);
+        let mut follower = Follower::new(study, input, "stability");
         // The bisection may use the whole budget.
         let mut remaining = |part: f64| budget * (part / PARTS[3]).min(1.0) - start.elapsed().as_secs_f64();
-        let limits = limits((study, &study.names), &mut remaining, &mut bar)?;
-        drop(bar);
+        limits(&study.names, &mut remaining, &mut follower)?;
+        let result = follower.study(None, false);
+        drop(follower);
         if (study.stop)() {
             return Err(stopped());
         }
-        let mut written = Study::new(provenance(input.words("stability"), start.elapsed().as_secs_f64()));
-        written.limits = limits;
-        written.sources = sources(&study.names);
-        publish_study(&written, Output::new(input.out, input.study.json))
+        publish_study(&result, Output::new(input.out, input.study.json))
     })
 }
 
@@ -259,29 +250,13 @@ pub(crate) fn sources(names: &[String]) -> BTreeMap<String, String> {
     names.iter().filter_map(|name| Some((name.clone(), grainbench::kept::sources(name)?))).collect()
 }
 
-/// Progress bar over the time budget.
-struct Bar {
-    progress: Progress,
-    budget: f64,
-}
-
-impl Bar {
-    fn new(budget: f64) -> Self {
-        Self { progress: Progress::new(budget.ceil() as u64, "s of the budget"), budget }
-    }
-
-    fn now(&self, what: &str, spent: f64) {
-        self.progress.set(spent.clamp(0.0, self.budget) as u64, self.budget.ceil() as u64);
-        self.progress.now(what);
-    }
-}
-
 /// Follower that shows the progress, prints a line after each level and updates the report.
 struct Follower<'a> {
-    bar: Bar,
+    /// Progress bar over the time budget.
+    progress: Progress,
+    study: &'a SceneStudy<'a>,
     out: &'a Path,
-    words: &'a [String],
-    names: &'a [String],
+    words: Vec<String>,
     start: Instant,
     written: Instant,
     limits: Vec<Limit>,
@@ -289,34 +264,35 @@ struct Follower<'a> {
 }
 
 impl<'a> Follower<'a> {
-    fn new(study: &'a SceneStudy<'_>, out: &'a Path, words: &'a [String]) -> Self {
-        let (start, bar) = (Instant::now(), Bar::new(study.budget.as_secs_f64()));
-        Self { bar, out, words, names: &study.names, start, written: start, limits: Vec::new(), ledger: Vec::new() }
+    fn new(study: &'a SceneStudy<'_>, input: &'a Input<'_>, command: &str) -> Self {
+        let progress = Progress::new(study.budget.as_secs_f64().ceil() as u64, "s of the budget");
+        let (out, words, start) = (input.out, input.words(command), Instant::now());
+        Self { progress, study, out, words, start, written: start, limits: Vec::new(), ledger: Vec::new() }
     }
 
-    fn study(&self, cost: SceneCost, is_unfinished: bool) -> Study {
-        let mut options = self.words.to_vec();
-        if is_unfinished {
-            options.push("unfinished".to_owned());
-        }
+    fn study(&self, cost: Option<SceneCost>, is_unfinished: bool) -> Study {
+        let mut options = self.words.clone();
+        options.extend(is_unfinished.then(|| "unfinished".to_owned()));
         let mut study = Study::new(provenance(options, self.start.elapsed().as_secs_f64()));
-        study.scenes.push(cost);
+        study.scenes.extend(cost);
         study.limits.clone_from(&self.limits);
         study.ledger.clone_from(&self.ledger);
-        study.sources = sources(self.names);
+        study.sources = sources(&self.study.names);
         study
     }
 }
 
 impl StudyFollower for Follower<'_> {
     fn now(&mut self, run: &str, spent: f64) {
-        self.bar.now(run, spent);
+        let budget = self.study.budget.as_secs_f64();
+        self.progress.set(spent.clamp(0.0, budget) as u64, budget.ceil() as u64);
+        self.progress.now(run);
     }
 
     fn result(&mut self, line: &str, so_far: &dyn Fn() -> SceneCost) -> Result<(), WriteError> {
-        self.bar.progress.tell(line);
+        self.progress.tell(line);
         if self.written.elapsed() > EVERY {
-            write_study(self.out, &self.study(so_far(), true))
+            write_study(self.out, &self.study(Some(so_far()), true))
                 .map_err(|error| WriteError::new(self.out, std::io::Error::other(error)))?;
             self.written = Instant::now();
         }
