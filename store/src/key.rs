@@ -41,7 +41,7 @@ fn hash(program: &str, words: &[&str]) -> blake3::Hash {
 /// Id of a task: the first half of its hash.
 ///
 /// Equal tasks of the same program have equal ids in every plan.
-#[derive(Clone, Copy, PartialEq, Eq, Hash, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
 pub struct Id(u128);
 
 impl Id {
@@ -67,12 +67,6 @@ impl FromStr for Id {
 impl fmt::Display for Id {
     fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
         write!(formatter, "{:032x}", self.0)
-    }
-}
-
-impl fmt::Debug for Id {
-    fn fmt(&self, formatter: &mut fmt::Formatter<'_>) -> fmt::Result {
-        write!(formatter, "{self}")
     }
 }
 
