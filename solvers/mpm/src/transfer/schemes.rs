@@ -77,7 +77,7 @@ impl Transfer for Apic {
 /// The velocity changes Δv of the nodes have an angular momentum about the point. The spin changes by the rigid
 /// rotation with this angular momentum: Δω = Σ w r × Δv / Σ w |r|² about each axis. Here r is the vector from the point
 /// to the node, perpendicular to the axis. A yielding point takes the spin of the velocity around it
-/// ([`crate::material::stress::Update`]).
+/// ([`crate::material::stress`]).
 #[derive(Clone, Copy)]
 pub(crate) struct Spin;
 
