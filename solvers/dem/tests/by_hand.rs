@@ -416,6 +416,14 @@ fn a_dashpot_shortens_the_stable_step() {
     for (partner, mass) in [
         ("grains.b = { material = 'n', radius = 0.1, position = [0.3, 0.0] }", 0.5 * mass),
         ("walls.b = { material = 'n', plane = { point = [0.0, -1.0], normal = [0.0, 1.0] } }", mass),
+        // Another material with three times the density: 1/m* = 1/m + 1/(3m).
+        (
+            "materials.heavy.density = 3000.0\n\
+             contacts.b = { between = ['n', 'heavy'], normal_stiffness = 1.0e6, restitution = 0.5 }\n\
+             contacts.c = { between = ['heavy', 'heavy'], normal_stiffness = 1.0e6 }\n\
+             grains.b = { material = 'heavy', radius = 0.1, position = [0.3, 0.0] }",
+            0.75 * mass,
+        ),
     ] {
         let (damped, undamped) = step(partner);
         let free = 2.0 * (mass / 1.0e6).sqrt();

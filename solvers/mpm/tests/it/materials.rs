@@ -217,6 +217,8 @@ fn a_law_starts_under_any_stress() {
     let steel = Matrix3::new(0.17e9, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 0.0);
     assert_eq!(METAL.under_stress(&steel, 2).unwrap().stress, steel);
     assert!(METAL.under_stress(&(steel * 2.0), 2).is_none());
+    // A pressure does not yield, even if it exceeds the yield stress.
+    assert!(METAL.under_stress(&Matrix3::from_diagonal_element(-10.0 * METAL.yield_stress), 3).is_some());
 }
 
 /// The viscous stress is σ − σ_elastic = 2η dev D + ζ tr D 1. Its work on the strain of the step is (2η dev D : D + ζ
