@@ -382,6 +382,31 @@ fn a_rolling_spring_turns_with_its_contact() {
     );
 }
 
+/// A sphere presses on another sphere for 10 steps and withdraws for 10 steps, at 1 m/s. The other sphere spins at ω = 1
+/// rad/s, so each step adds k_r ω Δt to the moment. The stiffness follows Hertz's law: k_r = 2.25 k_n μ_r² R_eff² with k_n
+/// = (4/3) E* √(R_eff δ), E* = 1e8/1.5 Pa and R_eff = R/2 = .1 m. While it grows, the spring keeps its moment. While it
+/// decreases, `dem` keeps the angle, and LIGGGHTS keeps the moment.
+#[test]
+fn a_rolling_spring_follows_the_stiffness_of_its_contact() {
+    let text = "dimension = 3\nduration_cycles = 20\n\
+        materials.h = { density = 1.0e20, young_modulus = 1.0e8, poisson_ratio = 0.5 }\n\
+        contacts.h = { between = ['h', 'h'], law = 'hertz', friction = 1.0e-14, rolling_friction = 0.5 }\n\
+        [grains.a]\nmaterial = 'h'\nradius = 0.2\nposition = [0.0, 0.0, 0.395]\nspin = [1.0, 0.0, 0.0]\n\
+        [grains.b]\nmaterial = 'h'\nradius = 0.2\nposition = [0.0, 0.0, 0.0]\n[driven.b]\ngrains = 'b'\n\
+        motion = [{ velocity = [0.0, 0.0, 1.0], stop = 0.00125 }, { velocity = [0.0, 0.0, -1.0], start = 0.00125 }]\n";
+    let stiffness = |overlap: f64| 2.25 * (4.0 / 3.0 * 0.5e8 / 0.75) * (0.1 * overlap).sqrt() * 0.5 * 0.5 * 0.1 * 0.1;
+    let overlap = |steps: u32| 0.005 + 1.25e-4 * f64::from(steps);
+    let pressed: f64 = (1..=10).map(|step| stiffness(overlap(step)) * 1.25e-4).sum();
+    let withdrawn: f64 = (0..10).map(|step| stiffness(overlap(step)) * 1.25e-4).sum();
+    let angle = pressed / stiffness(overlap(10)) + 0.00125;
+    for (convention, expected) in
+        [(Convention::DEFAULT, stiffness(overlap(0)) * angle), (Convention::LIGGGHTS, pressed + withdrawn)]
+    {
+        let record = run_at(text, convention, &Resolution::TimeStep(1.25e-4));
+        close(end(&record).grains[0].torque.unwrap().x, -expected);
+    }
+}
+
 /// A spinning disc approaches a floor. The rolling spring yields at the moment μ_r R F_n, with F_n as in the Coulomb
 /// limit of the convention. In the convention of 1979, F_n is the spring force k δ. By default, it is the force of
 /// spring and dashpot, k δ + β k v.

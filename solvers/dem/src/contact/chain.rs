@@ -106,7 +106,7 @@ pub(crate) fn stages<S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, X:
         (answer.shear, answer.slipping) = (shear.force, shear.slipping);
         if R::ACTIVE {
             let memory = &mut memory[T::NUMBERS..];
-            let moment = R::moment::<N, X>(touch, normal, turning.relative, elapsed, turning.inertia, memory);
+            let moment = R::moment::<N, T, X>(touch, normal, turning.relative, elapsed, turning.inertia, memory);
             answer.torques = [answer.torques[0] + moment, answer.torques[1] - moment];
         }
     }

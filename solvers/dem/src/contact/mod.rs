@@ -43,7 +43,8 @@ pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
     /// Rotation of the contact over the step. It is `None` in two dimensions, if grains do not rotate, and if the
     /// convention projects the history.
     pub(crate) turn: Option<ContactRotation<S, X>>,
-    /// Ratio of the tangential stiffness at the start of the step to that at its end; 1 if it is not needed.
+    /// Ratio of the tangential and of the rolling stiffness at the start of the step to that at its end; 1 if it is not
+    /// needed.
     pub(crate) stiffness_ratio: X,
     /// Velocity of the first centre relative to the second body at the contact, v₁ − v₂ (m/s).
     pub(crate) velocity: S::Vectors<X>,
@@ -51,6 +52,16 @@ pub(crate) struct ContactInput<'a, S: Geometry, X: Number> {
     pub(crate) effective_mass: X,
     /// Effective radius R₁R₂/(R₁+R₂), or R₁ at a wall (m). Between grains, it is zero if no stage needs it.
     pub(crate) effective_radius: X,
+}
+
+impl<S: Geometry, X: Number> ContactInput<'_, S, X> {
+    /// Returns the factor of the displacement of a spring that keeps its force while its stiffness grows, and its
+    /// displacement while its stiffness decreases.
+    #[inline(always)]
+    pub(crate) fn force_keeping_ratio(&self) -> X {
+        let (ratio, one) = (self.stiffness_ratio, self.overlap.like(1.0));
+        X::choose(ratio.below(one), ratio, one)
+    }
 }
 
 /// Rotation of a contact over a step.
@@ -127,7 +138,7 @@ fn chord<X: Number>(squared: X) -> X {
     squared * (squared * (-77.0 / 360.0) - 1.0 / 6.0) + 1.0
 }
 
-/// Returns the ratio of the tangential stiffness at the start of a step of `elapsed` (s) to the stiffness at its end.
+/// Returns the ratio of the stiffness of a spring at the start of a step of `elapsed` (s) to the stiffness at its end.
 /// The stiffness is proportional to √δ with the overlap δ. The arguments are 1/δ at the end of the step (1/m) and the
 /// approach velocity of the bodies (m/s).
 #[inline(always)]

@@ -56,7 +56,7 @@ impl<S: Geometry, X: Number> Pair<'_, S, X> {
         let normal = between * inverse_distance;
         let is_mid_step = terms.options.mid_step && T::MAY_BE_MID_STEP && (N::DAMPED || T::ACTIVE);
         let turns = T::TURNED && S::DIMENSION == 3;
-        let changes = N::CURVED && T::ACTIVE && (T::TURNED || terms.record);
+        let changes = N::CURVED && T::ACTIVE && (T::TURNED || R::ACTIVE || terms.record);
         let middle = if is_mid_step || turns || changes {
             MidStepNormal::<S, X>::of_centres(normal, inverse_distance, velocity, elapsed)
         } else {

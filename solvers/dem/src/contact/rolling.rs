@@ -2,6 +2,7 @@
 
 use super::ContactInput;
 use super::normal::{Normal, NormalForce};
+use super::tangential::Tangential;
 use crate::geometry::{Geometry, Linear};
 use grainbench_lanes::Number;
 
@@ -16,7 +17,7 @@ pub(crate) trait Rolling<S: Geometry>: Copy + Send + Sync + 'static {
     /// relative to the second body (rad/s), `elapsed` the time since the last evaluation (s), and `inertia` the moment of
     /// inertia of the pair about the contact (kg m²).
     #[inline(always)]
-    fn moment<N: Normal, X: Number>(
+    fn moment<N: Normal, T: Tangential<S>, X: Number>(
         touch: &ContactInput<'_, S, X>,
         _normal: NormalForce<X>,
         _rate: S::Spins<X>,
@@ -49,7 +50,11 @@ impl<S: Geometry> Rolling<S> for FreeRolling {
 /// M is the moment, θ the rolling angle, ω the rolling velocity, and I_r the moment of inertia of the pair about the
 /// contact. F_n is the normal force of the Coulomb limit. The angle is reduced when the spring yields, and the dashpot
 /// does not act while the spring yields. The normal part of the relative spin is twisting, not rolling, and causes no
-/// moment.
+/// moment. The factor 2.25 holds for spheres. Ai et al. give 3 for discs; like LIGGGHTS, this stage uses 2.25 for both.
+///
+/// Ai et al. and LIGGGHTS sum the increments −k_r ω Δt of the moment, so that the moment does not change with k_r. In a
+/// Hertz contact, this can yield work in a closed cycle. For [`History::Turned`](crate::convention::History::Turned), the
+/// spring keeps its moment only while k_r grows, and its angle while k_r decreases.
 ///
 /// The history is the rolling angle θ (rad).
 #[derive(Clone, Copy, Debug)]
@@ -59,7 +64,7 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
     const NUMBERS: usize = <S::Spins<f64> as Linear<f64>>::COUNT;
 
     #[inline(always)]
-    fn moment<N: Normal, X: Number>(
+    fn moment<N: Normal, T: Tangential<S>, X: Number>(
         touch: &ContactInput<'_, S, X>,
         normal: NormalForce<X>,
         rate: S::Spins<X>,
@@ -75,6 +80,9 @@ impl<S: Geometry> Rolling<S> for ElasticPlastic {
         let mut angle = S::Spins::<X>::read(memory);
         if let Some(turn) = touch.turn {
             angle = S::turned_spin(angle, turn.middle, touch.normal, turn.half_twist);
+        }
+        if N::CURVED {
+            angle = angle * if T::TURNED { touch.force_keeping_ratio() } else { touch.stiffness_ratio };
         }
         angle = S::rolled(angle + rate * arm.like(elapsed), touch.normal);
         let limit = arm * normal.for_cap;

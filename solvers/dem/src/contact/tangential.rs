@@ -310,8 +310,7 @@ fn carried<S: Geometry, H: SpringTransport<S>, N: Normal, X: Number>(
     if !(H::TURNED && N::CURVED) {
         return stretch;
     }
-    let (ratio, one) = (touch.stiffness_ratio, touch.overlap.like(1.0));
-    stretch * X::choose(ratio.below(one), ratio, one)
+    stretch * touch.force_keeping_ratio()
 }
 
 #[cfg(test)]
