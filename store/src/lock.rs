@@ -1,4 +1,4 @@
-//! Lock of a directory. Only one process at a time may change the files of the directory.
+//! Lock of a directory. Only one process at a time holds it; the others wait or end with an error.
 
 use crate::machine;
 use crate::scratch::{prefix, without_its_path};

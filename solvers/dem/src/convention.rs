@@ -47,12 +47,12 @@ pub enum Tension {
 pub enum History {
     /// The springs rotate with the normal of the contact, and about the normal with the mean spin of both bodies. In the
     /// plane, the spring displacement is a scalar along the tangent (Cundall & Strack 1979). If its stiffness increases,
-    /// a tangential spring keeps its force. If its stiffness decreases, the spring keeps its displacement. A closed
-    /// loading cycle then never yields work (`mindlin_rescale` of LAMMPS; Thornton, Cummins & Cleary, Powder Technology
-    /// 233 (2013) 30-46).
+    /// a spring keeps its force or moment. If its stiffness decreases, the spring keeps its displacement. A closed
+    /// loading cycle then never yields work (`mindlin_rescale/force` of LAMMPS; Thornton, Cummins & Cleary, Powder
+    /// Technology 233 (2013) 30-46).
     Turned,
-    /// The spring displacement is a vector without its normal part (LAMMPS, LIGGGHTS). The force is stiffness times
-    /// displacement.
+    /// The spring displacement is a vector without its normal part (LAMMPS, LIGGGHTS). The tangential force is stiffness
+    /// times displacement. The moment of a rolling spring is the sum of its increments (LIGGGHTS).
     Projected,
 }
 

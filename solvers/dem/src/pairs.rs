@@ -47,7 +47,7 @@ impl<S: Geometry, L: Lanes> PairDistances<S, SimdPack<L>> {
     }
 }
 
-/// Slots of the first grains and of the second grains of as many pairs as a register holds.
+/// For the pairs of one register, the slots of their first grains and of their second grains.
 type Slots = [[usize; WIDEST]; 2];
 
 impl<'a, S: Geometry, N: Normal, T: Tangential<S>, R: Rolling<S>, const Q: usize> PairLoop<'a, S, N, T, R, Q> {

@@ -1,7 +1,7 @@
 //! Contact law between two materials: keys in the scene file, and the resolved law.
 //!
-//! A new law needs a variant of [`Springs`], with its name, its parameters from the scene, and its stiffness. Input
-//! decks and external programs that do not support the new law reject it by its kind.
+//! A new law needs a variant of [`LawKind`], `SpringsKind` and [`Springs`], with its name, its keys and its stiffness.
+//! Input decks and external programs that do not support the new law reject it by its kind.
 
 use crate::check::Checker;
 use crate::dimension::GrainShape;
@@ -75,7 +75,8 @@ pub struct ContactSpec {
     pub restitution: Option<f64>,
     /// Coefficient of rolling resistance μ_r. An elastic-plastic spring of stiffness k_r = 2.25 k_n μ_r² R_eff² exerts
     /// the moment against rolling (Ai et al. 2011, model C). The moment is at most μ_r R_eff F_n. The effective radius
-    /// R_eff is R₁R₂/(R₁+R₂) between grains, and R at a wall. Default 0.
+    /// R_eff is R₁R₂/(R₁+R₂) between grains, and R at a wall. As in LIGGGHTS, the factor of spheres also holds for discs.
+    /// Default 0.
     #[serde(default)]
     pub rolling_friction: f64,
     /// Damping ratio η_r of the rolling spring. Until the spring yields, the damping moment is −2η_r√(I_r k_r) times
@@ -295,8 +296,8 @@ impl ContactLaw {
         self.springs = self.springs.scaled([1.0, by]);
     }
 
-    /// Returns text that identifies the law in fingerprints: every number with all its digits. The order of the numbers
-    /// must not change, because stored results are found by this text.
+    /// Returns text that identifies the law in fingerprints: every number with all its digits. The text of the
+    /// existing laws must not change, because stored results are found by it.
     #[must_use]
     pub fn identity(&self) -> String {
         let moduli = [self.effective_modulus(), self.effective_shear_modulus()];

@@ -19,7 +19,7 @@ const FORMAT: u32 = 10;
 /// Reason why a run cannot continue from a checkpoint, or why a checkpoint cannot be stored.
 #[derive(Clone, Debug, PartialEq, Eq, Error)]
 pub enum CheckpointError {
-    /// File of another kind or format, or of the wrong length, or with bytes that differ from those that were written.
+    /// Wrong file type, format or length, or a checksum that does not match.
     #[error("{}", seal_words(.0))]
     NotSealed(SealError),
     /// Data that do not fit together or to the scene.

@@ -19,7 +19,7 @@ pub(crate) struct NormalForce<X> {
 pub(crate) trait Normal: Copy + Send + Sync + 'static {
     /// True if contacts have dashpots, normal or tangential.
     const DAMPED: bool;
-    /// True if the stiffness depends on the overlap and on the effective radius.
+    /// True if the law uses the effective radius. Its tangential stiffness then changes with the overlap.
     const CURVED: bool;
 
     fn force<S: Geometry, X: Number>(touch: &ContactInput<'_, S, X>, options: &Options) -> NormalForce<X>;
@@ -89,9 +89,10 @@ impl Normal for Spring {
 /// Linear spring and dashpots, F_n = k_n δ + c_n δ̇ with c_n = β k_n + γ_n m_eff + 2ζ√(k_n m_eff). Here δ is the
 /// overlap and m_eff the effective mass; [`Constants`] explains k_n, β, γ_n and ζ.
 ///
-/// The first two terms of c_n are from Cundall & Strack (1979, eqs. 26 and 28); LAMMPS and LIGGGHTS use the second. The
-/// third term gives a coefficient of restitution e, with ζ = −ln e/√(π² + ln² e). This formula is exact if the contact
-/// ends when the overlap is zero: the damped half-oscillation then ends with e = exp(−πζ/√(1 − ζ²)).
+/// The first term of c_n is the contact damping of Cundall & Strack (1979). LAMMPS and LIGGGHTS use the second. The third
+/// term gives a coefficient of restitution e. If the contact ends when the overlap is zero, the damped half-oscillation
+/// ends with e = exp(−πζ/√(1 − ζ²)), so ζ = −ln e/√(π² + ln² e). If it ends when the force is zero, as in `dem`, e =
+/// exp(−2ζ acos ζ/√(1 − ζ²)), which [`damping_ratio`](crate::laws::damping_ratio) inverts.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct SpringDashpot;
 
@@ -144,8 +145,8 @@ impl Normal for Hertz {
 }
 
 /// Hertz contact with dashpots: c_n = γ_n m_eff + 2√(5/6) ζ √(S m_eff), S = dF/dδ = 2E*√(R*δ). The second term gives
-/// exactly the coefficient of restitution e if the contact ends when the overlap is zero (Tsuji, Tanaka & Ishida 1992).
-/// Antypov & Elliott (2011) map the contact to a damped harmonic oscillator.
+/// exactly the coefficient of restitution e, with ζ as in a linear contact (Tsuji, Tanaka & Ishida 1992). Antypov &
+/// Elliott (2011) map the contact to a damped harmonic oscillator.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct HertzDashpot;
 
