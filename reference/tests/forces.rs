@@ -158,6 +158,23 @@ fn a_contact_with_a_mesh_is_at_its_nearest_point() {
     close(value(&observed, "c.shear_force"), 5.0);
 }
 
+/// A wall rises with 0.1 m/s during the first of two steps of 0.5 s, so it ends at 0.05 m. A disc of radius 0.5 m at
+/// 0.54 m then overlaps with it by 0.01 m.
+#[test]
+fn a_wall_moves_until_the_cycle_at_which_its_motion_stops() {
+    let scene = scene(
+        "dimension = 2\n[grains.a]\nmaterial = 'm'\nradius = 0.5\nposition = [0.0, 0.54]\n\
+         [walls.w]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+         motion = [{ velocity = [0.0, 0.1], stop_cycle = 1 }]\n[probes]\nc.contact = ['a', 'w']\n",
+    );
+    let columns = [("w.force_x", "f_w[1]"), ("w.force_y", "f_w[2]")];
+    let start = dump("ATOMS", "id x y f_w[1] f_w[2]", &["1 0 0.54 0 0"]);
+    let end = dump("ATOMS", "id x y f_w[1] f_w[2]", &["1 0 0.54 0 10"]).replace("TIMESTEP\n0", "TIMESTEP\n2");
+    let observed = observed(&scene, &[start + &end], &columns);
+    close(*observed.series.column("c.overlap").unwrap().last().unwrap(), 0.01);
+    close(observed.snapshots.last().unwrap().walls[0].corners[0].y, 0.05);
+}
+
 /// Two spheres of radius 0.51 m in three dimensions are 1 m apart along (2, 3, 6)/7. A normal force of 70 N on the
 /// first is −(20, 30, 60) N.
 ///

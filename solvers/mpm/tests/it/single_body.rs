@@ -34,6 +34,23 @@ fn free_flight_keeps_momentum() {
     }
 }
 
+/// A shift of the grid by a part of a cell acts like the opposite shift of the body. The cell has a length of 1/6 m.
+#[test]
+fn a_shifted_grid_is_a_shifted_body() {
+    let spin = |phase: [f64; 3], shift: [f64; 2]| {
+        let text = format!(
+            "dimension = 2\nduration = 1.0\nmaterials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
+             [grains.g]\nmaterial = 'm'\nradius = 1.0\nposition = {shift:?}\nspin = 0.3\n[probes]\ng.grain = 'g'\n"
+        );
+        let record = try_run("mpm", |setting| setting.phase = phase, &text, Resolution::grid(6.0, 2)).unwrap();
+        last(&record, "g.omega")
+    };
+    let (phase, shift) = ([0.3, 0.7, 0.0], [-0.3 / 6.0, -0.7 / 6.0]);
+    let (moved, shifted, plain) = (spin([0.0; 3], shift), spin(phase, [0.0; 2]), spin([0.0; 3], [0.0; 2]));
+    assert!((shifted - moved).abs() < 1e-12, "{shifted}, {moved}");
+    assert!((shifted - plain).abs() > 1e-9, "{shifted}, {plain}");
+}
+
 /// Points rotate with their body, also beyond a full turn, and are contained in the requested snapshots.
 #[test]
 fn points_turn_with_their_body() {
