@@ -6,7 +6,8 @@
 A defect changes a sign, a factor, an index or a term of a sum. There are as many defects in grains on springs, in material
 points, in scenes (with the code that resolves them and their probes) and in readers of files. One copy of the tree under
 `target/planted` contains all of them, and the environment variable PLANTED activates one. Without an active defect every
-result must equal the plain build to the last bit. Each defect is tested by the main job, `grainbench run`, and if that
+value must equal the value of the plain build to the last bit. Stored runs are outdated in the copy, because its sources
+differ. Each defect is tested by the main job, `grainbench run`, and if that
 passes by the tests, quickest first. Results are stored in `results.jsonl`, so that an interrupted run continues. Needs
 python 3.9 only. After the build a defect takes about a minute, plus the time of the tests if the main job passes.
 """
@@ -24,18 +25,18 @@ from pathlib import Path
 
 sys.dont_write_bytecode = True
 
-import defects  # noqa: E402  (beside this file, and nothing is to be left there)
+import defects  # noqa: E402  (after the line that avoids a folder of compiled Python files here)
 
 ROOT = Path(__file__).resolve().parents[2]
 # Crate of the switch of the defects, on which all other crates depend.
 SCENE = "solvers/scene/src"
 CLASSES = {"dem": ("solvers/dem/src",), "mpm": ("solvers/mpm/src",), "scene": (SCENE, "solvers/solver/src"),
            "files": ("reference/src/read",)}
-CHOOSER = '''//! Which planted defect acts: the one that the environment names.
+CHOOSER = '''//! Choice of the active defect by an environment variable.
 
 use std::sync::OnceLock;
 
-/// Whether the defect of this number acts.
+/// Returns true if the defect with this number is active.
 pub fn on(number: u32) -> bool {
     static CHOSEN: OnceLock<u32> = OnceLock::new();
     *CHOSEN.get_or_init(|| std::env::var("PLANTED").ok().and_then(|text| text.parse().ok()).unwrap_or(0)) == number
@@ -196,16 +197,22 @@ def write(path, text):
 def results(folder):
     """Returns the results and controls of a run without times; None if it wrote none."""
     try:
-        left = json.loads((folder / "results.json").read_text())
+        written = json.loads((folder / "results.json").read_text())
     except (OSError, ValueError):
         return None
-    return left["verdicts"], [{**control, "seconds": 0} for control in left["controls"]]
+    return [written["verdicts"], [{**control, "seconds": 0} for control in written["controls"]]]
+
+
+def values(rows_and_controls):
+    """Returns results and controls without the keys that tell whether a stored run is outdated."""
+    rows, controls = rows_and_controls
+    return [{key: row[key] for key in row if key not in ("verdict", "severity", "detail")} for row in rows], controls
 
 
 def none_chosen(program, work):
     """Returns the results and controls without an active defect, and the time of the main job.
 
-    The results must equal those of a build without defects.
+    Their values must equal the values of a build without defects.
     """
     kept, out, judged = work / "plain.json", work / "out", {}
     if kept.exists():
@@ -218,11 +225,11 @@ def none_chosen(program, work):
         if code != 0 or judged[name] is None:
             sys.exit(f"{name}: ended with {code}\n{said[-2000:]}")
         print(f"{name}: {len(judged[name][0])} rows in {took:.0f} s", flush=True)
-    if judged["plain"] != judged["none chosen"]:
-        sys.exit("with no defect chosen rows are others than those of the plain build")
-    print("with no defect chosen all rows and controls equal those of the plain build, in every bit", flush=True)
-    kept.write_text(json.dumps([judged["plain"], took]))
-    return judged["plain"], took
+    if values(judged["plain"]) != values(judged["none chosen"]):
+        sys.exit("without an active defect the results differ from the results of the plain build")
+    print("without an active defect all values and controls equal those of the plain build, in every bit", flush=True)
+    kept.write_text(json.dumps([judged["none chosen"], took]))
+    return judged["none chosen"], took
 
 
 def row_name(row):
@@ -284,7 +291,7 @@ def measured(tests, kept, longest):
 
 
 def table(rows, known):
-    print("\n| place | kind | what | moved rows | caught by |\n|---|---|---|---|---|")
+    print("\n| place | kind | defect | changed rows | caught by |\n|---|---|---|---|---|")
     for row in rows:
         answer = known.get(row["number"], {})
         shown, caught = row["shown"].replace("|", "¦"), (answer.get("caught") or "**nothing**").replace("|", "¦")
@@ -300,9 +307,9 @@ def table(rows, known):
 
 def main():
     options = argparse.ArgumentParser(description=__doc__, formatter_class=argparse.RawDescriptionHelpFormatter)
-    options.add_argument("--seed", type=int, help="of the lot; printed where none is given")
+    options.add_argument("--seed", type=int, help="random seed; if it is missing, a seed is drawn and printed")
     options.add_argument("--each", type=int, default=15, help="defects of each class")
-    options.add_argument("--only-run", action="store_true", help="the main job alone, no tests")
+    options.add_argument("--only-run", action="store_true", help="run the main job and no tests")
     options.add_argument("--longest", type=float, default=1800, help="seconds that one test program may take")
     options.add_argument("--work", type=Path, default=ROOT / "target" / "planted")
     asked = options.parse_args()
