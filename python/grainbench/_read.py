@@ -7,6 +7,7 @@ import html
 import importlib.util
 import json
 import re
+from collections import Counter
 from pathlib import Path
 from typing import Any
 
@@ -53,10 +54,10 @@ class Results:
             f"control stayed green  {control['case']} · {control['variant']} · {control['quantity']}: {control['wrong_physics']}"
             for control in green
         ]
-        count = {name: sum(row["verdict"] == name for row in self.verdicts) for name in ("pass", "fail", "broken")}
+        count = Counter(row["verdict"] or "not judged" for row in self.verdicts)
+        counts = ", ".join(f"{number} {name}" for name, number in ({"pass": 0, "fail": 0} | count).items())
         red = len(self.of_controls) - len(green)
-        said = ", ".join(f"{number} {name}" for name, number in count.items() if number or name != "broken")
-        return "\n".join([*lines, f"{said}; {red} of {len(self.of_controls)} controls turned red"])
+        return "\n".join([*lines, f"{counts}; {red} of {len(self.of_controls)} controls turned red"])
 
     def _any_red(self) -> bool:
         return any(row["severity"] == "red" for row in self.verdicts)
@@ -69,7 +70,7 @@ class Results:
 
         def cell(row: dict[str, Any], name: str) -> str:
             text = html.escape(_shown(row.get(name)))
-            style = f' style="color:{colours[row["severity"]]};font-weight:bold"' if name == "verdict" else ""
+            style = f' style="color:{colours[row["severity"]]};font-weight:bold"' if name == "verdict" and row["severity"] else ""
             return f"<td{style}>{text}</td>"
 
         head = "".join(f"<th>{name}</th>" for name in _SHOWN)
@@ -161,12 +162,12 @@ def _shown(value: Any) -> str:
 
 
 def _line(row: dict[str, Any]) -> str:
-    place = f"{row['case']} · {row['variant']} · {row['quantity']}"
+    place, verdict = f"{row['case']} · {row['variant']} · {row['quantity']}", row["verdict"] or ""
     if row.get("value") is None:
-        return f"{row['verdict']:<12} {place}: {row.get('detail') or ''}"
+        return f"{verdict:<12} {place}: {row.get('detail') or ''}"
     parts = f"{_shown(row['value'])} {row['unit']}, expected {_shown(row['expected'])}"
     detail = f"; {row['detail']}" if row.get("detail") else ""
-    return f"{row['verdict']:<12} {place}: {parts}, off {_shown(row['error'])}, allowed {_shown(row['allowed'])}{detail}"
+    return f"{verdict:<12} {place}: {parts}, error {_shown(row['error'])}, allowed {_shown(row['allowed'])}{detail}"
 
 
 def _snapshots(folder: Path) -> list[dict[str, Any]]:

@@ -362,6 +362,23 @@ def test_what_grainbench_left_is_read(tmp_path: Path) -> None:
         gb.read(tmp_path)
 
 
+def test_a_sweep_is_read_with_the_colour_of_each_result(tmp_path: Path) -> None:
+    sweep = Path(__file__).parents[2] / "examples" / "sweep" / "ball.toml"
+    scene = sweep.parent.parent / "case" / "scene.toml"
+    text = sweep.read_text(encoding="utf-8").replace("../case/scene.toml", str(scene))
+    text = text.replace("count = 10", "count = 2").replace("count = 12", "count = 2").replace("5/7", "4/7")
+    text += '\n[[record]]\nquantity = "speed"\nunit = "m/s"\nvalue = "ball.vx"\n'
+    (tmp_path / "sweep.toml").write_text(text, encoding="utf-8")
+    words = ["simulate", str(tmp_path / "sweep.toml"), "--out", str(tmp_path / "out")]
+    assert subprocess.run([binary(), *words], check=False, capture_output=True).returncode == 1
+    results = gb.read(tmp_path / "out" / "report")
+    assert isinstance(results, gb.Results)
+    red = results.table(only_red=True).splitlines()
+    assert len(red) > 1 and all(line.startswith("fail") for line in red[:-1]), red
+    assert "12 not judged" in red[-1], red
+    assert "color:#cf222e" in results._repr_html_()
+
+
 def test_a_scene_is_read_as_it_is_printed(tmp_path: Path) -> None:
     path = tmp_path / "scene.json"
     path.write_text(subprocess.run([binary(), "scene", "nine-discs/kappa-0"], check=True, capture_output=True, text=True).stdout)

@@ -48,7 +48,7 @@ impl Report {
     /// Returns true if the results and controls pass, and no other reason makes the report red.
     #[must_use]
     pub fn passes(&self) -> bool {
-        self.red_because.is_empty() && passes(self.verdicts(), self.controls())
+        self.red_because.is_empty() && passes(self.verdicts().map(|row| row.outcome), self.controls())
     }
 
     /// Returns the results of all sections.

@@ -75,6 +75,7 @@ pub(super) fn write_results(sweep: &Sweep, out: &mut impl Write) -> io::Result<(
                 "resolution": point.resolution, "quantity": quantity.words, "unit": quantity.unit, "value": looked.value,
                 "expected": looked.expected, "scale": looked.scale, "error": looked.error, "allowed": looked.allowed,
                 "source": quantity.source, "verdict": looked.verdict.map(Outcome::word), "detail": detail,
+                "severity": looked.verdict.map(Outcome::severity),
             });
             out.write_all(before.as_bytes())?;
             serde_json::to_writer(&mut *out, &row)?;

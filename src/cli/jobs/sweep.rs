@@ -87,7 +87,6 @@ impl Study for SweepStudy {
     fn report(&self, results: Vec<Option<Result<PointOutput, String>>>, how: &ReportOptions<'_>) -> Outcome {
         let mut options = vec![self.path.clone()];
         options.extend(how.words.iter().cloned());
-        let crashed = results.iter().any(|result| matches!(result, Some(Err(_))));
         let crashed_point = |detail| {
             let looked = vec![QuantityResult::without_value(verdict::Outcome::Broken, None)];
             PointOutput { looked, detail: Some(detail), ..PointOutput::default() }
@@ -105,8 +104,7 @@ impl Study for SweepStudy {
             print(&format!("{w} within, {o} outside or broken, {a} amber{unjudged}\n{}\n", page.display()))?;
         }
         let outcomes = || report.points.iter().flat_map(|point| &point.left.looked).filter_map(|result| result.verdict);
-        let nothing_judged = outcomes().next().is_some() && !outcomes().any(|outcome| outcome.is_judged());
-        let is_red = crashed || outside > 0 || nothing_judged || how.strict && amber + unjudged > 0;
-        Ok(exit_code(is_red))
+        let passes = outcomes().next().is_none() || verdict::passes(outcomes(), []);
+        Ok(exit_code(!passes || how.strict && amber + unjudged > 0))
     }
 }
