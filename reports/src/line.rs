@@ -38,7 +38,7 @@ pub fn with_reasons(rows: &[&Verdict], line: fn(&Verdict) -> String) -> String {
     text
 }
 
-/// Returns the line `case · solver resolution · quantity value, exact expected (source), off error, allowed tolerance`.
+/// Returns the line `case · solver resolution · quantity value, exact expected (source), error, allowed tolerance`.
 #[must_use]
 pub fn verdict(verdict: &Verdict) -> String {
     format!("{} · {}", scene_name(&verdict.case, &verdict.variant), within_case(verdict))
@@ -65,7 +65,7 @@ pub(crate) fn control_in_section(control: &ControlResult) -> String {
 fn tried(control: &ControlResult) -> String {
     let error = control
         .error
-        .map_or_else(|| "no error value".to_owned(), |error| format!("off {}", number::fraction(error.abs())));
+        .map_or_else(|| "no error value".to_owned(), |error| format!("error {}", number::fraction(error.abs())));
     let ControlResult { solver, quantity, wrong_physics, .. } = control;
     let (how, allowed) = (control.how.word(), number::fraction(control.allowed));
     let end = match control.error {
@@ -132,7 +132,7 @@ pub fn quantity(verdict: &Verdict) -> String {
         || "no finite error".to_owned(),
         |error| {
             let scale = scale_note(verdict).map_or_else(String::new, |scale| format!(" {scale}"));
-            format!("off {}{scale}", number::fraction(error.abs()))
+            format!("error {}{scale}", number::fraction(error.abs()))
         },
     );
     let allowed = number::fraction(verdict.allowed);
@@ -150,7 +150,7 @@ mod tests {
         row.source = "eq. 26".to_owned();
         assert_eq!(
             verdict(&row).replace('\u{202f}', " "),
-            "backspin · dem dt=.1 · v(t=0.5 s) 1.391 m/s, exact 1.42857 (eq. 26), off 2.6 %, allowed 2 %"
+            "backspin · dem dt=.1 · v(t=0.5 s) 1.391 m/s, exact 1.42857 (eq. 26), error 2.6 %, allowed 2 %"
         );
         row.outcome = Outcome::Broken;
         row.detail = Some("not finite at t=0.2 s".to_owned());

@@ -134,7 +134,7 @@ pub fn failures(solver: &dyn Solver, terms: &Terms) -> Vec<String> {
         .map(|row| {
             let error = row.error.map_or_else(|| "no finite number".to_owned(), |error| format!("{error:e}"));
             let detail = row.detail.as_deref().unwrap_or_default();
-            format!("{} {}: off {error}, allowed {:e} {detail}", row.variant, row.quantity, row.allowed)
+            format!("{} {}: error {error}, allowed {:e} {detail}", row.variant, row.quantity, row.allowed)
         })
         .collect();
     for control in controls.iter().filter(|control| !control.turned_red) {

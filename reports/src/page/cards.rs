@@ -114,7 +114,7 @@ fn card(report: &Report, lead: &dyn Fn(&Verdict) -> String, solver: &str) -> Mar
                         dt { (filter(Some(row.outcome.word()), html! { (count(row.outcome)) " " (row.outcome.word()) })) }
                         dd {
                             "worst "
-                            @if size(row).is_finite() { "off " (number::significant(100.0 * size(row), 2)) " %, " }
+                            @if size(row).is_finite() { "error " (number::significant(100.0 * size(row), 2)) " %, " }
                             a.bad href={ "#" (lead(row)) } title=(row.quantity) { (row.case) }
                         }
                     }
