@@ -122,7 +122,7 @@ fn options(families: Option<&str>) -> Result<Options<'static>, SaveError> {
 
 /// Converts an SVG document by a function for its drawing.
 fn convert(svg: &str, draw: fn(&Tree) -> Result<Vec<u8>, String>, options: &Options<'_>) -> Result<Vec<u8>, String> {
-    // A dot is a line of length zero with a round end, which the reader of SVG would leave out.
+    // A dot is a line of length zero with round ends. The SVG library omits lines of length zero.
     let dots = svg.replace("h0\"", "h.01\"").replace("h0M", "h.01M");
     draw(&Tree::from_str(&dots, options).map_err(|error| error.to_string())?)
 }

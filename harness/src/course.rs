@@ -36,8 +36,8 @@ pub fn from_start(done: &FinishedRun, column: &str) -> Result<Points, MissingDat
 }
 
 impl Quantity {
-    /// Reads a time series from the first run, which is the time (s) and the value of every sample. Expects the exact value
-    /// at every sample. `exact` returns this value from the scene and the time (s). The error is divided by `scale`.
+    /// Compares a time series of the first run with the exact value at every sample. `read` returns the time (s) and the
+    /// value of every sample. `exact` returns the exact value at a time (s). The error is divided by `scale`.
     pub fn follows(
         self,
         source: Source,

@@ -28,8 +28,8 @@ pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     Ok(solvers)
 }
 
-/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from a cache. An external solver
-/// never has the name of a built-in solver, so it is not found there.
+/// Tests the conformance properties of a solver. Finished runs of built-in solvers may come from the cache. An external
+/// solver always runs, because its name differs from every built-in name.
 pub(crate) fn judge(
     (solver, terms): &ConformingSolver,
     solvers: &Arc<dyn Solvers>,

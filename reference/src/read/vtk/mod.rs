@@ -153,7 +153,7 @@ impl Points {
     /// Returns the grains at a moment, whose index is used as the step. Returns `None` after the last moment.
     ///
     /// # Errors
-    /// If an array is too short, has rows of no moment, or has a number that is not finite.
+    /// If the length of an array does not match the number of points, or if a number is not finite.
     pub(crate) fn snapshot(&self, at: usize) -> Result<Option<DumpSnapshot>, ReadError> {
         let Some(Moment { time, points, first }) = self.moments.get(at) else { return Ok(None) };
         let rows = |array: &Array, first: Option<usize>| match first {
