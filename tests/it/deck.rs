@@ -8,9 +8,11 @@ use grainbench::scene::dimension::GrainShape;
 use grainbench::scene::function::{Function, FunctionKind};
 use grainbench::scene::motion::{Moment, Motion, Phase};
 use grainbench::scene::scene::{Domain, Scene, WallShape};
+use grainbench::scene::source::SceneSource;
 use grainbench::solver::resolution::Resolution;
 use nalgebra::Vector3;
 use rayon::prelude::*;
+use std::path::Path;
 
 /// Writes the deck of a changed scene.
 fn deck_of(case: &str, variant: &str, program: Program, change: impl Fn(&mut Scene)) -> Result<Deck, DeckError> {
@@ -147,6 +149,58 @@ fn meshes_leave_the_period_as_it_is() {
     assert!(!box_of("xlo").starts_with("-1.0 "), "the mesh needs room: {}", box_of("xlo"));
     let message = deck(2.5).unwrap_err().to_string();
     assert!(message.contains("extends beyond the periodic bounds along y, -1 m to 1 m"), "{message}");
+}
+
+/// A mesh that moves out by 3 m and back needs room there too.
+#[test]
+fn meshes_have_room_for_their_whole_path() {
+    let mut scene = by_name("chung-ooi").unwrap().variant("plain").unwrap();
+    scene.walls[0].shape = WallShape::Rectangle { corner: -Vector3::x(), edges: [Vector3::x(), Vector3::y()] };
+    let velocity = Vector3::x() * (3.0 / (0.1 * scene.critical_time_step()));
+    let phase = |velocity, [start, stop]: [u64; 2]| Phase {
+        velocity,
+        spin: Vector3::zeros(),
+        start: Moment::Cycle(start),
+        stop: Moment::Cycle(stop),
+    };
+    scene.walls[0].motion.phases = vec![phase(velocity, [0, 1]), phase(-velocity, [1, 2])];
+    let deck = write_deck(&scene, &Resolution::CriticalFraction(0.1), Program::LIGGGHTS).unwrap();
+    let (_, data) = deck.files.iter().find(|(file, _)| file == "data.grains").unwrap();
+    let bounds = data.lines().find(|line| line.contains("xlo")).unwrap();
+    assert!(bounds.split(' ').nth(1).unwrap().parse::<f64>().unwrap() > 3.0, "{bounds}");
+}
+
+/// A disc of 1 kg hits another disc of 1 kg and a disc with prescribed motion, which has infinite mass. With k_n = 1e4 N/m
+/// and β = 1e-3 s, γ_n = βk_n/m_eff is 20 /s between the free discs (m_eff = 1/2 kg), and 10 /s at the disc with
+/// prescribed motion. Contacts without friction have no tangential dashpot, although the law has one.
+#[test]
+fn dashpots_follow_the_effective_mass_of_the_programs() {
+    let scene = |partner: &str, friction: f64| {
+        let text = format!(
+            "title = 't'\ndimension = 2\nduration_cycles = 1\n\
+             materials = {{ a.density = {0}, b.density = {0} }}\n\
+             contacts.c = {{ between = ['a', 'b'], normal_stiffness = 1.0e4, tangential_stiffness = 1.0e3, \
+             friction = {friction:?}, stiffness_damping = 1.0e-3, tangential_damping = 7.0 }}\n\
+             [grains.a]\nmaterial = 'a'\nradius = 1.0\nposition = [0.0, 0.0]\n\
+             [grains.b]\nmaterial = 'b'\nradius = 1.0\nposition = [3.0, 0.0]\n{partner}",
+            std::f64::consts::FRAC_1_PI
+        );
+        SceneSource::from_text("t", Path::new("."), &text).scene(&grainbench::scene::resolve::no_data_file).unwrap()
+    };
+    let coefficients = |partner: &str, friction: f64| -> Vec<f64> {
+        let scene = scene(partner, friction);
+        let deck = write_deck(&scene, &Resolution::CriticalFraction(0.1), Program::LAMMPS).unwrap();
+        let lines = deck.files.iter().flat_map(|(_, text)| text.lines());
+        let line = lines.filter(|line| line.contains("10000.0 1000.0")).next().unwrap();
+        let after = line.split("10000.0 1000.0 ").nth(1).unwrap();
+        after.split(' ').take(2).map(|word| word.parse().unwrap()).collect()
+    };
+    let close = |found: Vec<f64>, expected: [f64; 2]| {
+        assert!(found.iter().zip(expected).all(|(a, b)| (a - b).abs() < 1e-9), "{found:?}, {expected:?}");
+    };
+    close(coefficients("", 0.5), [20.0, 2.0 + 7.0]);
+    close(coefficients("[driven.b]\ngrains = 'b'\n", 0.5), [10.0, 1.0 + 7.0]);
+    close(coefficients("[driven.b]\ngrains = 'b'\n", 0.0), [10.0, 0.0]);
 }
 
 /// Returns the message about a changed scene that an external program does not support.

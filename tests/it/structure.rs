@@ -10,7 +10,7 @@ const BUDGETS: [(&str, usize, usize); 16] = [
     ("solvers/scene", 9_685, 0),
     ("solvers/solver", 3_350, 0),
     ("solvers/lanes", 1_355, 0),
-    ("solvers/dem", 8_300, 0),
+    ("solvers/dem", 8_325, 0),
     ("solvers/mpm", 10_760, 0),
     ("solvers/rigid", 1_465, 0),
     ("harness", 7_590, 5),
@@ -22,7 +22,7 @@ const BUDGETS: [(&str, usize, usize); 16] = [
     ("studies", 6_070, 0),
     ("jobs", 2_685, 0),
     ("src", 10_715, 0),
-    ("tests", 10_265, 0),
+    ("tests", 10_290, 0),
 ];
 
 fn root() -> &'static Path {

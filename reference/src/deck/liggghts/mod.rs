@@ -165,12 +165,15 @@ fn around(
     let end = stepping.steps as f64 * stepping.time_step;
     for mesh in meshes {
         let motion = &mesh.wall.motion;
-        let moved = motion.displacement(end, stepping.time_step).translation;
+        // Between the times at which its velocity changes, the mesh moves along straight lines.
+        let turns_back = motion.phases.iter().flat_map(|phase| [phase.start, phase.stop]);
+        let times = turns_back.map(|moment| moment.seconds(stepping.time_step).min(end)).chain([0.0, end]);
+        let moves: Vec<_> = times.map(|time| motion.displacement(time, stepping.time_step).translation).collect();
         for corner in mesh.triangles.iter().flatten() {
             // A rotation does not change the distance to the centre.
             let (centre, room) =
                 if turns(motion) { (motion.centre, (corner - motion.centre).norm()) } else { (*corner, 0.0) };
-            for place in [centre, centre + moved] {
+            for place in moves.iter().map(|moved| centre + moved) {
                 (least, most) = (least.inf(&place.add_scalar(-room)), most.sup(&place.add_scalar(room)));
             }
         }
