@@ -122,10 +122,10 @@ fn claims() -> Vec<Claim> {
                     Ok(Measurement::relative(-middle.stress.iter().sum::<f64>() / 3.0, expected))
                 },
             )
-            .within(computed(
-                1e-5,
-                "volumes are multiplied and strains are added, with an error of e/2N in N steps: 2e-6 of .0202 in \
-                 4600. Five times this error is allowed for the mean of a logarithm over points",
+            .within(rounding(
+                1.0 / 0.0202,
+                "each step rounds the volume, in units of the strain .0202; the midpoint rule has the error (e/N)²/12 \
+                 in N steps, at most a thirtieth of the rounding error (derivation)",
             ))
             .refuses(
                 Control::scene(
