@@ -69,8 +69,8 @@ impl Body {
 
 /// Returns the half extent of a point along each axis (cells), from the half extent of an undeformed point.
 ///
-/// The extent grows with the stretch of material lines along the axis, √b_ii. Points therefore remain contiguous if the
-/// stretch is along the axes, and the extent does not change under rotation.
+/// The extent grows with the stretch of material lines along the axis, √b_ii, between 1e-3 and 0.5 cells. Between these
+/// limits, points remain contiguous if the stretch is along the axes, and the extent does not change under rotation.
 #[inline(always)]
 pub(crate) fn extent<S: Space, B: Basis>(half: f64, deformation: S::Matrix) -> [f64; 3] {
     if !B::EXTENDED {
