@@ -13,7 +13,7 @@
 //! virial then belongs to the cell that contains the grain's centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
-use grainbench_solver::record::{Partner, Snapshot};
+use grainbench_solver::record::{GrainState, Partner, Snapshot};
 use nalgebra::Matrix3;
 
 /// Kind of stress of grains.
@@ -59,13 +59,14 @@ pub fn contact_stress(snapshot: &Snapshot, dimension: usize, grid: &Grid, which:
         for grain in &snapshot.grains {
             let virial = if which == Stress::Interval { &grain.mean_virial } else { &grain.virial };
             let virial = symmetric(*virial.as_deref()?);
-            if let Some(cell) = grid.find(grain.position) {
+            if let Some(cell) = grid.find(inside(snapshot, grain.position)) {
                 stress[cell] += virial;
             }
         }
     } else if grains_alone {
         let contacts = snapshot.contacts.as_ref()?;
-        let homes: Vec<Option<usize>> = snapshot.grains.iter().map(|grain| grid.find(grain.position)).collect();
+        let home = |grain: &GrainState| grid.find(inside(snapshot, grain.position));
+        let homes: Vec<Option<usize>> = snapshot.grains.iter().map(home).collect();
         for contact in contacts {
             let force = contact.shear_force - contact.normal * contact.normal_force;
             let arm = |id: u32, side: f64| {

@@ -71,11 +71,16 @@ impl Grid {
     }
 }
 
-/// Wraps a position (m) into the domain along periodic axes.
+/// Wraps a position (m) into the domain along periodic axes. A position inside the domain stays the same to the bit.
 pub(crate) fn inside(snapshot: &Snapshot, mut place: Vector3<f64>) -> Vector3<f64> {
     let (low, high) = snapshot.bounds;
     for axis in (0..3).filter(|&axis| snapshot.periodic[axis]) {
-        place[axis] = low[axis] + (place[axis] - low[axis]).rem_euclid(high[axis] - low[axis]);
+        if (low[axis]..high[axis]).contains(&place[axis]) {
+            continue;
+        }
+        let wrapped = low[axis] + (place[axis] - low[axis]).rem_euclid(high[axis] - low[axis]);
+        // The sum can round up to the upper side, which belongs to the first cell.
+        place[axis] = if wrapped >= high[axis] { low[axis] } else { wrapped };
     }
     place
 }

@@ -39,7 +39,8 @@ pub struct Motion {
 #[must_use]
 pub fn movers(snapshot: &Snapshot) -> Vec<Mover> {
     if snapshot.points.is_empty() {
-        let mover = |grain: &GrainState| Mover { position: grain.position, velocity: grain.velocity, weight: 1.0 };
+        let position = |grain: &GrainState| inside(snapshot, grain.position);
+        let mover = |grain| Mover { position: position(grain), velocity: grain.velocity, weight: 1.0 };
         snapshot.grains.iter().map(mover).collect()
     } else {
         let of_points = snapshot.points.iter().map(|point| Mover {
@@ -60,7 +61,7 @@ pub fn movers_between(before: &Snapshot, after: &Snapshot) -> Vec<Mover> {
     let elapsed = after.time - before.time;
     let mover = |grain: &GrainState| {
         let step = nearest_image(after, grain.position - before.grain(grain.id)?.position);
-        Some(Mover { position: grain.position, velocity: step / elapsed, weight: 1.0 })
+        Some(Mover { position: inside(after, grain.position), velocity: step / elapsed, weight: 1.0 })
     };
     after.grains.iter().filter_map(mover).collect()
 }

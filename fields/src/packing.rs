@@ -16,7 +16,7 @@ pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> V
     if snapshot.points.is_empty() {
         let shifts = image_shifts(snapshot, space.count());
         for (grain, shift) in snapshot.grains.iter().flat_map(|grain| shifts.iter().map(move |shift| (grain, shift))) {
-            share_out(grain.position + shift, grain.radius, space, grid, &mut filled);
+            share_out(inside(snapshot, grain.position) + shift, grain.radius, space, grid, &mut filled);
         }
     } else {
         for point in &snapshot.points {

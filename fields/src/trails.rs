@@ -10,7 +10,7 @@
 //! ```
 
 use crate::element::{Element, velocity_at};
-use crate::grid::{Grid, nearest_image};
+use crate::grid::{Grid, inside, nearest_image};
 use crate::mask::Frame;
 use grainbench_solver::record::Snapshot;
 use nalgebra::{Matrix3, SymmetricEigen, Vector3};
@@ -31,8 +31,9 @@ pub struct Tracer {
 pub fn tracers(snapshot: &Snapshot, grid: &Grid) -> Vec<Tracer> {
     let mut labelled = vec![Vec::new(); grid.cells()];
     for grain in &snapshot.grains {
-        if let Some(cell) = grid.find(grain.position) {
-            labelled[cell].push((grain.id, grain.position));
+        let position = inside(snapshot, grain.position);
+        if let Some(cell) = grid.find(position) {
+            labelled[cell].push((grain.id, position));
         }
     }
     let tracer = |(cell, labelled)| Tracer { position: grid.middle(cell), labelled, lost: false };

@@ -5,7 +5,7 @@
 
 use grainbench_fields::element::{Element, elements, velocity_at};
 use grainbench_fields::grid::Grid;
-use grainbench_fields::motion::{Mover, motion, movers_between};
+use grainbench_fields::motion::{Mover, motion, movers, movers_between};
 use grainbench_fields::tensor;
 use grainbench_fields::trails::{hencky, tracers};
 use grainbench_scene::dimension::Dimension;
@@ -232,6 +232,54 @@ fn no_choice_of_cells_gains_or_loses_anything() {
         let stress: Matrix3<f64> = elements.iter().map(|element| element.stress.unwrap() * grid.volume()).sum();
         assert!((stress - sum).norm() < 1e-12 * sum.norm());
     }
+}
+
+/// Other programs write grains outside a periodic box, by a part of a radius or by whole box lengths. These grains
+/// count at their image in the box of 4 m × 4 m × 4 m.
+#[test]
+fn grains_outside_a_periodic_box_count_inside() {
+    let periodic =
+        |grains: Vec<GrainState>| Snapshot { time: 1.0, ..snapshot(grains, Vector3::repeat(4.0), [true; 3]) };
+    // The images of the two grains are at x = 3.75 m and 0.5 m. Their overlap is 0.25 m, so each lever arm is 0.375 m. Each
+    // grain adds −0.375 m · 8 N to a cell of 32 m³. A cap of height 0.25 m of grain 1 lies in the first cell.
+    let mut shot = periodic(vec![grain(1, Vector3::new(-0.25, 2.0, 2.0)), grain(2, Vector3::new(8.5, -2.0, 6.0))]);
+    let contact =
+        ContactState { grain: 1, partner: Partner::Grain(2), overlap: 0.25, normal_force: 8.0, ..Default::default() };
+    shot.contacts = Some(vec![ContactState { normal: Vector3::x(), ..contact }]);
+    let (sphere, cap) = (std::f64::consts::PI / 6.0, std::f64::consts::PI * 0.0625 * 1.25 / 3.0);
+    let halves = Grid::filling(shot.bounds, Vector3::new(2.0, 4.0, 4.0));
+    for (element, volume) in elements(&shot, Dimension::Three, &halves).iter().zip([sphere + cap, sphere - cap]) {
+        assert_eq!((element.motion.members, element.stress.unwrap().m11), (1, -3.0 / 32.0));
+        close(element.packing_fraction, volume / 32.0, 1e-13);
+    }
+    // The virials of the grains give the same stress as the contact.
+    shot.contacts = None;
+    shot.grains.iter_mut().for_each(|grain| grain.virial = Some(Box::new([-3.0, 0.0, 0.0, 0.0, 0.0, 0.0])));
+    assert!(
+        elements(&shot, Dimension::Three, &halves).iter().all(|element| element.stress.unwrap().m11 == -3.0 / 32.0)
+    );
+
+    // Eight grains at the corners of a cube move with v = L x. Each grain is shifted by another number of box lengths.
+    let gradient = Matrix3::new(0.03, -0.12, 0.04, 0.07, -0.04, 0.01, 0.02, -0.06, 0.015);
+    let corner = |id: u32| Vector3::from_fn(|axis, _| if (id - 1) >> axis & 1 == 1 { 2.5 } else { 1.5 });
+    let cube = |place: &dyn Fn(u32) -> Vector3<f64>| {
+        let moving = |id| GrainState { velocity: gradient * corner(id), ..grain(id, place(id)) };
+        periodic((1..=8).map(moving).collect())
+    };
+    let after = cube(&|id| corner(id) + Vector3::new(4.0, -8.0, 12.0) * (f64::from(id) - 4.0));
+    let before = Snapshot { time: 0.0, ..cube(&|id| corner(id) - gradient * corner(id)) };
+    let whole = Grid::filling(after.bounds, Vector3::repeat(4.0));
+    for movers in [movers(&after), movers_between(&before, &after)] {
+        assert!((motion(&movers, 3, &whole)[0].gradient.unwrap() - gradient).norm() < 1e-12);
+    }
+    let stretch = tracers(&after, &whole)[0].deformation(&cube(&|id| corner(id) * 1.1), 3).unwrap();
+    assert!((stretch - Matrix3::identity() * 1.1).norm() < 1e-12, "{stretch}");
+
+    // A position in the box stays the same to the bit, although −0.1 + (0.3 + 0.1) is not 0.3. A position that rounds to the
+    // upper side moves to the lower side.
+    let mut shot = periodic(vec![grain(1, Vector3::new(0.3, 4.0, -1e-17))]);
+    shot.bounds.0.x = -0.1;
+    assert_eq!(movers(&shot)[0].position, Vector3::new(0.3, 0.0, 0.0));
 }
 
 /// Unknown stress is `None`, never zero.
