@@ -2,6 +2,7 @@
 
 use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
+use std::ops::Range;
 
 /// Equal cells that fill a box. In two dimensions the grid is one cell deep, from z = −½ to z = ½.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -94,12 +95,11 @@ pub(crate) fn nearest_image(snapshot: &Snapshot, mut between: Vector3<f64>) -> V
     between
 }
 
-/// Returns the shifts (m) from a position to itself and to its images across the periodic sides of the first `dimension`
-/// axes.
-pub(crate) fn image_shifts(snapshot: &Snapshot, dimension: usize) -> Vec<Vector3<f64>> {
+/// Returns the shifts (m) from a position to itself and to its images across the periodic sides of the given axes.
+pub(crate) fn image_shifts(snapshot: &Snapshot, axes: Range<usize>) -> Vec<Vector3<f64>> {
     let length = snapshot.bounds.1 - snapshot.bounds.0;
     let along = |axis: usize| -> &[f64] {
-        if axis < dimension && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
+        if axes.contains(&axis) && snapshot.periodic[axis] { &[-1.0, 0.0, 1.0] } else { &[0.0] }
     };
     let plane = along(0).iter().flat_map(|&i| along(1).iter().map(move |&j| (i, j)));
     plane.flat_map(|(i, j)| along(2).iter().map(move |&k| Vector3::new(i, j, k).component_mul(&length))).collect()

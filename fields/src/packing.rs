@@ -14,7 +14,7 @@ use nalgebra::Vector3;
 pub fn packing_fraction(snapshot: &Snapshot, space: Dimension, grid: &Grid) -> Vec<f64> {
     let mut filled = vec![0.0; grid.cells()];
     if snapshot.points.is_empty() {
-        let shifts = image_shifts(snapshot, space.count());
+        let shifts = image_shifts(snapshot, 0..space.count());
         for (grain, shift) in snapshot.grains.iter().flat_map(|grain| shifts.iter().map(move |shift| (grain, shift))) {
             share_out(inside(snapshot, grain.position) + shift, grain.radius, space, grid, &mut filled);
         }

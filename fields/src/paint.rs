@@ -153,7 +153,7 @@ impl Painting {
         };
         // A pixel in the overlap of two discs shows the disc in which it lies deeper.
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
-        let (shifts, view) = (image_shifts(snapshot, 2), self.view);
+        let (shifts, view) = (image_shifts(snapshot, 0..2), self.view);
         for (place, grain) in snapshot.grains.iter().enumerate() {
             for shift in &shifts {
                 let centre = [grain.position.x + shift.x, grain.position.y + shift.y];
@@ -260,7 +260,7 @@ fn at_pixels(snapshot: &Snapshot, view: View, value: impl Fn(&PointState) -> [f6
 /// Visits the pixels near each point and its periodic images. The arguments of `show` are the pixel, the squared
 /// distance in units of the point's width, and the index of the point.
 fn lay(snapshot: &Snapshot, view: View, mut show: impl FnMut(usize, f64, u32)) {
-    let shifts = image_shifts(snapshot, 2);
+    let shifts = image_shifts(snapshot, 0..2);
     for (number, point) in snapshot.points.iter().enumerate() {
         let (place, width) = (inside(snapshot, point.position), point.volume.sqrt());
         for shift in &shifts {

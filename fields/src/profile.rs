@@ -1,6 +1,6 @@
 //! Profiles: means over slices of a two-dimensional scene, as used for experiments on shear bands.
 
-use crate::grid::{inside, nearest_image};
+use crate::grid::{image_shifts, inside, nearest_image};
 use crate::overlap::disc_in_box;
 use grainbench_solver::record::Snapshot;
 use nalgebra::Vector3;
@@ -16,7 +16,7 @@ pub enum Motion {
 }
 
 /// Returns the mean of one component of displacement or velocity in slices perpendicular to `axis`, weighted by the
-/// area of material.
+/// area of material. Along a periodic `axis`, the part of a disc beyond a side belongs to the slices at the other side.
 ///
 /// The result refers to the last of `snapshots`. It contains the centre (m) and the mean (m or m/s) of each slice with
 /// material. The displacement of a disc is that of its centre, summed from snapshot to snapshot across periodic sides.
@@ -38,9 +38,12 @@ pub fn profile(
             Motion::Displacement => displacements(snapshots),
             Motion::Velocity => last.grains.iter().map(|grain| grain.velocity).collect(),
         };
-        for (grain, moved) in last.grains.iter().zip(moved) {
+        let shifts = image_shifts(last, axis..axis + 1);
+        let moved_grains = last.grains.iter().zip(moved);
+        for ((grain, moved), shift) in moved_grains.flat_map(|both| shifts.iter().map(move |shift| (both, shift))) {
+            let centre = inside(last, grain.position)[axis] + shift[axis];
             for (slice, sum) in sums.iter_mut().enumerate() {
-                let from = low + width * slice as f64 - grain.position[axis];
+                let from = low + width * slice as f64 - centre;
                 if from.abs().min((from + width).abs()) > grain.radius && from * (from + width) > 0.0 {
                     continue;
                 }
@@ -99,6 +102,20 @@ mod tests {
             grains: (1..=4).map(grain).collect(),
             ..Snapshot::default()
         }
+    }
+
+    /// Half of the first disc, whose image is at x = 0, is in each outer slice. The second disc is in the last slice. The
+    /// mean velocity there is (½ · 1 + 1 · 3)/(½ + 1) = 7/3 m/s.
+    #[test]
+    fn a_disc_across_a_periodic_side_is_in_both_outer_slices() {
+        let mut shot = Snapshot { periodic: [true, false, false], ..snapshot(0.0) };
+        shot.grains.truncate(2);
+        for (grain, (x, velocity)) in shot.grains.iter_mut().zip([(8.0, 1.0), (3.5, 3.0)]) {
+            (grain.position.x, grain.velocity.y) = (x, velocity);
+        }
+        let means = profile(&[shot], Motion::Velocity, 0, 1, 4);
+        assert!(means.len() == 2 && means[0] == (0.5, 1.0) && means[1].0 == 3.5, "{means:?}");
+        assert!((means[1].1 - 7.0 / 3.0).abs() < 1e-12, "{means:?}");
     }
 
     #[test]
