@@ -6,14 +6,16 @@
 //!
 //! V is the volume of the cell. For grains, Δx is the vector from the centre of a grain to a contact, and F the force
 //! on the grain at this contact. For material points, V_p is the volume of a point and σ_p its stress. Compression is
-//! negative. Contacts with walls are included. Both sums are consistent: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by
-//! Gauss' theorem. A grain belongs as a whole to the cell of its centre. T of a single cell therefore depends on the
-//! grains that intersect the boundary of the cell, but sums over all cells are exact. Momentum flux is not included. A
-//! snapshot may contain the virial of each grain (volume times mean stress of the grain) instead of contacts. The
-//! virial then belongs to the cell that contains the grain's centre at the time of the snapshot.
+//! negative. Contacts with walls are included if the snapshot lists them. Contact dumps of LAMMPS and LIGGGHTS list only
+//! pairs of grains. The stress of cells at walls is then too small, so [`crate::course::Course`] masks all cells at
+//! non-periodic sides of the grid. Both sums are consistent: for a grain in equilibrium ∫σ dV = Σ Δx⊗F by Gauss' theorem.
+//! A grain belongs as a whole to the cell of its centre. T of a single cell therefore depends on the grains that
+//! intersect the boundary of the cell, but sums over all cells are exact. Momentum flux is not included. A snapshot may
+//! contain the virial of each grain (volume times mean stress of the grain) instead of contacts. The virial then belongs
+//! to the cell that contains the grain's centre at the time of the snapshot.
 
 use crate::grid::{Grid, inside};
-use grainbench_solver::record::{GrainState, Partner, Snapshot};
+use grainbench_solver::record::{ContactState, GrainState, Partner, Snapshot};
 use nalgebra::Matrix3;
 
 /// Kind of stress of grains.
@@ -42,6 +44,14 @@ impl Stress {
 #[must_use]
 pub fn tells_interval(snapshot: &Snapshot) -> bool {
     snapshot.points.is_empty() && snapshot.grains.iter().any(|grain| grain.mean_virial.is_some())
+}
+
+/// Returns true if the contacts of a snapshot may lack those with walls: all are between grains, and the grains have no
+/// forces. Snapshots of external programs are of this kind, while our solvers report the force on each grain.
+pub(crate) fn lacks_walls(snapshot: &Snapshot) -> bool {
+    let is_pair = |contact: &ContactState| matches!(contact.partner, Partner::Grain(_));
+    snapshot.contacts.as_ref().is_some_and(|contacts| contacts.iter().all(is_pair))
+        && snapshot.grains.first().is_some_and(|grain| grain.force.is_none())
 }
 
 const fn symmetric([xx, yy, zz, xy, yz, zx]: [f64; 6]) -> Matrix3<f64> {

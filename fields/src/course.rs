@@ -1,7 +1,7 @@
 //! Series of snapshots as granular elements on one grid, and means over time and space.
 
 use crate::column::{COLUMNS, Column, Grains};
-use crate::contact_stress::{Stress, tells_interval};
+use crate::contact_stress::{Stress, lacks_walls, tells_interval};
 use crate::element::{Element, elements_moving, interpolated, mean_grain};
 use crate::grid::Grid;
 pub use crate::mask::Frame;
@@ -79,7 +79,7 @@ impl Course {
         let elements = elements_moving(&snapshot, motion, self.stress.unwrap_or_default(), self.space, &self.grid);
         let inside: usize = elements.iter().map(|element| element.motion.members).sum();
         let all = if snapshot.points.is_empty() { snapshot.grains.len() } else { snapshot.points.len() };
-        let masked = self.masks.apply(&elements, &self.grid);
+        let masked = self.masks.apply_with(&elements, &self.grid, lacks_walls(&snapshot));
         let outside = all.saturating_sub(inside);
         if let Some(trails) = &mut self.trails {
             trails.go_on(&self.frames, &snapshot, &self.grid, self.space.count());

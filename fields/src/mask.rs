@@ -12,7 +12,7 @@ pub struct MaskReasons {
     /// The cell is at the free surface: the packing fraction of the cell, or of the cell above, is below the limit for
     /// the bulk.
     pub surface: bool,
-    /// The cell is at a non-periodic side of the grid other than its top.
+    /// The cell is at a non-periodic side of the grid. Its top counts only if the contacts may lack those with a lid.
     pub wall: bool,
     /// The cell is near an orifice.
     pub orifice: bool,
@@ -79,9 +79,15 @@ impl Orifice {
 }
 
 impl Masks {
-    /// Returns the reasons for the exclusion of each cell, in the order of `elements`.
+    /// Returns the reasons for the exclusion of each cell, in the order of `elements`. The stress must include the contacts
+    /// with walls.
     #[must_use]
     pub fn apply(&self, elements: &[Element], grid: &Grid) -> Vec<MaskReasons> {
+        self.apply_with(elements, grid, false)
+    }
+
+    /// Returns the reasons as [`Self::apply`]. If `lacks_walls`, the top of the grid counts as a wall.
+    pub(crate) fn apply_with(&self, elements: &[Element], grid: &Grid, lacks_walls: bool) -> Vec<MaskReasons> {
         let (up, high) = self.up;
         let bulk = |cell: usize| elements[cell].packing_fraction >= self.surface;
         let above = |at: [usize; 3]| {
@@ -96,8 +102,9 @@ impl Masks {
             MaskReasons {
                 few: elements[cell].motion.members < self.fewest,
                 surface: !bulk(cell) || above(at).is_some_and(|over| !bulk(over)),
-                // The upper end of the grid is not a wall: it is a free surface, or a lid that applies pressure.
-                wall: (0..self.dimension).any(|axis| !self.periodic[axis] && at_side(axis) && !(axis == up && top)),
+                // The upper end of the grid is a free surface, or a lid whose contacts are part of the stress.
+                wall: (0..self.dimension)
+                    .any(|axis| !self.periodic[axis] && at_side(axis) && (lacks_walls || !(axis == up && top))),
                 still: self.flowing.is_some_and(|least| elements[cell].shear_rate().is_none_or(|rate| rate < least)),
                 orifice: self.orifice.is_some_and(|orifice| orifice.distance(grid.middle(cell)) < orifice.reach),
             }

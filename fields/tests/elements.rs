@@ -3,8 +3,10 @@
 
 #![allow(clippy::unwrap_used, reason = "a test fails by panicking")]
 
+use grainbench_fields::course::Course;
 use grainbench_fields::element::{Element, elements, velocity_at};
 use grainbench_fields::grid::Grid;
+use grainbench_fields::mask::Masks;
 use grainbench_fields::motion::{Mover, motion, movers, movers_between};
 use grainbench_fields::tensor;
 use grainbench_fields::trails::{hencky, tracers};
@@ -280,6 +282,26 @@ fn grains_outside_a_periodic_box_count_inside() {
     let mut shot = periodic(vec![grain(1, Vector3::new(0.3, 4.0, -1e-17))]);
     shot.bounds.0.x = -0.1;
     assert_eq!(movers(&shot)[0].position, Vector3::new(0.3, 0.0, 0.0));
+}
+
+/// A column of three grains fills cells of 1 m between a floor and a lid. If the contacts may lack those with the lid, the
+/// top cell is masked as a cell at a wall.
+#[test]
+fn without_wall_contacts_the_cell_under_a_lid_is_masked() {
+    let grains = (1..=3).map(|id| grain(id, Vector3::new(0.5, 0.5, f64::from(id) - 0.5))).collect();
+    let dump = snapshot(grains, Vector3::new(1.0, 1.0, 3.0), [true, true, false]);
+    let (mut forces, mut lid) = (dump.clone(), dump.clone());
+    forces.grains.iter_mut().for_each(|grain| grain.force = Some(Vector3::zeros()));
+    lid.contacts = Some(vec![ContactState { grain: 3, partner: Partner::Wall(0), ..ContactState::default() }]);
+    for (shot, top) in [(dump.clone(), "wall"), (forces, ""), (lid, ""), (Snapshot { contacts: None, ..dump }, "")] {
+        let (periodic, up) = (shot.periodic, (2, true));
+        let masks = Masks { fewest: 1, surface: 0.4, up, periodic, dimension: 3, orifice: None, flowing: None };
+        let grid = Grid::filling(shot.bounds, Vector3::repeat(1.0));
+        let mut course = Course::new(grid, Dimension::Three, [0, 2], masks, false);
+        course.add(shot);
+        let words: Vec<String> = course.frames[0].masked.iter().map(|masked| masked.words()).collect();
+        assert_eq!(words, ["wall", "", top]);
+    }
 }
 
 /// Unknown stress is `None`, never zero.

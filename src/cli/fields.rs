@@ -27,7 +27,8 @@ pub(crate) struct Arguments {
     /// Cell size in metres: one number for all axes, or one for each axis. The size is adjusted so that whole cells fill the box.
     #[arg(long, value_name = "X[,Y,Z]", value_delimiter = ',', value_parser = positive, required = true)]
     cell: Vec<f64>,
-    /// Dump of the contacts (`dump local`) at the steps of the grain dump.
+    /// Dump of the contacts (`dump local`) at the steps of the grain dump. It lists no walls, so the stress of cells at walls
+    /// is too small.
     #[arg(long, value_name = "FILE")]
     contacts: Option<PathBuf>,
     /// Column names in the files, such as `x=xu`. Our contact columns are `id1`, `id2`, `force_x` (on the first grain) and,
