@@ -200,6 +200,10 @@ pub(crate) fn contacts_of(
         let between = nearest_image(other.position - position, low, high, snapshot.periodic);
         let normal = between.try_normalize(0.0).unwrap_or_else(Vector3::x);
         let overlap = radius + other.radius - between.norm();
+        // `compute pair/local` of LAMMPS lists all pairs within its cutoff, also those that are not in contact.
+        if force == Vector3::zeros() && overlap <= 0.0 {
+            continue;
+        }
         contacts.push(contact(*id, Partner::Grain(other.id), *position, *radius, normal, overlap, force));
     }
     contacts.sort_by_key(|contact: &ContactState| contact.grain);

@@ -10,9 +10,11 @@ use std::path::{Path, PathBuf};
 
 use flate2::Compression;
 use flate2::write::GzEncoder;
+use grainbench_reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench_reference::stored::compressed;
 use grainbench_reference::{DataFile, DumpKind, DumpReader, DumpSnapshot, ReadError};
 use grainbench_reference::{parse_data, parse_log, parse_table, read_data_file};
+use grainbench_solver::record::Partner;
 
 /// Returns the path of a file in `tests/data`.
 fn data(name: &str) -> PathBuf {
@@ -50,6 +52,25 @@ fn reads_atoms_of_lammps() {
     let coordinate = last.coordinate(1).unwrap();
     assert_eq!((coordinate.column, coordinate.value(last.row(8)) > 249.0), (2, true));
     assert_eq!(last.coordinate(2), None);
+}
+
+/// Three grains of radius 1 m at x = 0, 1.5 m and 3.6 m. Overlaps are 2 m minus the distances. The pair 1–2 overlaps by
+/// 0.5 m without a force. The pair 2–3 has a gap of 0.1 m and a cohesive force of 7 N. The pair 1–3 is not in contact.
+#[test]
+fn pairs_without_force_and_overlap_are_no_contacts() {
+    let folder = tempfile::tempdir().unwrap();
+    let frame = |what: &str, columns: &str, rows: &str| {
+        let (path, bounds) = (folder.path().join(what), "ITEM: BOX BOUNDS ff ff ff\n-1 9\n-1 9\n-1 9\n");
+        let head = format!("ITEM: TIMESTEP\n0\nITEM: NUMBER OF {what}\n3\n{bounds}");
+        fs::write(&path, format!("{head}ITEM: {what} {columns}\n{rows}")).unwrap();
+        path
+    };
+    let grains = frame("ATOMS", "id x y z radius", "1 0 0 0 1\n2 1.5 0 0 1\n3 3.6 0 0 1\n");
+    let pairs = frame("ENTRIES", "id1 id2 force_x force_y", "1 2 0 0\n2 3 7 0\n1 3 0 0\n");
+    let mut dump = GrainDump::open(&grains, Some(&pairs), DumpOptions::default()).unwrap();
+    let contacts = dump.read().unwrap().unwrap().contacts.unwrap();
+    let found: Vec<_> = contacts.iter().map(|contact| (contact.grain, contact.partner, contact.normal_force)).collect();
+    assert_eq!(found, [(1, Partner::Grain(2), 0.0), (2, Partner::Grain(3), -7.0)]);
 }
 
 #[test]
