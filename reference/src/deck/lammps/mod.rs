@@ -113,8 +113,13 @@ fn input(scene: &Scene, stepping: &Stepping, printed: &str, names: &Names) -> Re
     say(&format!("neighbor {:?} bin\nneigh_modify every 1 delay 0 check yes", skin(scene)));
     let effects = Effects::from_scene(scene);
     if effects.hertz && effects.restitution {
-        say("# The number behind the stiffness is what the polynomial of `damping tsuji` makes sqrt(5) zeta of:");
-        say("# with it the dashpot is 2 sqrt(5/6) zeta sqrt(S m_eff), as the coefficient of restitution asks for.");
+        say(
+            "# With the coefficient after the stiffness, the dashpot of `damping tsuji` is 2 sqrt(5/6) zeta sqrt(S m_eff).",
+        );
+        say(
+            "# For LAMMPS from 29 Sep 2021 to 22 Jul 2025. A release that multiplies the polynomial by sqrt(2) needs the",
+        );
+        say("# coefficient of restitution itself.");
     }
     say(&between_grains(scene)?);
     say(&format!("timestep {:?}", stepping.time_step));
