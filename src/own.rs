@@ -75,8 +75,8 @@ pub fn judge(solver: impl Solver + 'static, cases: &[&str]) -> Result<Judgement,
     let mut judgement = Judgement::default();
     for &name in cases {
         let case = registry::by_name(name).ok_or_else(|| JudgementError::NoSuchCase(name.to_owned()))?;
-        let stranger = Some(Arc::clone(&solver));
-        let runner = solvers::runner(case).with(RunnerOptions { stranger, ..RunnerOptions::default() });
+        let external = Some(Arc::clone(&solver));
+        let runner = solvers::runner(case).with(RunnerOptions { external, ..RunnerOptions::default() });
         let claims = runner.claims();
         if claims.is_empty() {
             return Err(JudgementError::NothingFair(name.to_owned()));

@@ -22,7 +22,7 @@ fn main() -> std::process::ExitCode {
     let set = if long { Set::Long } else { Set::Tests };
     let mut trials = Vec::new();
     for case in CASES {
-        let options = RunnerOptions { afresh: Some(set), ..RunnerOptions::default() };
+        let options = RunnerOptions { repeated: Some(set), ..RunnerOptions::default() };
         let runner = Arc::new(runner(case).with(options));
         for claim in (case.claims)().into_iter().filter(|claim| claim.set() <= set) {
             let claim = Arc::new(claim);

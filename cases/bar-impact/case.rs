@@ -92,7 +92,7 @@ fn claims() -> Vec<Claim> {
                      (derivation); in units of v",
                 ))
                 .refuses(softer().coarser(LEVELS[0].resolution))
-                .fair_to_any_continuum()
+                .solver_independent_continuum()
                 .drawn(&VELOCITY, level.name),
             claim(format!("velocity of the left bar in the end, {} cells", level.name), "m/s")
                 .run(run())
@@ -108,7 +108,7 @@ fn claims() -> Vec<Claim> {
                     Control::scene("the right bar twice as dense", |scene| scene.bodies[1].density *= 2.0)
                         .coarser(LEVELS[0].resolution),
                 )
-                .fair_to_any_continuum(),
+                .solver_independent_continuum(),
         ]
     };
     let stress = claim("stress in the middle of the right bar, mean over .6 L/c", "Pa")
@@ -119,7 +119,7 @@ fn claims() -> Vec<Claim> {
         })
         .within(estimated(0.015, "oscillation behind a discontinuous front"))
         .refuses(softer())
-        .fair_to_any_continuum();
+        .solver_independent_continuum();
     LEVELS.iter().flat_map(of_level).chain([stress]).collect()
 }
 

@@ -206,7 +206,7 @@ fn stopped() -> Vec<Claim> {
                 })
                 .within(tolerance)
                 .refuses(control)
-                .fair_to_any()
+                .solver_independent()
         };
     let displaced = computed(
         stiff(STOPS, |belt, step| {

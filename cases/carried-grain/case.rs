@@ -92,7 +92,7 @@ fn after_a_turn(variant: &'static str) -> Claim {
              (Ω/ω)² c (1/2 + ωT/4); across the normals, lever arms, d (Ω/ω)² θ and at most twice d (Ω/ω)²",
         ))
         .refuses(without_spin())
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 fn spin() -> Claim {
@@ -108,5 +108,5 @@ fn spin() -> Claim {
         })
         .within(computed(allowed, "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + θ)²"))
         .refuses(without_spin())
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }

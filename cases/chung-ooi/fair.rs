@@ -56,7 +56,7 @@ fn asked(mut claim: Claim) -> Claim {
     for run in claim.runs.iter_mut().filter(|run| run.resolution == STEP.resolution) {
         *run = run.at(LEVELS[1].resolution);
     }
-    claim.fair_to_any_springs()
+    claim.solver_independent_springs()
 }
 
 /// Returns the largest overlap over the smallest radius, the relative difference of lever arms of friction.

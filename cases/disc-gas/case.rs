@@ -32,7 +32,7 @@ fn claims() -> Vec<Claim> {
             "the kink of the force where contacts begin and end, at a hundredth of the critical step",
         ))
         .refuses(Control::scene("dashpots of 1e-3 of critical", |scene| damp(scene, 2e-3)))
-        .fair_to_any();
+        .solver_independent();
     let kept_in = claim("number of discs in the box in the end", "1")
         .run(run(FINEST))
         .holds("walls keep the discs in", |done| {
@@ -46,7 +46,7 @@ fn claims() -> Vec<Claim> {
         .refuses(Control::scene("one wall missing", |scene| {
             scene.walls.pop();
         }))
-        .fair_to_any();
+        .solver_independent();
     vec![conserved, kept_in, rigid::refuses_cycles(PLAIN), by_impulses()]
 }
 

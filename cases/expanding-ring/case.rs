@@ -165,7 +165,7 @@ fn claims() -> Vec<Claim> {
             })
             .within(tolerance)
             .refuses(control)
-            .fair_to_any_continuum()
+            .solver_independent_continuum()
     };
     // The tolerance is 2 % for two cells through the thickness, and decreases with the square of the cell length.
     let mut claims: Vec<Claim> = LEVELS
@@ -204,7 +204,7 @@ fn claims() -> Vec<Claim> {
                 .up_to(0.1),
             )
             .refuses(softer())
-            .fair_to_any_continuum()
+            .solver_independent_continuum()
             .drawn(&RADIAL, "cells of t/4"),
         claim("total energy over two periods, worst", "J")
             .run(run(THIN, LEVELS[1].resolution))

@@ -95,7 +95,7 @@ fn claims() -> Vec<Claim> {
                     "shear of .8 (t/L)², the square of the strain of the faces, and half the spacing of points at the tip",
                 ))
                 .refuses(Control::scene("gravity × .9", |scene| scene.gravity *= 0.9))
-                .fair_to_any_continuum()
+                .solver_independent_continuum()
                 .drawn(&SINKING, level.name)
         })
         .collect()

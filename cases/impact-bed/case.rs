@@ -137,7 +137,7 @@ fn claims() -> Vec<Claim> {
             ))
             .refuses(half_the_density()),
         early("late", "dem:liggghts"),
-        early("down", "dem").fair_to_any_springs(),
+        early("down", "dem").solver_independent_springs(),
     ];
     [own, programs::claims(), ladders::claims(), larger::claims()].concat()
 }

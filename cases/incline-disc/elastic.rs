@@ -157,7 +157,7 @@ fn to_a_hundredth(slope: Elastic) -> Claim {
     let control = Control::contact_law("three tenths of the friction", |law| law.friction *= 0.3);
     excess_claim(quantity, run(slope, "mpm", 8.0), slope.reference, allowed)
         .refuses(control.coarser(Resolution::grid(4.0, POINTS)))
-        .fair_to_any_continuum()
+        .solver_independent_continuum()
 }
 
 fn excess_words(slope: Elastic, cells: f64) -> String {

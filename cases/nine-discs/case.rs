@@ -80,7 +80,7 @@ fn static_forces() -> Vec<Claim> {
                 row.refuses(Control::scene("walls 1e-4 faster", |scene| {
                     scene.walls.iter_mut().for_each(|wall| wall.motion.phases[0].velocity *= 1.0001);
                 }))
-                .fair_to_any()
+                .solver_independent()
             } else {
                 // With friction, the forces depend on the history of a contact. The control is our solver without
                 // contact history.
@@ -257,7 +257,7 @@ fn continuous() -> Vec<Claim> {
                 .refuses(lighter());
             // Only the claim at the finest step is solver-independent. At coarser steps, the tolerance is the phase
             // error of central differences, which other schemes do not have.
-            claims.push(if level == LEVELS[2] { row.fair_to_any() } else { row });
+            claims.push(if level == LEVELS[2] { row.solver_independent() } else { row });
         }
         let order = claim("order in Δt of that deviation, δ → 0", "1")
             .runs(ORDER.iter().flat_map(|&level| SPEEDS.map(|speed| modal_run(variant, level, speed))))

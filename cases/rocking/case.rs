@@ -63,7 +63,7 @@ fn back() -> Claim {
              samples, (ω_rΔt)²/8",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 fn way() -> Claim {
@@ -77,7 +77,7 @@ fn way() -> Claim {
             "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 /// Returns the frequency of the disc's rocking between two discs (rad/s), and the largest relative error of the spin.
@@ -113,5 +113,5 @@ fn between(variant: &'static str) -> Claim {
              of a velocity; relative to ω₀",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.05", |law| law.rolling_friction *= 1.05))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }

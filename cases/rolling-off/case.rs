@@ -103,7 +103,7 @@ fn angle() -> Claim {
         })
         .within(off("rough", 2.0))
         .refuses(Control::scene("the inertia of a disc", |scene| scene.grains[1].inertia *= 1.25))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 fn kept(
@@ -125,7 +125,7 @@ fn kept(
         })
         .within(off(variant, 1.0))
         .refuses(control)
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 #[cfg(test)]

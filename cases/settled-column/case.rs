@@ -60,7 +60,7 @@ fn claims() -> Vec<Claim> {
             "remaining motion at the end, 1e-4 to 1.1e-3 depending on the convention; relative to the weight",
         ))
         .refuses(Control::scene("a run that ends while they fall", |scene| scene.duration = Duration::Seconds(4.0)))
-        .fair_to_any();
+        .solver_independent();
     let beside = |[ours, program]: [&'static str; 2], quantity: &str, read: RunReader| {
         claim(format!("{quantity}, against {program}"), "1")
             // Each of our five runs takes one to two seconds.

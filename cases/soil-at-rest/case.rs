@@ -38,7 +38,7 @@ fn claims() -> Vec<Claim> {
                 let stress = scene.bodies.iter_mut().filter_map(|body| body.stress.as_mut());
                 stress.for_each(|stress| stress.gradient.iter_mut().for_each(|gradient| *gradient = -*gradient));
             }))
-            .fair_to_any_continuum()
+            .solver_independent_continuum()
     })
     .collect()
 }

@@ -99,7 +99,7 @@ fn claims() -> Vec<Claim> {
         .holds("conservation of angular momentum", |done| Measurement::drift_of(&done[0], "all.angular_momentum"))
         .within(required(1e-3, "the conformance tolerance of the default setting at two cells per radius"))
         .refuses(Control::scene("damping of a hundredth per second", |scene| scene.global_damping = 0.01))
-        .fair_to_any_continuum();
+        .solver_independent_continuum();
     growths.into_iter().chain([momentum]).collect()
 }
 

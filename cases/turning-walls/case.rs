@@ -63,7 +63,7 @@ fn orbit() -> Claim {
             "lever arms differ by up to the overlap, 2δ/r; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 fn spin_in_drum() -> Claim {
@@ -78,7 +78,7 @@ fn spin_in_drum() -> Claim {
             "lever arms differ by up to the overlap, 2δ/R; time step, (ΩΔt)² (1 + ΩT)²",
         ))
         .refuses(slower())
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 /// Returns the compliance of the disc along the tray (m/N): 1/k_t + R²/k_r.
@@ -114,7 +114,7 @@ fn tray() -> Claim {
             "lever arms differ by up to the overlap, δφ; twice the vibration ẋ/ω on the springs; in units of Rφ",
         ))
         .refuses(Control::without(Effect::RollingResistance))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }
 
 /// Returns the frequency of the springs of both plates (rad/s).
@@ -147,5 +147,5 @@ fn clamped() -> Claim {
         .refuses(Control::scene("the upper plate turns slower by a hundredth", |scene| {
             scene.walls[1].motion.phases.iter_mut().for_each(|phase| phase.spin *= 0.99);
         }))
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }

@@ -116,5 +116,5 @@ fn row(
              begins and ends within a step, (ωΔt)²/8; all relative to the impulse",
         ))
         .refuses(if column == "vx" { heavier } else { stronger_friction() })
-        .fair_to_any_springs()
+        .solver_independent_springs()
 }

@@ -226,7 +226,7 @@ fn claims() -> Vec<Claim> {
                  of the law at a strain ε; in units of the amplitude",
             ))
             .refuses(softer())
-            .fair_to_any_continuum()
+            .solver_independent_continuum()
             .drawn(&VELOCITY, level.name)
     };
     let (squared, strain) = small(LEVELS[1].resolution);

@@ -299,17 +299,17 @@ impl ClaimWithTolerance {
 
 impl Claim {
     /// Extends the claim to every solver that can run the scene.
-    pub fn fair_to_any(self) -> Self {
+    pub fn solver_independent(self) -> Self {
         Self { scope: Scope::AnySolver, ..self }
     }
 
     /// Extends the claim to every solver with deformable bodies.
-    pub fn fair_to_any_continuum(self) -> Self {
+    pub fn solver_independent_continuum(self) -> Self {
         Self { scope: Scope::AnyContinuum, ..self }
     }
 
     /// Extends the claim to every solver whose contacts have the springs and dashpots of the scene.
-    pub fn fair_to_any_springs(self) -> Self {
+    pub fn solver_independent_springs(self) -> Self {
         Self { scope: Scope::AnySprings, ..self }
     }
 

@@ -47,7 +47,7 @@ pub struct Runner {
 #[derive(Clone)]
 pub struct RunnerOptions {
     /// External solver that replaces every solver named in the claims. It interprets the resolutions of the claims itself.
-    pub stranger: Option<Arc<dyn Solver>>,
+    pub external: Option<Arc<dyn Solver>>,
     /// True to run other programs even if their runs are stored.
     pub live: bool,
     /// True if figures may use the finest levels, which take minutes.
@@ -57,14 +57,14 @@ pub struct RunnerOptions {
     /// Number of threads per run.
     pub threads: usize,
     /// Largest tier whose stored runs are repeated; none to repeat no stored run.
-    pub afresh: Option<Set>,
+    pub repeated: Option<Set>,
     /// Directory of third-party data.
     pub data: Option<PathBuf>,
 }
 
 impl Default for RunnerOptions {
     fn default() -> Self {
-        Self { stranger: None, live: false, thorough: false, controlled: true, threads: 1, afresh: None, data: None }
+        Self { external: None, live: false, thorough: false, controlled: true, threads: 1, repeated: None, data: None }
     }
 }
 
@@ -102,8 +102,8 @@ impl Runner {
     #[must_use]
     pub fn claims(&self) -> Vec<Claim> {
         let mut claims = (self.case.claims)();
-        if let Some(stranger) = &self.options.stranger {
-            claims.retain(|claim| claim.scope.is_asked_of(&**stranger));
+        if let Some(external) = &self.options.external {
+            claims.retain(|claim| claim.scope.applies_to(&**external));
         }
         claims
     }
@@ -162,7 +162,7 @@ impl Runner {
     pub fn judge_and_control(&self, claim: &Claim, with_control: bool) -> (Verdict, Option<ControlResult>) {
         let row = self.judge(claim);
         let is_run = || {
-            self.options.stranger.is_none()
+            self.options.external.is_none()
                 || row.outcome != Outcome::Unsupported && self.refused_control(claim).is_none()
         };
         let control = (with_control && self.is_available(claim) && is_run()).then(|| self.control(claim));
@@ -171,7 +171,7 @@ impl Runner {
 
     /// Returns the reason why an external solver cannot run the wrong physics of a claim; none if it can.
     fn refused_control(&self, claim: &Claim) -> Option<String> {
-        let asked = self.options.controlled && self.options.stranger.is_some();
+        let asked = self.options.controlled && self.options.external.is_some();
         // A panic does not mean that the scene is unsupported. The control is then run, and its outcome is `broken`.
         let wrong = |run: &Run| match unless_panicked(|| self.run_wrong(claim, run)) {
             Ok(Err(error @ RunError::Unsupported { .. })) => Some(error.to_string()),
@@ -232,7 +232,7 @@ impl Runner {
         let scene = self.scene(run)?;
         let given = changed(&scene, by.control);
         if Arc::ptr_eq(&given, &scene)
-            && self.options.stranger.is_none()
+            && self.options.external.is_none()
             && run.reading.is_none()
             && !self.options.live
             && by.solver == run.solver
@@ -265,9 +265,9 @@ impl Runner {
         let set = control.map_or(run.set, |control| run.set.max(control.set));
         let is_wanted_now = self.options.live && self.solvers.is_program(run.solver);
         run.kept
-            && self.options.stranger.is_none()
+            && self.options.external.is_none()
             && !is_wanted_now
-            && self.options.afresh.is_none_or(|afresh| set > afresh)
+            && self.options.repeated.is_none_or(|repeated| set > repeated)
     }
 
     /// Returns the slot of a run: one for each combination of scene, solver, defect, resolution and evaluation.
@@ -330,12 +330,12 @@ impl Runner {
 
     /// Returns the external solver if there is one, otherwise the solver with this name.
     fn solver(&self, name: &str) -> Option<Arc<dyn Solver>> {
-        self.options.stranger.clone().or_else(|| self.solvers.find(name))
+        self.options.external.clone().or_else(|| self.solvers.find(name))
     }
 
     /// Returns the name of the solver of a run, as it appears in results.
     fn solver_name(&self, run: &Run) -> String {
-        self.options.stranger.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
+        self.options.external.as_ref().map_or_else(|| run.solver.to_owned(), |solver| solver.name())
     }
 
     /// Returns the error of a run whose scene or stored result cannot be read. If the data of our cases are not installed, the
@@ -402,7 +402,7 @@ impl Runner {
     #[must_use]
     pub fn allowed(&self, claim: &Claim, done: &[FinishedRun]) -> Option<(f64, tolerance::ToleranceOrigin)> {
         let stated = (claim.tolerance.allowed(done), claim.tolerance.made_without_estimate());
-        if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.options.stranger.is_some() {
+        if claim.tolerance.made != tolerance::ToleranceOrigin::Estimated || self.options.external.is_some() {
             return Some(stated);
         }
         // If the estimate is not below the stated limit, the limit applies as engineering judgement.
@@ -445,7 +445,7 @@ impl Runner {
                 let row = self.with_programs(row, &done);
                 match (claim.measure)(&done) {
                     // An external solver may report fewer quantities than our solvers.
-                    Err(missing) if self.options.stranger.is_some() => {
+                    Err(missing) if self.options.external.is_some() => {
                         row.left(Outcome::Unsupported, missing.to_string())
                     }
                     Err(missing) => row.left(Outcome::Fail, missing.to_string()),

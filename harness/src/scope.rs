@@ -45,7 +45,7 @@ impl Scope {
 
     /// Returns true if the claim applies to a given solver that the case does not name.
     #[must_use]
-    pub fn is_asked_of(self, solver: &dyn Solver) -> bool {
+    pub fn applies_to(self, solver: &dyn Solver) -> bool {
         match self {
             Self::Named => false,
             Self::AnySolver => true,

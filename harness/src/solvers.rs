@@ -48,7 +48,7 @@ pub trait Solvers: Send + Sync {
     }
 
     /// Returns the external solvers.
-    fn strangers(&self) -> Vec<ExternalSolver> {
+    fn external_solvers(&self) -> Vec<ExternalSolver> {
         Vec::new()
     }
 

@@ -138,7 +138,7 @@ mod tests {
 
     /// Student's t for one degree of freedom is 63.66 at 99 %. Two values that differ by 2 have s = √2.
     #[test]
-    fn two_draws_are_told_apart_by_their_kind() {
+    fn two_kinds_of_random_numbers_differ() {
         let half = spread(&[1.0, 3.0]).unwrap();
         assert!((half - 2.0 * 63.656_741).abs() < 1e-3, "{half}");
         assert_eq!((spread(&[1.0]), spread(&[1.0, 1.0])), (None, None));
@@ -167,7 +167,7 @@ mod tests {
 
     /// The interval misses the true difference in at most 3 % of cases; 1 % is expected.
     #[test]
-    fn the_interval_holds_what_it_says() {
+    fn intervals_have_their_coverage() {
         let course =
             |seed: u64| -> Vec<f64> { noise(seed).take(160).enumerate().map(|(at, x)| trend(at) + x).collect() };
         let outside = |off: f64| {

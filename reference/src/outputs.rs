@@ -213,7 +213,7 @@ impl Outputs {
                     self.ids = ids.map(|id| id as u64).collect();
                     self.ids.sort_unstable();
                 }
-                survey.first.get_or_insert(Origin { step: snapshot.step, time: self.told_time(&snapshot) });
+                survey.first.get_or_insert(Origin { step: snapshot.step, time: self.time_in_file(&snapshot) });
             }
             if snapshot.numbering != Numbering::Frames {
                 let [first, _] = survey.ends.unwrap_or([snapshot.step; 2]);
@@ -382,7 +382,7 @@ impl Outputs {
     }
 
     /// Returns the time of a snapshot (s), if the file contains it or it follows from the frame interval.
-    fn told_time(&self, snapshot: &DumpSnapshot) -> Option<f64> {
+    fn time_in_file(&self, snapshot: &DumpSnapshot) -> Option<f64> {
         let of_frames = || {
             let interval = self.sources.frame_interval.filter(|_| snapshot.numbering != Numbering::Steps)?;
             Some(snapshot.step as f64 * interval)
@@ -392,7 +392,7 @@ impl Outputs {
 
     /// Returns the time of a snapshot (s), counted from the origin.
     fn time(&self, name: &str, snapshot: &DumpSnapshot) -> Result<f64, OutputError> {
-        match (self.told_time(snapshot), &self.clock) {
+        match (self.time_in_file(snapshot), &self.clock) {
             (Some(time), _) => Ok(time - self.origin.time.unwrap_or_default()),
             (None, _) if snapshot.numbering == Numbering::Frames => {
                 Err(OutputError::run(name, "a column `Time` (s) or --frame-interval", "only frame numbers"))
@@ -405,7 +405,7 @@ impl Outputs {
     /// Returns the step of a snapshot, counted from the origin. If its number may be a frame number and its time (s) is
     /// known, the step is computed from the time.
     fn step(&self, snapshot: &DumpSnapshot, time: f64) -> u64 {
-        let is_told = snapshot.numbering != Numbering::Steps && self.told_time(snapshot).is_some();
+        let is_told = snapshot.numbering != Numbering::Steps && self.time_in_file(snapshot).is_some();
         match self.time_step().filter(|_| is_told) {
             Some(time_step) => (time / time_step).round() as u64,
             None => snapshot.step - self.origin.step.min(snapshot.step),

@@ -57,7 +57,7 @@ fn a_program_that_is_missing() {
 }
 
 #[test]
-fn a_program_that_fails_says_its_last_lines() {
+fn a_failed_program_shows_its_last_lines() {
     let error = run("echo one; echo two; echo 'ERROR: Lost atoms'; printf '\\377 bytes\\n' >&2; exit 3").unwrap_err();
     let message = error.to_string();
     assert!(matches!(error, RunError::Program { failure: Failure::Crash(_), .. }), "{message}");

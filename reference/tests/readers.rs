@@ -116,7 +116,7 @@ fn scaled_coordinates_of_a_tilted_box_follow_its_tilts() {
 
 /// The error distinguishes a truncated file from a damaged one.
 #[test]
-fn a_cut_is_told_from_damage() {
+fn a_truncated_file_differs_from_a_damaged_one() {
     let sound = sound();
     for cut in 1..sound.len() {
         if let Err(error) = all(&sound.as_bytes()[..cut]) {
@@ -334,7 +334,7 @@ fn fault(bytes: impl AsRef<[u8]>) -> String {
 }
 
 #[test]
-fn reads_what_the_file_says_in_its_order() {
+fn reads_columns_in_the_order_of_the_file() {
     let data = data_file(TWO_GRAINS);
     assert_eq!(data.title, "two grains # of one type");
     assert_eq!(data.bounds, ([-5.0, -1.0, -0.1], [5.0, 10.0, 0.1]));

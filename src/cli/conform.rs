@@ -1,6 +1,6 @@
 //! `grainbench conform`: tests the conformance properties that every solver must satisfy.
 
-use super::claims::conformance::owing;
+use super::claims::conformance::conforming;
 use super::claims::tasks::ClaimTasks;
 use super::cores::at_once;
 use super::exit::{Fault, Outcome, check_writable};
@@ -24,13 +24,13 @@ pub(crate) struct Arguments {
 pub(crate) fn conform(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
     check_writable(&arguments.report.out)?;
-    let owing = owing(&arguments.solver)?;
-    if owing.is_empty() {
+    let conforming = conforming(&arguments.solver)?;
+    if conforming.is_empty() {
         let names: Vec<String> = solvers::with_terms().iter().map(|(solver, _)| solver.name()).collect();
         let expected = "the path of a manifest (`SOLVER.toml`) or a built-in solver";
         return Err(Fault::unknown(expected, &arguments.solver.join(", "), names.iter().map(String::as_str)));
     }
-    let tasks = ClaimTasks::with(Vec::new(), owing);
+    let tasks = ClaimTasks::with(Vec::new(), conforming);
     let results = in_memory(&tasks, &tasks.order(), at_once(1), &(), &|_| {});
     let mut words = vec!["conform".to_owned()];
     words.extend(arguments.solver.iter().cloned());

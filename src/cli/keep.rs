@@ -15,7 +15,7 @@ const UNKNOWN: &str = "unknown";
 
 /// Returns the selected external solver. Returns an error if there is none or more than one.
 pub(crate) fn program(selected: &[CaseSelection]) -> Result<&ExternalProgram, Fault> {
-    let mut programs = selected.iter().map(|selection| selection.stranger.as_deref());
+    let mut programs = selected.iter().map(|selection| selection.external.as_deref());
     let Some(Some(program)) = programs.next() else {
         refuse!("--update-stored: expected the manifest of one program, found a built-in solver");
     };

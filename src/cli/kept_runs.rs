@@ -71,8 +71,8 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
         refuse!("--run: expected part of the name of a stored run, found `{letters}`");
     }
     for case in known.iter().filter(is_named) {
-        let (afresh, threads) = (Some(Set::Paper), usize::from(arguments.threads));
-        let options = RunnerOptions { afresh, threads, data: arguments.data.clone(), ..RunnerOptions::default() };
+        let (repeated, threads) = (Some(Set::Paper), usize::from(arguments.threads));
+        let options = RunnerOptions { repeated, threads, data: arguments.data.clone(), ..RunnerOptions::default() };
         let runner = runner(case).with(options);
         let wanted: Vec<StorableRun> = kept::all(case).into_iter().filter(is_meant).collect();
         for (place, one) in wanted.iter().enumerate() {

@@ -18,7 +18,7 @@ pub(crate) struct CaseSelection {
     /// Selected claims in the order of the case; never empty.
     pub(crate) claims: Vec<Claim>,
     /// External solver that runs the claims instead of the solvers named in them.
-    pub(crate) stranger: Option<Arc<ExternalProgram>>,
+    pub(crate) external: Option<Arc<ExternalProgram>>,
     /// True if some claims of the case were left out. Only the figures of the selected claims are then drawn.
     pub(crate) is_part: bool,
 }
@@ -31,10 +31,10 @@ pub(crate) fn select(cases: &[String], solvers: &[String], levels: &[String]) ->
     let mut selected =
         if names.is_empty() && !manifests.is_empty() { Vec::new() } else { of_registry(cases, &names, levels)? };
     for path in manifests {
-        let stranger = solver::outside(path)?;
+        let external = solver::outside(path)?;
         for mut of_case in select_fair(cases, levels)? {
-            of_case.claims.retain(|claim| claim.scope.is_asked_of(&*stranger));
-            selected.push(CaseSelection { stranger: Some(Arc::clone(&stranger)), ..of_case });
+            of_case.claims.retain(|claim| claim.scope.applies_to(&*external));
+            selected.push(CaseSelection { external: Some(Arc::clone(&external)), ..of_case });
         }
     }
     selected.retain(|selected| !selected.claims.is_empty());
@@ -62,7 +62,7 @@ fn of_registry(cases: &[String], solvers: &[String], levels: &[String]) -> Resul
     let of_case = |(case, variants): (&'static Case, SelectedVariants<'_>)| {
         let mut claims = (case.claims)();
         claims.retain(|claim| claim.runs.first().is_some_and(|run| variants.contain(run.variant)));
-        CaseSelection { case, claims, stranger: None, is_part: false }
+        CaseSelection { case, claims, external: None, is_part: false }
     };
     let mut selected: Vec<CaseSelection> = by_case(&named).into_iter().map(of_case).collect();
     refuse_unknown_solvers(&selected, solvers)?;

@@ -46,7 +46,7 @@ pub(crate) fn outside(path: &str) -> Result<Arc<ExternalProgram>, Fault> {
 /// Solvers that a command line names.
 #[derive(Clone, Default)]
 pub(crate) struct NamedSolvers {
-    strangers: Vec<Arc<ExternalProgram>>,
+    external_solvers: Vec<Arc<ExternalProgram>>,
     /// Time of reading and process number. They identify the external solvers, which may have changed since earlier
     /// results were made.
     read: String,
@@ -58,12 +58,12 @@ impl NamedSolvers {
     /// Reads the manifests whose paths are in `names`. Returns the solvers, and `names` with each path replaced by its
     /// solver's name. If several processes share the work, an external solver is identified by the contents of its files.
     pub(crate) fn read_for(names: &[String], is_shared: bool) -> Result<(Self, Vec<String>), Fault> {
-        let (mut strangers, mut known) = (Vec::new(), Vec::new());
+        let (mut external_solvers, mut known) = (Vec::new(), Vec::new());
         for name in names {
             if is_manifest(name) {
-                let stranger = outside(name)?;
-                known.push(stranger.name());
-                strangers.push(stranger);
+                let external = outside(name)?;
+                known.push(external.name());
+                external_solvers.push(external);
             } else {
                 find(name)?;
                 known.push(name.clone());
@@ -73,41 +73,41 @@ impl NamedSolvers {
         let read = format!("{}-{}", now.as_nanos(), process::id());
         if is_shared {
             // The identification must not differ between processes, so a file that cannot be read is an error.
-            for stranger in &strangers {
-                stranger.edition().map_err(Fault::input)?;
+            for external in &external_solvers {
+                external.edition().map_err(Fault::input)?;
             }
         }
-        Ok((Self { strangers, read, by_content: is_shared }, known))
+        Ok((Self { external_solvers, read, by_content: is_shared }, known))
     }
 
     /// Returns the hashes of the files of the external solvers, by path. Paths below the current directory are relative.
     pub(crate) fn inputs(&self) -> BTreeMap<String, String> {
         let here = env::current_dir().unwrap_or_default();
         // A folder that cannot be read causes an error when the solvers are read.
-        let files = self.strangers.iter().flat_map(|stranger| stranger.files().unwrap_or_default());
+        let files = self.external_solvers.iter().flat_map(|external| external.files().unwrap_or_default());
         let shown = |path: &Path| path.strip_prefix(&here).unwrap_or(path).display().to_string();
         files.map(|path| (shown(&path), key::of_file(&path))).collect()
     }
 
     /// Returns the names of the external solvers.
     pub(crate) fn names(&self) -> Vec<String> {
-        self.strangers.iter().map(|stranger| stranger.name()).collect()
+        self.external_solvers.iter().map(|external| external.name()).collect()
     }
 
-    fn stranger(&self, name: &str) -> Option<&Arc<ExternalProgram>> {
-        self.strangers.iter().find(|stranger| stranger.manifest().name == name)
+    fn external(&self, name: &str) -> Option<&Arc<ExternalProgram>> {
+        self.external_solvers.iter().find(|external| external.manifest().name == name)
     }
 }
 
 impl Solvers for NamedSolvers {
     fn find(&self, name: &str) -> Option<Arc<dyn Solver>> {
-        let stranger = self.stranger(name).map(|stranger| Arc::<ExternalProgram>::clone(stranger) as Arc<dyn Solver>);
-        stranger.or_else(|| Registry.find(name))
+        let external = self.external(name).map(|external| Arc::<ExternalProgram>::clone(external) as Arc<dyn Solver>);
+        external.or_else(|| Registry.find(name))
     }
 
     fn find_within(&self, name: &str, limit: Duration) -> Option<Arc<dyn Solver>> {
         // The time limit of an external solver is in its manifest.
-        if self.stranger(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
+        if self.external(name).is_some() { self.find(name) } else { Registry.find_within(name, limit) }
     }
 
     fn with_defect(&self, name: &str, defect: Defect) -> Option<Arc<dyn Solver>> {
@@ -115,27 +115,27 @@ impl Solvers for NamedSolvers {
     }
 
     fn is_program(&self, name: &str) -> bool {
-        self.stranger(name).is_some() || solvers::is_program(name)
+        self.external(name).is_some() || solvers::is_program(name)
     }
 
-    fn strangers(&self) -> Vec<ExternalSolver> {
-        let description = |stranger: &Arc<ExternalProgram>| {
-            let manifest = stranger.manifest();
+    fn external_solvers(&self) -> Vec<ExternalSolver> {
+        let description = |external: &Arc<ExternalProgram>| {
+            let manifest = external.manifest();
             ExternalSolver {
-                name: stranger.name(),
+                name: external.name(),
                 fractions: manifest.knobs.critical_fraction.clone(),
                 cells: manifest.knobs.cells.clone(),
-                has_springs: stranger.has_springs(),
-                deforms: stranger.deforms(),
+                has_springs: external.has_springs(),
+                deforms: external.deforms(),
                 stays: !manifest.worker.is_empty(),
             }
         };
-        self.strangers.iter().map(description).collect()
+        self.external_solvers.iter().map(description).collect()
     }
 
     fn edition(&self, name: &str) -> String {
-        let Some(stranger) = self.stranger(name) else { return Registry.edition(name) };
-        let content = if self.by_content { stranger.edition().ok() } else { None };
+        let Some(external) = self.external(name) else { return Registry.edition(name) };
+        let content = if self.by_content { external.edition().ok() } else { None };
         content.unwrap_or_else(|| self.read.clone())
     }
 

@@ -168,8 +168,8 @@ impl<S: Solvers> Solvers for CachingSolvers<S> {
         self.solvers.is_program(name)
     }
 
-    fn strangers(&self) -> Vec<ExternalSolver> {
-        self.solvers.strangers()
+    fn external_solvers(&self) -> Vec<ExternalSolver> {
+        self.solvers.external_solvers()
     }
 
     fn edition(&self, name: &str) -> String {

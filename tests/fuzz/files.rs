@@ -1,7 +1,7 @@
 //! Damaged files and their readers. A reader must return the contents, or an error that names the position.
 
 use crate::damage::{
-    DATA, DUMPS, LOGS, TABLE, apply, damages, expect, of_data, of_dump, of_log, of_table, strange_bytes, well_said,
+    DATA, DUMPS, LOGS, TABLE, apply, damages, expect, names_place, of_data, of_dump, of_log, of_table, strange_bytes,
 };
 use crate::driver::RandomSource;
 use crate::observer::RunObserver;
@@ -287,7 +287,7 @@ fn of_two(lot: &mut RandomSource) -> Answer {
     let first = left("first", &damaged(lot, text.as_bytes()));
     if lot.draw(any::<bool>()) {
         let second = left("second", text.as_bytes());
-        return compare(&first, &second, &Options::default()).map_or_else(|error| well_said(&error), |_| Ok(()));
+        return compare(&first, &second, &Options::default()).map_or_else(|error| names_place(&error), |_| Ok(()));
     }
     let sources = Sources {
         files: vec![first.clone()],
@@ -304,7 +304,7 @@ fn of_two(lot: &mut RandomSource) -> Answer {
             let numbers = observed.series.time.iter().chain(observed.series.values.iter().flatten());
             expect(numbers.into_iter().all(|value| value.is_finite()), "a number of what was observed is none")
         }
-        Err(OutputError::Read(error)) => well_said(&error),
+        Err(OutputError::Read(error)) => names_place(&error),
         Err(error) => one_line_of(&first, &error),
     }
 }

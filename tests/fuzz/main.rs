@@ -53,7 +53,7 @@ fn every_strange_value_in_every_place() {
         for value in 0..STRANGE.len() {
             let text = make(text, &Mistake::StrangeValue(place, value));
             match SceneSource::from_text("scene.toml", Path::new(""), &text).scene(&two_grains) {
-                Err(error) => scenes::well_said(&error.to_string()).unwrap(),
+                Err(error) => scenes::names_place(&error.to_string()).unwrap(),
                 Ok(mut scene) => {
                     scene.duration = Duration::Cycles(4);
                     // Any result is accepted. The test only requires that there is one.

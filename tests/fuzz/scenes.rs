@@ -58,19 +58,19 @@ pub(crate) fn try_out(lot: &mut RandomSource) -> Result<(), String> {
     let mut variants = vec![None];
     match source.variants() {
         Ok(names) => variants.extend(names.into_iter().map(Some)),
-        Err(error) => return well_said(&error.to_string()),
+        Err(error) => return names_place(&error.to_string()),
     }
     let variant = lot.one(&variants).clone();
     let source = variant.map_or(source.clone(), |name| source.variant(&name));
     let brief = lot.draw(any::<bool>());
     match source.scene(&two_grains) {
-        Err(error) => well_said(&error.to_string()),
+        Err(error) => names_place(&error.to_string()),
         Ok(scene) => run(lot, scene, solver.as_ref(), brief),
     }
 }
 
 /// Checks an error message about a scene: it must be one line, name the file, and contain "expected" and "found".
-pub(crate) fn well_said(message: &str) -> Result<(), String> {
+pub(crate) fn names_place(message: &str) -> Result<(), String> {
     let one_line = !message.chars().any(char::is_control);
     let named = message.starts_with("scene.toml") && message.contains("expected ") && message.contains("found ");
     if one_line && named { Ok(()) } else { Err(format!("badly said: {message:?}")) }

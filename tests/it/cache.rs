@@ -37,7 +37,7 @@ fn kept(directory: &Path) -> Vec<PathBuf> {
 }
 
 #[test]
-fn what_was_finished_is_taken_and_says_so() {
+fn a_finished_run_is_reused_and_reported() {
     let here = temporary();
     assert_eq!(taken(&mut program(&here, "first"), &here, "first"), (Some(0), 0));
     // A run that was too short for the cache may take longer when it is repeated.

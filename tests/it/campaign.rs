@@ -428,7 +428,7 @@ fn a_program_by_its_manifest_takes_part() {
 }
 
 #[test]
-fn a_trend_tells_which_rows_and_counts_changed() {
+fn a_trend_lists_changed_rows_and_counts() {
     let here = planned();
     here.ok("run --resume p");
     here.ok("report p --out new");

@@ -139,7 +139,7 @@ fn the_flow_rate_of_a_hopper_reveals_a_wrong_friction() {
 
 /// An output with another stiffness: the result is red, and the overlap at rest leads to the cause.
 #[test]
-fn an_overlap_at_rest_tells_the_stiffness() {
+fn an_overlap_at_rest_reveals_the_stiffness() {
     let directory = temporary_with("s.toml", OBLIQUE);
     let dump = |overlap: f64| {
         let row = |step: u32| {

@@ -258,7 +258,7 @@ fn a_time_step_above_the_critical_one_is_refused() {
 
 /// The ball sticks to the floor during contact. Friction therefore has almost no effect, but dashpot and spring have.
 #[test]
-fn a_check_says_which_changes_the_output_would_reveal() {
+fn a_check_lists_the_changes_that_the_output_would_reveal() {
     let directory = temporary();
     let checked = |how: &str| {
         let (scene, dump, log) = (of_ball("ball.toml"), of_ball("twosteps.dump.gz"), of_ball("twosteps.log.gz"));

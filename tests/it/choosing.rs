@@ -161,7 +161,7 @@ fn shells_and_readers_of_manuals_are_served() {
 /// The shell steps of the GitHub action, run as in a job.
 #[cfg(unix)]
 #[test]
-fn a_job_is_told_in_its_own_way() {
+fn each_job_has_its_own_message() {
     let here = temporary();
     let program = Path::new(env!("CARGO_BIN_EXE_grainbench")).parent().unwrap();
     let path = format!("{}:{}", program.display(), std::env::var("PATH").unwrap());

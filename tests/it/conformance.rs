@@ -32,7 +32,7 @@ fn a_property_sees_its_own_flaw_and_not_every_other() {
 
 /// If two results had the same name, they and their controls could be confused.
 #[test]
-fn every_row_has_a_name_of_its_own() {
+fn every_row_has_a_unique_name() {
     let solver = solvers::by_name("dem").unwrap();
     let rows = grainbench::conform(&*solver, &Terms::SECOND_ORDER).verdicts;
     let names: std::collections::BTreeSet<_> = rows.iter().map(|row| (&row.variant, &row.quantity)).collect();

@@ -32,7 +32,7 @@ fn without_it_rows_say_where_it_is_to_be_had() {
 
 /// The stored result belongs to the published initial state, and is not used for another initial state.
 #[test]
-fn another_start_is_told_from_the_published_one() {
+fn another_start_differs_from_the_published_one() {
     let path = temporary_with("data/start.xyz", "2\nbox\n0 0.102 0.032 0.05\n1 0.122 0.032 0.05\n");
     let answer = path.run(format!("{ROWS} --data data"));
     assert_eq!(answer.code, Some(1), "{}", answer.err);

@@ -28,7 +28,7 @@ fn taken(solver: &str, text: &str, most_rows: u64, threads: usize) -> (Series, R
 
 /// A summary equals the one computed from the whole snapshot, with and without probes. The series has the same bits.
 #[test]
-fn what_is_told_in_short_is_what_the_snapshot_tells() {
+fn the_summary_equals_the_snapshot() {
     for (solver, scene) in [("dem", DISCS), ("mpm", SOFT)] {
         for probes in ["", "[probes]\nall.system = true\n", "[probes]\nall.system = true\np.contact = ['a', 'b']\n"] {
             let text = format!("{scene}{probes}");

@@ -14,7 +14,7 @@ fn study(name: &str) -> Study {
 
 /// A reader must be able to get the source tree of each stored study.
 #[test]
-fn what_is_kept_says_of_which_sources_it_is() {
+fn stored_results_name_their_sources() {
     for name in ["cost", "stability", "effects"] {
         let study = study(name);
         assert!(!study.provenance.commit.contains("changes"), "{name} was measured of a tree that nobody has");
@@ -28,7 +28,7 @@ fn what_is_kept_says_of_which_sources_it_is() {
 
 /// A stored measurement is marked as old if the hash of a solver's sources differs from the stored one.
 #[test]
-fn a_solver_that_changed_is_told() {
+fn a_changed_solver_makes_stored_results_outdated() {
     let measured = measured().unwrap();
     let (cost, stability, effects) = (measured.cost.unwrap(), measured.stability.unwrap(), measured.effects.unwrap());
     let stamps = [(&cost.stamp, "cost"), (&stability.stamp, "stability"), (&effects.stamp, "effects")];

@@ -267,7 +267,7 @@ fn a_line_of_masses_is_judged_as_a_continuum() {
 
 /// Results of an external solver are stored beside its manifest. The next run must have the same outcomes, also failures.
 #[test]
-fn a_program_is_held_to_what_is_kept_of_it() {
+fn a_program_must_equal_its_stored_result() {
     if !is_here("python3") {
         return;
     }

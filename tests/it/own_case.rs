@@ -167,7 +167,7 @@ fn a_missing_column_is_found_before_the_run() {
 
 /// A folder with the name of a built-in case must be given with `./`. Otherwise a message mentions the folder.
 #[test]
-fn a_folder_named_as_a_case_is_told_of() {
+fn a_folder_named_as_a_case_is_reported() {
     let whole = case("", &[]);
     fs::rename(whole.join("slope"), whole.join("squash")).unwrap();
     let of_registry = whole.run("run squash --solver rigid -q");

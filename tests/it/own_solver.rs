@@ -29,7 +29,7 @@ use std::sync::Arc;
 /// Contact conventions differ in everything that a scene leaves open. With every convention, the solver-independent
 /// claims pass and their controls fail. `GRAINBENCH_LONG=1` includes cases that take long.
 #[test]
-fn every_convention_passes_what_is_fair_to_any_solver() {
+fn every_convention_passes_the_solver_independent_claims() {
     /// Cases with rotating contacts and walls. They fail with the conventions of external programs.
     const TURNING: [&str; 2] = ["carried-grain", "turning-walls"];
     let long = std::env::var_os("GRAINBENCH_LONG").is_some_and(|value| value == "1");
@@ -75,7 +75,7 @@ fn a_panic_is_a_broken_result() {
 
 /// A control cannot replace an external solver by another solver, and cannot plant a defect in it. It must be a wrong scene.
 #[test]
-fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
+fn solver_independent_claims_have_wrong_scenes_as_controls() {
     for case in CASES {
         for claim in (case.claims)().iter().filter(|claim| claim.scope.is_open()) {
             assert!(matches!(claim.control.wrong, WrongPhysics::Scene(_)), "{}: {}", case.name, claim.quantity);
@@ -86,7 +86,7 @@ fn what_is_fair_to_any_solver_has_a_wrong_scene_as_its_control() {
 }
 
 #[test]
-fn a_case_that_is_not_there_or_not_fair_says_so() {
+fn a_missing_or_solver_dependent_case_is_an_error() {
     let solver = || Dem::new(Convention::LAMMPS);
     let nothing = grainbench::judge(solver(), &["sqash"]).unwrap_err();
     assert!(matches!(nothing, JudgementError::NoSuchCase(_)) && nothing.to_string().contains("squash"), "{nothing}");

@@ -4,7 +4,7 @@ use crate::common::{Answer, Directory, temporary, temporary_with};
 use serde_json::Value;
 
 #[test]
-fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
+fn a_program_that_is_not_installed_is_amber_and_names_the_searched_places() {
     let directory = temporary();
     let answer = directory.run_alone("run backspin/disc --solver lammps --live --json");
     assert_eq!(answer.code, Some(1), "nothing was judged");
@@ -16,7 +16,7 @@ fn a_program_that_is_not_installed_is_amber_and_says_where_it_was_looked_for() {
 
 /// The throughput benchmark lists missing programs and too short timings. Without any timing, it is not a success.
 #[test]
-fn a_race_tells_who_took_no_part() {
+fn a_race_names_the_solvers_that_took_no_part() {
     let directory = temporary_with("s.toml", SCENE);
     let race = |arguments: &str| {
         let answer = directory.run_alone(format!("race s.toml --rounds 1 {arguments}"));

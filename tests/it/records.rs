@@ -152,7 +152,7 @@ fn files_hold_what_was_chosen() {
 
 /// `fields` states which stress it uses: the mean stress if present, or the instantaneous stress if requested.
 #[test]
-fn fields_says_which_stress_it_read() {
+fn fields_names_the_stress_that_it_read() {
     let path = temporary_with("scene.toml", format!("{SCENE}columns = ['virial', 'mean-virial']\n"));
     path.write("bare.toml", format!("{SCENE}columns = ['spin']\n"));
     for (name, out) in [("scene.toml", "run"), ("bare.toml", "bare")] {

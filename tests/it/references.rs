@@ -89,7 +89,7 @@ fn the_time_step_is_worth_little_where_it_is_small() {
 }
 
 #[test]
-fn without_the_programs_the_stored_runs_judge_and_verify_says_that_they_are_missing() {
+fn without_the_programs_stored_runs_judge_and_verify_reports_them_missing() {
     let directory = temporary();
     let without = |arguments: &str| directory.run_alone(arguments).judged();
     let (code, rows) = without("run collision --solver lammps --solver liggghts --json");

@@ -63,7 +63,7 @@ fn origin(state: &Path) -> Origin {
 }
 
 #[test]
-fn a_state_is_the_one_whose_origin_is_told() {
+fn a_state_names_its_origin() {
     let states = states();
     assert!(states.len() >= 3, "cases that begin with the end of another run");
     let mut wrong = Vec::new();

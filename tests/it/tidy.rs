@@ -175,7 +175,7 @@ fn every_case_folder_is_whole() {
 }
 
 #[test]
-fn every_case_and_claim_says_what_it_claims_and_why() {
+fn every_case_and_claim_states_its_content_and_reason() {
     CASES.par_iter().for_each(|case| {
         let words = [case.title, case.claim, case.derivation, case.weakness];
         assert_ne!(case.physics, Physics::Own, "{}: a field of physics", case.name);

@@ -284,7 +284,7 @@ mod tests {
     }
 
     #[test]
-    fn what_is_wrong_is_said_with_its_column() {
+    fn errors_name_the_column() {
         let (deep, long) = ("(".repeat(1000), "1+".repeat(20_000) + "1");
         for (text, message) in [
             ("", "expected a number, a name or `(` at column 1, found the end"),

@@ -79,7 +79,7 @@ impl Reader<'_> {
         };
         // External solvers with the contact springs of the scene can also run a claim of `dem`, because the name `dem`
         // selects no contact convention of LAMMPS or LIGGGHTS.
-        Ok(if solver == DEM { claim.fair_to_any_springs() } else { claim })
+        Ok(if solver == DEM { claim.solver_independent_springs() } else { claim })
     }
 
     /// Reads an expected curve from a table. The times must increase and lie within the run.

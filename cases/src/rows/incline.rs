@@ -199,7 +199,7 @@ fn near_rigid(case: &Case, slope: Plane) -> Vec<Claim> {
             .equals(rigid::SOLUTION, move |done| end(&done[0], OneGrain::rigid_incline, pick))
             .within(tolerance)
             .refuses(slope.control())
-            .fair_to_any()
+            .solver_independent()
             .at_other_numbers(quantity[1], ELSEWHERE, move |scene| pick(elsewhere(scene)))
     };
     vec![

@@ -98,7 +98,7 @@ pub(crate) fn near_rigid(
             .equals(source, move |done| pick.map_or_else(|| halfway(&done[0]), |pick| end(&done[0], pick)))
             .within(tolerance)
             .refuses(if rolls { other_inertia() } else { stronger_friction() })
-            .fair_to_any()
+            .solver_independent()
     };
     [
         near_rigid_claim("displacement at 1 s", "m", false, x, Some(|state| state.x)),

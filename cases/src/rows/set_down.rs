@@ -139,7 +139,7 @@ pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
             )
             .within(estimated(0.01, BECAUSE).up_to(0.02))
             .refuses(Control::contact_law("springs ×1.05", |law| law.springs = law.springs.scaled([1.05; 2])))
-            .fair_to_any_springs()
+            .solver_independent_springs()
             .drawn(&SPRINGS, super::label(variant)),
         claim("slip velocity v − ΩR while it rings, largest deviation", "m/s")
             .run(run())
@@ -163,6 +163,6 @@ pub(crate) fn claims(variant: &'static str, dashpots: Dashpots) -> Vec<Claim> {
                 law.tangential_damping *= 0.9;
                 law.stiffness_damping *= 0.9;
             }))
-            .fair_to_any_springs(),
+            .solver_independent_springs(),
     ]
 }

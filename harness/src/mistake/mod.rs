@@ -201,8 +201,8 @@ fn candidates(case: &'static Case, solvers: &Arc<dyn Solvers>, judged: &[ClaimRe
 
 /// Returns a runner of the small solver, with or without a mistake.
 fn small(case: &'static Case, solvers: &Arc<dyn Solvers>, mistake: Option<MethodMistake>) -> Runner {
-    let stranger: Arc<dyn Solver> = Arc::new(SmallDem { mistake });
-    let options = RunnerOptions { stranger: Some(stranger), controlled: false, ..RunnerOptions::default() };
+    let external: Arc<dyn Solver> = Arc::new(SmallDem { mistake });
+    let options = RunnerOptions { external: Some(external), controlled: false, ..RunnerOptions::default() };
     Runner::new(case, Arc::clone(solvers)).with(options)
 }
 

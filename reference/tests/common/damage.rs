@@ -137,7 +137,7 @@ pub(crate) const LOGS: [&str; 2] = [include_str!("../data/lammps-two-runs.log"),
 pub(crate) const TABLE: &str = include_str!("../data/series.csv");
 
 /// Describes an error message that is not one line with the position, the expected and the actual content.
-pub(crate) fn well_said(error: &ReadError) -> Result<(), String> {
+pub(crate) fn names_place(error: &ReadError) -> Result<(), String> {
     let shown = error.to_string();
     let placed = error.line().is_some_and(|line| shown.starts_with(&format!("{}:{line}:", error.file())));
     let complete = placed && shown.contains(": expected ") && shown.contains(", found ");
@@ -164,17 +164,17 @@ fn read_dump(bytes: &[u8]) -> Result<bool, ReadError> {
 }
 
 pub(crate) fn of_dump(bytes: &[u8]) -> Result<(), String> {
-    read_dump(bytes).map_or_else(|error| well_said(&error), |sound| expect(sound, "a number of a dump is none"))
+    read_dump(bytes).map_or_else(|error| names_place(&error), |sound| expect(sound, "a number of a dump is none"))
 }
 
 pub(crate) fn of_log(bytes: &[u8]) -> Result<(), String> {
-    parse_log(bytes, "f").map_or_else(|error| well_said(&error), |_| Ok(()))
+    parse_log(bytes, "f").map_or_else(|error| names_place(&error), |_| Ok(()))
 }
 
 /// Reads a table, which must have rows.
 pub(crate) fn of_table(bytes: &[u8]) -> Result<(), String> {
     let read = parse_table(bytes, "f");
-    read.map_or_else(|error| well_said(&error), |table| expect(table.rows() > 0, "a table without rows"))
+    read.map_or_else(|error| names_place(&error), |table| expect(table.rows() > 0, "a table without rows"))
 }
 
 /// Reads a data file. Its masses must be positive and all its numbers finite.
@@ -187,6 +187,6 @@ pub(crate) fn of_data(bytes: &[u8]) -> Result<(), String> {
             }),
             "a number of a grain is none",
         ),
-        Err(error) => well_said(&error),
+        Err(error) => names_place(&error),
     }
 }

@@ -91,7 +91,7 @@ fn a_table_that_samples_a_line_is_the_line_to_the_bit() {
 }
 
 #[test]
-fn a_wall_by_a_sine_presses_as_its_place_says() {
+fn a_sine_wall_presses_by_its_position() {
     let record = pressed("motion = [{ sine = { amplitude = [0.0, -1e-4], frequency = 0.5 } }]");
     // The run ends after a quarter period (.5 s). The lid has moved by 1e-4 m and is at rest. Each of the disc's two
     // contacts takes half of this slow displacement.

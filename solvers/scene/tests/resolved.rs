@@ -153,7 +153,7 @@ fn read(periodic: &str, group: &str) -> Result<Scene, String> {
 const LATTICE: &str = "radius = 0.5\nlattice = { origin = [1.0, 1.0], spacing = [1.0, 1.0], count = [3, 3] }\n";
 
 #[test]
-fn axes_are_named_or_told_one_by_one() {
+fn axes_are_named_or_listed() {
     let by_name = read("['x']", LATTICE).unwrap();
     assert_eq!(by_name, read("[true, false]", LATTICE).unwrap());
     assert_eq!(read("[]", LATTICE).unwrap().domain.unwrap().periodic, [false; 3]);

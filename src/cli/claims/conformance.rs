@@ -16,7 +16,7 @@ pub(crate) type ConformingSolver = (Arc<dyn Solver>, Terms);
 
 /// Returns the named built-in and external solvers with their conformance properties. Without names, returns all
 /// built-in solvers.
-pub(crate) fn owing(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
+pub(crate) fn conforming(named: &[String]) -> Result<Vec<ConformingSolver>, Fault> {
     let wanted = |name: &String| named.is_empty() || named.contains(name);
     let ours = solvers::with_terms().into_iter().filter(|(solver, _)| wanted(&solver.name()));
     let mut solvers: Vec<ConformingSolver> = ours.map(|(solver, terms)| (Arc::from(solver), terms)).collect();

@@ -104,9 +104,9 @@ fn narrow(
 ) -> Result<(), Fault> {
     for of_case in &mut *selected {
         let case = of_case.case.name;
-        let stranger = of_case.stranger.as_ref().map(|stranger| stranger.manifest().name.as_str());
+        let external = of_case.external.as_ref().map(|external| external.manifest().name.as_str());
         let is_meant = |claim: &Claim| {
-            let solver = stranger.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default();
+            let solver = external.or(claim.runs.first().map(|run| run.solver)).unwrap_or_default();
             before.is_none_or(|before| before.is_open(case, solver, claim, !arguments.no_controls))
         };
         let asked = of_case.claims.len();

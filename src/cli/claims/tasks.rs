@@ -57,7 +57,7 @@ pub(crate) struct ClaimTasks {
     /// Options for the report, in words.
     pub(crate) words: Vec<String>,
     /// External solvers that a plan names.
-    strangers: NamedSolvers,
+    external_solvers: NamedSolvers,
     /// All tasks in the order of the report.
     all: Vec<ClaimTask>,
     /// Cache of finished runs, if there is one.
@@ -86,8 +86,8 @@ impl ClaimTasks {
         }
         let tasks = Self::new(arguments, &filters, None, RunnerOptions::default())?.cached(cache::open(false));
         let manifests: Vec<String> = arguments.solver.iter().filter(|name| is_manifest(name)).cloned().collect();
-        let (strangers, _) = NamedSolvers::read_for(&manifests, true)?;
-        Ok(Self { strangers, ..tasks })
+        let (external_solvers, _) = NamedSolvers::read_for(&manifests, true)?;
+        Ok(Self { external_solvers, ..tasks })
     }
 
     /// Returns the tasks of the claims that the arguments, the filters and the earlier report of `--retry-failed` select.
@@ -105,7 +105,7 @@ impl ClaimTasks {
         let is_whole = cases.is_empty() && filter.is_empty() && before.is_none();
         let thorough = levels.iter().any(|level| level == "all");
         let conforms = is_whole && (levels.is_empty() || thorough);
-        let conforming = if conforms { conform::owing(solver)? } else { Vec::new() };
+        let conforming = if conforms { conform::conforming(solver)? } else { Vec::new() };
         Ok(Self {
             is_whole: is_whole && solver.is_empty(),
             words: super::words(arguments, options.data.is_some(), before.is_some()),
@@ -114,7 +114,7 @@ impl ClaimTasks {
                 live: *live,
                 thorough,
                 controlled: !no_controls,
-                afresh: thorough.then_some(Set::Paper),
+                repeated: thorough.then_some(Set::Paper),
                 ..options
             },
             ..Self::with(selected, conforming)
@@ -136,7 +136,7 @@ impl ClaimTasks {
             options: RunnerOptions::default(),
             is_whole: false,
             words: Vec::new(),
-            strangers: NamedSolvers::default(),
+            external_solvers: NamedSolvers::default(),
             cache: None,
             solvers: Arc::new(Registry),
         }
@@ -172,8 +172,8 @@ impl ClaimTasks {
     fn runner(&self, case: usize) -> &Runner {
         self.runners[case].get_or_init(|| {
             let selected = &self.selected[case];
-            let stranger = selected.stranger.as_ref().map(|stranger| Arc::clone(stranger) as Arc<dyn Solver>);
-            let options = RunnerOptions { stranger, ..self.options.clone() };
+            let external = selected.external.as_ref().map(|external| Arc::clone(external) as Arc<dyn Solver>);
+            let options = RunnerOptions { external, ..self.options.clone() };
             Runner::new(selected.case, Arc::clone(&self.solvers)).with(options)
         })
     }
@@ -251,7 +251,7 @@ impl Study for ClaimTasks {
     fn inputs(&self) -> BTreeMap<String, String> {
         // If a folder cannot be read, the error is reported when the tasks are listed.
         let files = self.selected.iter().flat_map(|selected| files_of(selected).unwrap_or_default());
-        let mut inputs = self.strangers.inputs();
+        let mut inputs = self.external_solvers.inputs();
         inputs.extend(files.map(|path| (path.display().to_string(), key::of_file(&path))));
         inputs
     }
@@ -279,7 +279,7 @@ impl ClaimTasks {
         let RunnerOptions { controlled, live, thorough, .. } = self.options;
         let settings = format!("{} {live} {thorough}", !controlled);
         for (at, selected) in self.selected.iter().enumerate() {
-            let stranger = match &selected.stranger {
+            let external = match &selected.external {
                 Some(outside) => outside.edition().map_err(Fault::input)?,
                 None => String::new(),
             };
@@ -291,12 +291,12 @@ impl ClaimTasks {
                 let runs = claim.runs.iter().map(Run::key).collect::<Vec<_>>().join("|");
                 let programs = self.programs(selected.case, claim);
                 let words =
-                    format!("{case}|{content}|{stranger}|{programs}|{runs}|{}|{}", claim.quantity, claim.control.name);
+                    format!("{case}|{content}|{external}|{programs}|{runs}|{}|{}", claim.quantity, claim.control.name);
                 // Two claims may have equal descriptions, so their ids contain a number.
                 let number = seen.entry(words.clone()).and_modify(|number| *number += 1).or_default();
                 rows += &words;
                 let (variant, ours) = claim.runs.first().map_or(("", ""), |run| (run.variant, run.solver));
-                let solver = selected.stranger.as_ref().map_or(ours, |stranger| &stranger.manifest().name);
+                let solver = selected.external.as_ref().map_or(ours, |external| &external.manifest().name);
                 let seconds = if has_seconds { self.seconds(self.runner(at), claim) } else { 0.0 };
                 tasks.push(Task {
                     scene: format!("{case}/{variant}"),
@@ -314,7 +314,7 @@ impl ClaimTasks {
         }
         for (solver, _) in &self.conforming {
             let solver = solver.name();
-            let id = Id::of_words(program, &["owed", &solver, &self.strangers.edition(&solver)]);
+            let id = Id::of_words(program, &["owed", &solver, &self.external_solvers.edition(&solver)]);
             let what = "conformance properties".to_owned();
             tasks.push(Task { scene: "conformance".to_owned(), solver, what, ..Task::new(id, CONFORMANCE) });
         }
@@ -358,7 +358,7 @@ impl ClaimTasks {
     fn figures(&self, case: usize) -> (State, Section) {
         let (selected, runner) = (&self.selected[case], self.runner(case));
         // The case's own figures may need runs that none of the selected claims uses.
-        let drawn = match selected.stranger.is_some() || selected.is_part {
+        let drawn = match selected.external.is_some() || selected.is_part {
             true => course::figures(runner, &selected.claims),
             false => course::of_case(selected.case, runner, &selected.claims),
         };
@@ -389,8 +389,8 @@ fn blank(selected: &CaseSelection) -> Section {
     let case = selected.case;
     Section {
         name: case.name.to_owned(),
-        title: match &selected.stranger {
-            Some(stranger) => format!("{}: {}", case.title, stranger.manifest().name),
+        title: match &selected.external {
+            Some(external) => format!("{}: {}", case.title, external.manifest().name),
             None => case.title.to_owned(),
         },
         physics: case.physics,

@@ -143,10 +143,10 @@ impl Study for StabilityStudy {
 }
 
 /// Returns the selected work items. `cases` contains beginnings of the names of assemblies (with `-` for spaces), of
-/// the bar and of hard cases. `solvers` contains the selected names, and `strangers` the names of the external solvers.
+/// the bar and of hard cases. `solvers` contains the selected names, and `external_solvers` the names of the external solvers.
 fn select(
     cases: &[String],
-    [solvers, strangers]: [&[String]; 2],
+    [solvers, external_solvers]: [&[String]; 2],
     assemblies: &[Assembly],
     hard: &[HardCase],
 ) -> Result<Vec<WorkItem>, Fault> {
@@ -160,7 +160,7 @@ fn select(
     }
     let case = |name: &str| cases.is_empty() || cases.iter().any(|wanted| name.starts_with(wanted));
     let solver = |name: &str| solvers.is_empty() || solvers.iter().any(|wanted| wanted == name);
-    let theirs = || strangers.iter().map(String::as_str);
+    let theirs = || external_solvers.iter().map(String::as_str);
     let mut pieces = Vec::new();
     for (at, _) in assemblies.iter().enumerate().filter(|(_, assembly)| case(&named(assembly.name))) {
         let asked = limit::SPRINGS.into_iter().filter(|name| solver(name)).chain(theirs());

@@ -259,7 +259,7 @@ mod tests {
     }
 
     #[test]
-    fn one_repetition_of_two_points_says_nothing_of_time() {
+    fn one_repetition_of_two_points_decides_no_time() {
         assert_eq!(compare(&session(1, 1.0, 2, 1), &session(2, 1.25, 2, 1)), []);
     }
 

@@ -54,7 +54,7 @@ const SETTINGS: [(&str, &str); 8] = [
 /// External solvers are included if they support the setup: contact springs or deformable bodies. If they declare time
 /// steps or cell counts, these are used.
 #[must_use]
-pub fn turns(lane: &SolverSetup, strangers: &[ExternalSolver]) -> Vec<SweepPoint> {
+pub fn turns(lane: &SolverSetup, external_solvers: &[ExternalSolver]) -> Vec<SweepPoint> {
     let own = match lane.method {
         Method::Dem => {
             let programs = ["lammps", "liggghts"].map(|name| steps(lane, name, &PROGRAM_FRACTIONS));
@@ -63,21 +63,21 @@ pub fn turns(lane: &SolverSetup, strangers: &[ExternalSolver]) -> Vec<SweepPoint
         Method::Rigid => rigid(lane),
         Method::Grid => grid(lane),
     };
-    own.into_iter().chain(strangers.iter().flat_map(|stranger| theirs(lane, stranger))).collect()
+    own.into_iter().chain(external_solvers.iter().flat_map(|external| theirs(lane, external))).collect()
 }
 
-fn theirs(lane: &SolverSetup, stranger: &ExternalSolver) -> Vec<SweepPoint> {
+fn theirs(lane: &SolverSetup, external: &ExternalSolver) -> Vec<SweepPoint> {
     match (lane.method, lane.about) {
-        (Method::Dem, _) if stranger.has_springs => {
-            let fractions = if stranger.fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { &stranger.fractions };
-            steps(lane, &stranger.name, fractions)
+        (Method::Dem, _) if external.has_springs => {
+            let fractions = if external.fractions.is_empty() { &PROGRAM_FRACTIONS[..] } else { &external.fractions };
+            steps(lane, &external.name, fractions)
         }
-        (Method::Grid, Resolution::Grid { cells: about, points, courant }) if stranger.deforms => {
+        (Method::Grid, Resolution::Grid { cells: about, points, courant }) if external.deforms => {
             let usual = PROGRAM_CELLS.map(|factor| factor * about);
-            let cells = if stranger.cells.is_empty() { &usual[..] } else { &stranger.cells };
+            let cells = if external.cells.is_empty() { &usual[..] } else { &external.cells };
             let at = |&cells: &f64| {
                 let resolution = Resolution::Grid { cells, points, courant };
-                turn(&stranger.name, &stranger.name, resolution, &lane.knobs, Some(cells / about))
+                turn(&external.name, &external.name, resolution, &lane.knobs, Some(cells / about))
             };
             cells.iter().map(at).collect()
         }

@@ -149,7 +149,7 @@ mod tests {
 
     /// Start-up takes 3 ms of processor time, and each step of 1 ms of simulated time takes 20 µs.
     #[test]
-    fn start_up_is_told_apart_from_steps() {
+    fn start_up_and_steps_are_separated() {
         let spent =
             |steps: u64| LoadCost { steps, seconds: 1e-3 * steps as f64, processor: 3e-3 + 20e-6 * steps as f64 };
         let TimingDifference { start_up, step, second } = LoadCost::lap(spent(100), spent(1000));

@@ -171,7 +171,7 @@ impl PointSet {
 
 fn tasks(subject: &TargetQuantity, wanted: &PointSelection, solvers: &dyn Solvers, program: &str) -> Vec<Task> {
     let Ok(plain) = subject.case.variant(subject.variant) else { return Vec::new() };
-    let strangers = solvers.strangers();
+    let external_solvers = solvers.external_solvers();
     let mut tasks = Vec::new();
     let mut found: BTreeMap<String, Option<Arc<dyn Solver>>> = BTreeMap::new();
     for lane in &subject.lanes {
@@ -181,7 +181,7 @@ fn tasks(subject: &TargetQuantity, wanted: &PointSelection, solvers: &dyn Solver
         }
         let scene = Arc::new(scene);
         let mut starts: BTreeMap<String, Arc<OnceLock<f64>>> = BTreeMap::new();
-        for turn in knobs::turns(lane, &strangers) {
+        for turn in knobs::turns(lane, &external_solvers) {
             let named = &wanted.solvers;
             if !named.is_empty() && !named.iter().any(|name| *name == turn.solver || *name == turn.line) {
                 continue;
@@ -204,10 +204,10 @@ fn tasks(subject: &TargetQuantity, wanted: &PointSelection, solvers: &dyn Solver
             if tasks.iter().all(|task: &Task| task.id != id) {
                 let start = Arc::clone(starts.entry(turn.solver.clone()).or_default());
                 let scene = Arc::clone(&scene);
-                let stranger = strangers.iter().find(|stranger| stranger.name == turn.solver);
-                let stays = stranger.is_some_and(|stranger| stranger.stays);
+                let external = external_solvers.iter().find(|external| external.name == turn.solver);
+                let stays = external.is_some_and(|external| external.stays);
                 // The cause of the floor of an external solver is unknown.
-                let floor = stranger.map_or(lane.method.floor(), |_| UNKNOWN);
+                let floor = external.map_or(lane.method.floor(), |_| UNKNOWN);
                 tasks.push(Task { turn, floor, scene, solver, id, start, is_program, stays });
             }
         }

@@ -140,7 +140,7 @@ mod tests {
 
     /// Without friction the disc slides 1.5 times as far and does not rotate.
     #[test]
-    fn what_a_scene_needs_is_told_from_what_it_does_not() {
+    fn needed_and_unneeded_effects_differ() {
         assert_eq!(worth(Effect::Friction, 0.01), EffectResult::Needed);
         assert_eq!(worth(Effect::Cohesion, 0.01), EffectResult::Inert);
         // With a very large limit, no effect is needed.

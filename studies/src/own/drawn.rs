@@ -236,7 +236,7 @@ fn intervals_contain_the_true_error() {
 
 /// A scene that no level resolves: the sentence says so, and names the budget.
 #[test]
-fn a_sentence_says_when_nobody_reaches_the_target() {
+fn a_sentence_states_that_no_solver_reaches_the_target() {
     let mut study = study(&flight(&mut middle).text);
     assert!(study.sentence(0.01, &[]).starts_with("1\u{202f}% in each of "), "{}", study.sentence(0.01, &[]));
     for point in study.quantities.iter_mut().flat_map(|quantity| &mut quantity.points) {

@@ -49,15 +49,15 @@ impl Ladder {
     /// have time steps in seconds.
     #[must_use]
     pub fn new(solver: &str, scene: &Scene, solvers: &dyn Solvers) -> Self {
-        let stranger = solvers.strangers().into_iter().find(|stranger| stranger.name == solver);
-        let method = stranger.as_ref().map_or_else(|| Method::from_name(solver), |_| None);
+        let external = solvers.external_solvers().into_iter().find(|external| external.name == solver);
+        let method = external.as_ref().map_or_else(|| Method::from_name(solver), |_| None);
         let time_step = || match scene.duration {
             Duration::Seconds(seconds) if !scene.critical_time_step().is_finite() => Refined::Step(seconds / STEPS),
             _ => Refined::Fraction(COARSEST),
         };
-        let (refined, listed) = match (&stranger, method) {
+        let (refined, listed) = match (&external, method) {
             (Some(ExternalSolver { deforms: true, cells, .. }), _) => listed(Refined::Cells(CELLS), cells, false),
-            (Some(stranger), _) => listed(time_step(), &stranger.fractions, true),
+            (Some(external), _) => listed(time_step(), &external.fractions, true),
             (None, Some(Method::Rigid)) => (Refined::Substeps, Vec::new()),
             (None, Some(Method::Grid)) => (Refined::Cells(CELLS), Vec::new()),
             (None, _) => (time_step(), Vec::new()),

@@ -225,7 +225,7 @@ mod tests {
     }
 
     #[test]
-    fn finds_a_threshold_and_says_how_it_fails() {
+    fn finds_a_threshold_and_its_failure() {
         let mut tried = 0;
         let found = largest([0.1, 3.0], 1e-3, 0, |step| {
             tried += 1;
@@ -237,7 +237,7 @@ mod tests {
     }
 
     #[test]
-    fn what_always_passes_or_never_does_is_said() {
+    fn limits_outside_the_range_are_reported() {
         let always = largest([1.0, 2.0], 0.01, 3, |_| Ok::<(), ()>(())).unwrap();
         assert_eq!(always, (16.0, None));
         assert_eq!(largest([1.0, 2.0], 0.01, 3, |_| Err("no")), Err("no"));

@@ -13,7 +13,7 @@ fn data(name: &str) -> PathBuf {
 
 /// All files written by VTK in different formats contain the same three points.
 #[test]
-fn every_form_tells_the_same() {
+fn every_form_has_the_same_content() {
     let files = [
         ("ascii_42_7.vtk", 1e-10),
         ("ascii_51_7.vtk", 1e-10),

@@ -15,7 +15,7 @@ fn pushed(friction: f64, offset: f64, yields: bool) -> String {
 }
 
 #[test]
-fn a_driven_grain_keeps_its_course_and_gives_what_it_says() {
+fn a_driven_grain_keeps_its_motion_and_reports_it() {
     for name in ["mpm", "mpm:penalty", "mpm:gap", "mpm:2000", "mpm:2001", "mpm:no-slip"] {
         let record = run(name, &pushed(0.5, 0.5, true), 8.0, 2);
         let way = SPEED * record.series.time.last().unwrap();
@@ -82,7 +82,7 @@ fn the_budget_misses_what_is_left_out() {
 }
 
 #[test]
-fn a_grain_that_yields_says_so() {
+fn a_yielding_grain_reports_its_plastic_strain() {
     let record = run("mpm", &pushed(0.5, 0.5, true), 8.0, 2);
     let grains = &record.snapshots.last().unwrap().grains;
     assert!(grains[0].plastic_strain == 0.0, "what is driven does not deform");

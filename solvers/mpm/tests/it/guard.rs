@@ -47,7 +47,7 @@ fn a_bar_under_tension_rests() {
 /// Under a tension of .3 E, a wave is √((1 + λ²)/2) = 1.184 times as fast. The stretch λ = 1.344 follows from E/2 (λ −
 /// 1/λ) = .3 E. A time step of .95 h/c is then above the limit, and a step of .4 h/c is not.
 #[test]
-fn a_step_that_becomes_too_long_is_told() {
+fn a_step_that_becomes_too_long_is_an_error() {
     let at = |courant| Resolution::Grid { cells: 4.0, points: 3, courant };
     let found = broken(try_run("mpm", |_| (), &bar(0.3, 0.02), at(0.95)).unwrap_err());
     let Cause::Stiffened { crossing, at_start } = found.cause else { panic!("{found}") };
@@ -63,7 +63,7 @@ fn a_step_that_becomes_too_long_is_told() {
 /// strain the surface by 1.7. A tenth of this overlap is accepted. A run that stops during relaxation is reported like
 /// any other run.
 #[test]
-fn an_overlap_at_the_start_is_told() {
+fn an_overlap_at_the_start_is_an_error() {
     let pair = |overlap: f64, more: &str| {
         format!(
             "dimension = 2\nduration = 0.01\nlargest_initial_overlap = 0.5\n{more}\
@@ -89,7 +89,7 @@ fn an_overlap_at_the_start_is_told() {
 /// GIMP with the stress updated last is stable up to .5 h/c and creates energy at .7 h/c. A flying and spinning disc
 /// breaks up although no point leaves its cell, and the energy check reports it. At .4 h/c the run is stable.
 #[test]
-fn energy_from_nowhere_is_told() {
+fn created_energy_is_an_error() {
     let text = "dimension = 2\nduration = 30.0\nmaterials.m = { density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }\n\
         grains.a = { material = 'm', radius = 1.0, position = [0.0, 0.0], spin = 0.3, velocity = [0.1, 0.05] }\n";
     let last = |setting: &mut Setting| {

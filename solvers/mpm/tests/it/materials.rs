@@ -169,7 +169,7 @@ fn neo_hookean_energy_gives_its_stress() {
 /// For a wave along n, ρ₀c² is the second derivative with respect to ε of the energy of (1 + ε n ⊗ n) F. The test uses
 /// n along each axis.
 #[test]
-fn waves_are_as_fast_as_the_energy_says() {
+fn the_wave_speed_follows_from_the_energy() {
     let law = NeoHookean { lame: 3.0, shear_modulus: 2.0 };
     for stretch in [[1.0, 1.0], [1.3, 0.8], [0.5, 0.9], [0.7, 1.6]] {
         let deformation = Matrix3::from_diagonal(&Vector3::new(stretch[0], stretch[1], 1.0));
