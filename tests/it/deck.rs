@@ -190,8 +190,8 @@ fn dashpots_follow_the_effective_mass_of_the_programs() {
     let coefficients = |partner: &str, friction: f64| -> Vec<f64> {
         let scene = scene(partner, friction);
         let deck = write_deck(&scene, &Resolution::CriticalFraction(0.1), Program::LAMMPS).unwrap();
-        let lines = deck.files.iter().flat_map(|(_, text)| text.lines());
-        let line = lines.filter(|line| line.contains("10000.0 1000.0")).next().unwrap();
+        let mut lines = deck.files.iter().flat_map(|(_, text)| text.lines());
+        let line = lines.find(|line| line.contains("10000.0 1000.0")).unwrap();
         let after = line.split("10000.0 1000.0 ").nth(1).unwrap();
         after.split(' ').take(2).map(|word| word.parse().unwrap()).collect()
     };
