@@ -34,8 +34,8 @@ pub struct Course {
     pub between: bool,
     /// Tracers, if requested.
     pub trails: Option<Trails>,
-    /// Kind of stress of the elements. If it is `None`, the stress is instantaneous until a snapshot contains the time
-    /// average between frames.
+    /// Kind of stress of the elements. `None` selects the time average between frames if a snapshot contains it, and the
+    /// instantaneous stress otherwise.
     pub stress: Option<Stress>,
     before: Option<Snapshot>,
 }

@@ -168,7 +168,7 @@ fn is_count(name: &str) -> bool {
 }
 
 /// Compares all columns with our run in the nearest or chosen contact convention. The allowed error contains the
-/// change that smaller time steps cause in this run.
+/// change of our run when its time step is reduced.
 pub(super) fn compare(ours: &[Peer], choice: Option<&str>, output: &CheckedOutput<'_>) -> Vec<Verdict> {
     let compared = against_runs(&output.candidate.scene, ours, output.observed, choice);
     let Some((name, columns)) = compared else { return Vec::new() };

@@ -78,7 +78,8 @@ pub(crate) fn publish(report: &Report, output: &Output<'_>) -> Outcome {
     Ok(exit_code(!report.passes()))
 }
 
-/// Appends to the job summary, and prints annotations unless the standard output is JSON. Outside GitHub Actions, does nothing.
+/// In GitHub Actions, appends to the job summary and prints annotations. If the standard output is JSON, no annotations are
+/// printed.
 fn tell_github(report: &Report, is_json: bool) -> Result<(), Fault> {
     if let Some(path) = env::var_os("GITHUB_STEP_SUMMARY").filter(|path| !path.is_empty()) {
         let file = OpenOptions::new().create(true).append(true).open(&path);

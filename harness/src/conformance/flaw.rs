@@ -145,7 +145,7 @@ impl<'a> FlawedSolver<'a> {
 
     /// Adds a flaw to a solver and starts its count of runs at 1000.
     ///
-    /// Its runs then differ from all runs of [`FlawedSolver::new`], even if one of the two solvers skipped unsupported scenes.
+    /// No run then has the number of a run of [`FlawedSolver::new`].
     pub(super) const fn again(solver: &'a dyn Solver, flaw: Flaw) -> Wrapped<Self> {
         Wrapped(Self { solver, flaw, runs: AtomicU64::new(1000) })
     }

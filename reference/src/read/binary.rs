@@ -71,7 +71,7 @@ impl Number {
         self.size
     }
 
-    /// Returns the digits of numbers of this type from their printed digits.
+    /// Marks printed digits as single precision if the type is a float of four bytes.
     pub(crate) fn digits(self, printed: Digits) -> Digits {
         if (self.kind, self.size) == (Float, 4) { printed.single() } else { printed }
     }

@@ -94,8 +94,8 @@ pub struct HardCaseResult {
 pub const DOCUMENTED: [&str; 3] = ["lammps", "liggghts", "rigid"];
 
 impl HardCaseResult {
-    /// Returns the colour of the result; none if the solver cannot run the case. A wrong result without an error is red, unless
-    /// the error of the solver is documented.
+    /// Returns the colour of the result; none if the solver cannot run the case. A wrong result without an error message is
+    /// red. If the behaviour of the solver is documented, it is amber.
     pub(crate) fn severity(&self) -> Option<Severity> {
         match self.standing {
             Hardness::Holds => Some(Severity::Green),

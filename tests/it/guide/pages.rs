@@ -100,7 +100,7 @@ fn links(text: &str) -> Vec<String> {
     found
 }
 
-/// Returns descriptions of broken links, included files and blocks, and of chapters that the summary lacks.
+/// Returns descriptions of errors: broken links, missing files, unknown blocks, and chapters that the summary lacks.
 pub(crate) fn lost_links(chapters: &[Chapter]) -> Vec<String> {
     const LANGUAGES: [&str; 6] = ["console", "toml", "rust", "python", "cpp", "text"];
     let summary = fs::read_to_string(root("guide/src/SUMMARY.md")).unwrap();
