@@ -3,9 +3,9 @@
 //!
 //! The key of a run is a hash of its scene, solver, the defect of a control, resolution, run options, SIMD backend, and of
 //! the sources, compiler and options with which the solver was built. A changed case or solver therefore repeats only the
-//! affected runs. A file that is damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, if
-//! the end state or checkpoints are requested, or if they are shorter than 2 ms or larger than 256 MiB. Runs of external programs are not cached either, because these programs
-//! may change unnoticed.
+//! affected runs. A file that is damaged or holds another run is ignored. Runs are not cached if snapshots are streamed, if the
+//! end state or checkpoints are requested, or if they are shorter than 2 ms or larger than 256 MiB. Runs of external programs
+//! are not cached either, because these programs may change unnoticed.
 
 use grainbench_harness::solvers::{ExternalSolver, References, Solvers};
 use grainbench_harness::wrapper::{Start, Wrapped, Wrapper};
