@@ -162,8 +162,10 @@ class Planting:
                 continue
             errors += 1
             for span in message["spans"]:
+                # Modules that the build lists have absolute paths.
+                named = os.path.relpath(self.tree / span["file_name"], self.tree)
                 at = [(key, alone, whole) for key, (file, alone, whole) in stands.items()
-                      if file == span["file_name"] and whole[0] <= span["line_start"] <= whole[1]]
+                      if file == named and whole[0] <= span["line_start"] <= whole[1]]
                 exact = {key for key, alone, _ in at if alone[0] <= span["line_start"] <= alone[1]}
                 dropped |= exact or {key for key, _, _ in at}
         if said.returncode != 0 and not dropped:
