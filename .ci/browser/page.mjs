@@ -218,7 +218,7 @@ await ways.keyboard.press("Escape");
 await watch("what mpm:2000 gets wrong: its card", () => ways.evaluate(() => {
   const card = document.querySelector('[data-card="mpm:2000"]');
   const text = card?.checkVisibility() ? card.textContent : "";
-  return /\d×|off \d/.test(text) && text.replace(/\s+/g, " ").slice(0, 200);
+  return /\d×|error \d/.test(text) && text.replace(/\s+/g, " ").slice(0, 200);
 }));
 await watch("what 1 % costs by mpm and by dem: the table beside the picture", () => ways.evaluate(() => {
   const cells = (row) => [...row.cells].map((cell) => cell.textContent.trim());
