@@ -46,7 +46,7 @@ pub fn tells_interval(snapshot: &Snapshot) -> bool {
     snapshot.points.is_empty() && snapshot.grains.iter().any(|grain| grain.mean_virial.is_some())
 }
 
-/// Returns true if the contacts of a snapshot may lack those with walls: all are between grains, and the grains have no
+/// Returns true if the contacts of a snapshot may lack contacts with walls: all are between grains, and the grains have no
 /// forces. Snapshots of external programs are of this kind, while our solvers report the force on each grain.
 pub(crate) fn lacks_walls(snapshot: &Snapshot) -> bool {
     let is_pair = |contact: &ContactState| matches!(contact.partner, Partner::Grain(_));

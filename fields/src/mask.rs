@@ -12,7 +12,7 @@ pub struct MaskReasons {
     /// The cell is at the free surface: the packing fraction of the cell, or of the cell above, is below the limit for
     /// the bulk.
     pub surface: bool,
-    /// The cell is at a non-periodic side of the grid. Its top counts only if the contacts may lack those with a lid.
+    /// The cell is at a non-periodic side of the grid. Its top counts only if contacts with a lid may be missing.
     pub wall: bool,
     /// The cell is near an orifice.
     pub orifice: bool,

@@ -7,8 +7,8 @@ use grainbench_solver::failure::{Cause, SimulationFailure};
 
 impl<S: Geometry> DemSimulation<S> {
     /// Returns an error if 2√(m/k) of a contact is below the time step. m is the smaller mass of the two bodies, and k the
-    /// normal or the tangential stiffness, whichever is larger. This bound is necessary, not sufficient: the critical step
-    /// of a pair of equal grains is √½ of it.
+    /// normal or the tangential stiffness, whichever is larger. A smaller time step can still be unstable: a pair of
+    /// equal grains has the critical step √2 √(m/k).
     pub(crate) fn refuse_stiff_contacts(&self) -> Result<(), Box<SimulationFailure>> {
         let grains = &self.grains;
         for share in &self.neighbours.list.shares {

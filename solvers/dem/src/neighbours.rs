@@ -368,8 +368,8 @@ mod tests {
         (0..count).map(|_| Vector3::new(next(), next(), if dimension == 3 { next() } else { 0.0 })).collect()
     }
 
-    /// Tests that each pair of near grains is listed once. In the list of pairs inside the domain, the pair is in the row
-    /// of the grain with the lower index.
+    /// Tests that each pair of near grains is listed once. In the list of pairs inside the domain, the index of the
+    /// row is below the index of the partner.
     fn assert_lists<S: Geometry>(neighbours: &Neighbours, grains: &Grains<S>, is_near: impl Fn(usize, usize) -> bool) {
         let mut listed = BTreeSet::new();
         for pairs in neighbours.shares.iter().flat_map(|share| [&share.near.pairs, &share.across.pairs]) {
