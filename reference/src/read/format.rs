@@ -215,36 +215,25 @@ impl Snapshots {
 
     /// Replaces `snapshot` by the next snapshot. Returns false at the end of the file.
     pub(crate) fn read(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        match self.next(snapshot) {
+        let is_there = match (self.reader)(snapshot) {
             Err(error) if error.is_cut() && self.partial => {
                 self.cut = Some(error.to_string());
-                Ok(false)
+                return Ok(false);
             }
-            read => read,
-        }
-    }
-
-    fn next(&mut self, snapshot: &mut DumpSnapshot) -> Result<bool, ReadError> {
-        let numbering = self.file.format.numbering;
-        if !self.file.is_moment {
-            let is_there = (self.reader)(snapshot)?;
-            if is_there && numbering == Numbering::Files {
-                snapshot.numbering = numbering;
-            }
-            return Ok(is_there);
-        }
-        let mut next = DumpSnapshot::default();
-        let is_there = (self.reader)(&mut next)?;
-        if is_there == self.is_read {
+            read => read?,
+        };
+        let RunFile { path, format, is_moment, first_step, time } = &self.file;
+        if *is_moment && is_there == self.is_read {
             let found = if is_there { "several" } else { "none" };
-            let expected = "one time per file, from a list or the file name";
-            return Err(ReadError::at(&shown(&self.file.path), 1, expected, found));
+            return Err(ReadError::at(&shown(path), 1, "one time per file, from a list or the file name", found));
         }
         self.is_read = true;
-        if is_there {
-            let RunFile { first_step, time, .. } = self.file;
-            *snapshot =
-                DumpSnapshot { step: first_step.unwrap_or_default(), numbering, time: next.time.or(time), ..next };
+        if is_there && *is_moment {
+            snapshot.step = first_step.unwrap_or_default();
+            snapshot.time = snapshot.time.or(*time);
+        }
+        if is_there && (*is_moment || format.numbering == Numbering::Files) {
+            snapshot.numbering = format.numbering;
         }
         Ok(is_there)
     }
