@@ -131,7 +131,7 @@ fn read_course(path: &Path) -> Result<Course, ReadError> {
             _ => (0, true),
         };
         let expected = if must { grains } else { count };
-        if !is_wide || grains != expected || (must && inner.len() != 2) {
+        if !is_wide || grains != expected || (must && (inner.len() != 2 || inner[0] != moments)) {
             let words = if width == 1 { "grains" } else { "grains, 3" };
             let grains = if must { "grains".to_owned() } else { count.to_string() };
             let words = words.replace("grains", &grains);
@@ -329,6 +329,7 @@ mod tests {
             ("contacts-short", "the shape (3, 3) of the array `contact_force`, found [2, 3]"),
             ("wall-flat", "the shape (2, 2, 3) of the array `floor.force`, found [2, 2]"),
             ("flat", "the shape (3, grains, 3) of the array `position`, found [3, 3]"),
+            ("moment-lost", "the shape (3, grains, 3) of the array `position`, found [2, 2, 3]"),
             ("fortran", "arrays in C order (last index fastest) in the array `position`, found `fortran_order`"),
         ] {
             let file = format!("{file}.npz");
