@@ -4,7 +4,7 @@ use crate::disc::LoadedDisc;
 use crate::grid::{image_shifts, inside};
 use crate::quantity::Quantity;
 use grainbench_harness::raster::{RIM, Raster, VOID, level};
-use grainbench_solver::record::{GrainState, Owner, PointState, Snapshot};
+use grainbench_solver::record::{Owner, PointState, Snapshot};
 use nalgebra::{Vector2, Vector3};
 
 /// Largest distance from a pixel to its nearest material point, in units of the point's width √V.
@@ -33,9 +33,8 @@ impl View {
     #[must_use]
     pub fn outside(&self, snapshot: &Snapshot) -> usize {
         let high = self.high();
-        let inside =
-            |grain: &&GrainState| (0..2).all(|axis| (self.low[axis]..=high[axis]).contains(&grain.position[axis]));
-        snapshot.grains.len() - snapshot.grains.iter().filter(inside).count()
+        let places = snapshot.grains.iter().map(|grain| inside(snapshot, grain.position));
+        places.filter(|place| (0..2).any(|axis| !(self.low[axis]..=high[axis]).contains(&place[axis]))).count()
     }
 
     /// Returns a view between two corners, with `longest` pixels along the longer side.
@@ -155,14 +154,15 @@ impl Painting {
         let mut depth = vec![f64::NEG_INFINITY; self.owners.len()];
         let (shifts, view) = (image_shifts(snapshot, 0..2), self.view);
         for (place, grain) in snapshot.grains.iter().enumerate() {
+            let position = inside(snapshot, grain.position);
             for shift in &shifts {
-                let centre = [grain.position.x + shift.x, grain.position.y + shift.y];
+                let centre = [position.x + shift.x, position.y + shift.y];
                 view.visit_around(centre, grain.radius, |at, arm| {
-                    let inside = grain.radius - arm.norm();
-                    if inside < 0.0 || inside <= depth[at] {
+                    let depth_here = grain.radius - arm.norm();
+                    if depth_here < 0.0 || depth_here <= depth[at] {
                         return;
                     }
-                    depth[at] = inside;
+                    depth[at] = depth_here;
                     self.owners[at] = grain.id;
                     self.values[at] = match quantity {
                         Quantity::StressDifference | Quantity::Fringes(_) => {
@@ -281,6 +281,7 @@ mod tests {
     use super::*;
     use grainbench_harness::raster::{HIGH, LOW};
     use grainbench_scene::scene::Grain;
+    use grainbench_solver::record::GrainState;
 
     #[test]
     fn a_disc_that_rolled_away_does_not_shrink_the_others() {
@@ -343,6 +344,11 @@ mod tests {
         // The speed |ω| r is largest at the rim: 2 rad/s times 0.4 m.
         let speed = Painting::new(&snapshot(Vec::new()), Quantity::Speed, view);
         assert!((speed.quantile(1.0) - 0.8).abs() < 0.02);
+        // Some programs print positions that are not wrapped into the periodic box.
+        let mut unwrapped = snapshot(Vec::new());
+        unwrapped.grains[0].position.x -= 4.0;
+        assert_eq!(Painting::new(&unwrapped, Quantity::Speed, view).owners, speed.owners);
+        assert_eq!(view.outside(&unwrapped), 0);
     }
 
     #[test]
