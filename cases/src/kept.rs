@@ -97,11 +97,12 @@ impl StorableRun {
         folder(self.case, &self.id)
     }
 
-    /// Returns true if there is a readable stored result for this scene and the time step and evaluation of the run.
+    /// Returns the origin of the stored result for this scene and the time step and evaluation of the run; `None` if there
+    /// is no readable one.
     #[must_use]
-    pub fn is_there(&self, given: &Arc<Scene>) -> bool {
+    pub fn stored(&self, given: &Arc<Scene>) -> Option<ResultOrigin> {
         let control = self.wrong.then_some(self.claim.control.name);
-        matches!(load(self.case, &self.run, given, control), Some(Ok(_)))
+        load(self.case, &self.run, given, control)?.ok()?.kept
     }
 }
 

@@ -2,7 +2,7 @@
 
 use super::checkpoint::read;
 use super::cores::MOST_THREADS;
-use super::exit::{Fault, Outcome, print, refuse, say};
+use super::exit::{Fault, Outcome, exit_code, print, refuse, say};
 use super::interrupt::Interrupt;
 use super::progress::Progress;
 use super::provenance;
@@ -10,7 +10,7 @@ use super::publish::write_files;
 use super::value::whole;
 use grainbench::cases::kept::{self, StorableRun};
 use grainbench::cases::{Case, runner, solvers};
-use grainbench::harness::run::{FinishedRun, Set};
+use grainbench::harness::run::{FinishedRun, ResultOrigin, Set};
 use grainbench::harness::runner::{Runner, RunnerOptions};
 use grainbench::resume::{self, Place};
 use grainbench::scene::scene::Scene;
@@ -26,7 +26,7 @@ pub(crate) struct KeepArguments {
     /// Cases whose runs are done. Default: all cases with stored results.
     #[arg(value_name = "CASE")]
     cases: Vec<String>,
-    /// Also repeat runs whose stored result is valid.
+    /// Also repeat runs that have a stored result.
     #[arg(long)]
     no_cache: bool,
     /// Include full-scale runs, which take hours.
@@ -64,7 +64,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
         wanted.set() <= largest && arguments.run.as_ref().is_none_or(|letters| wanted.id.contains(letters.as_str()))
     };
     let interrupt = Interrupt::listen();
-    let (mut lines, mut failed) = (String::new(), false);
+    let mut failed = false;
     if let Some(letters) = &arguments.run
         && !known.iter().filter(is_named).flat_map(|case| kept::all(case)).any(|wanted| is_meant(&wanted))
     {
@@ -79,7 +79,7 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
             let given = match runner.given(&one.claim, &one.run, one.wrong) {
                 Err(RunError::NotAvailable { reason, .. }) if arguments.data.is_none() => {
                     say("note", &format!("{}: skipped: {reason}", one.id));
-                    lines.push_str(&format!("{:6} {}/{}\n", "absent", case.name, one.id));
+                    print(&format!("{:8} {}/{}\n", "absent", case.name, one.id))?;
                     continue;
                 }
                 given => given?,
@@ -92,31 +92,28 @@ pub(crate) fn keep(arguments: &KeepArguments) -> Outcome {
                 words: format!("{} ({} of {} runs)", one.id, place + 1, wanted.len()),
                 interrupt: &interrupt,
             };
-            let outcome = if !arguments.no_cache && one.is_there(&keeping.given) {
-                "there"
-            } else {
-                match keeping.done() {
-                    Ok(()) => "done",
-                    Err(Fault::Broken(reason)) if !interrupt.is_asked() => {
-                        failed = true;
-                        say("error", &format!("{}: {reason}", one.id));
-                        "failed"
-                    }
-                    Err(fault) => {
-                        print(&lines)?;
-                        return Err(fault);
-                    }
+            let stored = one.stored(&keeping.given).filter(|_| !arguments.no_cache);
+            let outcome = match stored.map_or_else(|| keeping.done().map(|()| "done"), |origin| Ok(word(&origin))) {
+                Ok(word) => word,
+                Err(Fault::Broken(reason)) if !interrupt.is_asked() => {
+                    failed = true;
+                    say("error", &format!("{}: {reason}", one.id));
+                    "failed"
                 }
+                Err(fault) => return Err(fault),
             };
-            lines.push_str(&format!("{outcome:6} {}/{}\n", case.name, one.id));
+            print(&format!("{outcome:8} {}/{}\n", case.name, one.id))?;
             if interrupt.is_asked() {
-                print(&lines)?;
                 return Err(Fault::Broken("interrupted: finished runs are stored".to_owned()));
             }
         }
     }
-    let printed = print(&lines)?;
-    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(printed) }
+    if failed { Err(Fault::Broken("not every run could be done".to_owned())) } else { Ok(exit_code(false)) }
+}
+
+/// Returns the word for a run that has a stored result and is not repeated.
+fn word(origin: &ResultOrigin) -> &'static str {
+    if origin.is_current { "there" } else { "outdated" }
 }
 
 /// Run whose result is to be stored.
