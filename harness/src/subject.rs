@@ -5,7 +5,7 @@
 //! quantities, such as a parameter study of the stiffness, with [`Case::priced_by`].
 
 use crate::case::Case;
-use crate::claim::{Claim, Measure};
+use crate::claim::{Claim, Expectation, Measure};
 use crate::evidence::Evidence;
 use crate::run::{Change, ExpectedOutcome};
 use crate::scope::Scope;
@@ -76,12 +76,14 @@ pub fn of_each_variant(case: &'static Case) -> Vec<TargetQuantity> {
 }
 
 /// Adds the quantity of a claim to the list, or adds the claim's solver setup if the list contains the quantity. Ignores
-/// claims with several runs, without an analytic solution, or with an unsupported scene.
+/// claims with several runs, without an analytic value, or with an unsupported scene. A bound is no value: every result
+/// within it has the error zero.
 fn add(case: &'static Case, claim: &Claim, subjects: &mut Vec<TargetQuantity>) {
     let [run] = claim.runs.as_slice() else { return };
     let Some(method) = Method::from_name(run.solver) else { return };
     // Runs whose snapshots are read are long.
     if claim.evidence() != Evidence::Analytic
+        || claim.expectation == Expectation::Bound
         || run.standing == ExpectedOutcome::Refused
         || run.reading.is_some()
         || run.data.is_some()

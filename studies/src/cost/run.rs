@@ -265,14 +265,15 @@ fn first(subject: &TargetQuantity, task: &Task) -> Point {
         Ok(record) => {
             point.counts = Counts::from(&record.cost);
             let done = FinishedRun::new(Arc::clone(&task.scene), Arc::new(record));
-            match (subject.measure)(&[done]) {
-                Ok(measured) if measured.error().is_finite() => {
+            match (subject.measure)(&[done]).map(|measured| (measured.expected.value(), measured)) {
+                Ok((Some(expected), measured)) if measured.error().is_finite() => {
                     point.standing = PointStatus::Measured;
                     point.value = Some(measured.value);
-                    point.expected = measured.expected.value();
+                    point.expected = Some(expected);
                     point.error = Some(measured.error().abs());
                 }
-                Ok(_) => point.detail = Some("its error is not finite".to_owned()),
+                Ok((Some(_), _)) => point.detail = Some("its error is not finite".to_owned()),
+                Ok((None, _)) => point.detail = Some("a bound is expected, which gives no error".to_owned()),
                 Err(missing) => {
                     point.standing = PointStatus::Unsupported;
                     point.detail = Some(missing.to_string());
