@@ -9,6 +9,8 @@ use grainbench_solver::record::Record;
 const PERTURBATION: f64 = 1e-6;
 /// Number of perturbed runs of a chaotic scene.
 const PERTURBED: usize = 4;
+/// Largest value that is rounding noise, relative to the natural scale of its unit.
+pub(crate) const ZERO: f64 = 1e-9;
 
 /// Returns runs of the perturbed scene, or no runs if the scene is not chaotic. `record` is the unperturbed run, and `run`
 /// repeats it with a changed scene.
@@ -30,7 +32,8 @@ pub fn perturbed_runs(
         scene.grains[middle].position.x += PERTURBATION * scene.grains[middle].radius;
         let other = run(&scene)?;
         let mut columns = 0..record.series.columns.len();
-        if perturbed.is_empty() && !columns.any(|at| farthest(record, &other, at) > Some(matters)) {
+        let moves = |off: f64| off.is_nan() || off > matters;
+        if perturbed.is_empty() && !columns.any(|at| farthest(&scene, record, &other, at).is_some_and(moves)) {
             break;
         }
         perturbed.push(other);
@@ -50,15 +53,41 @@ pub fn scale_of(whole: &Record, column: usize) -> f64 {
     values.filter(|value| value.is_finite()).fold(0.0, |scale: f64, value| scale.max(value.abs()))
 }
 
-/// Returns the change of the mean of a column over time, relative to [`scale_of`] the first run.
+/// Returns the scale of the changes of a column: [`scale_of`] the run, or the natural scale of the unit if the run has only
+/// rounding noise.
+fn scale_of_changes(scene: &Scene, whole: &Record, column: usize) -> f64 {
+    let natural = whole.series.columns.get(column).map_or(0.0, |column| natural(scene, &column.unit));
+    let scale = scale_of(whole, column);
+    if scale <= ZERO * natural { natural } else { scale }
+}
+
+/// Returns the natural scale of a unit in a scene, from its largest mass, its reference length and its duration; zero for other
+/// units.
+pub(crate) fn natural(scene: &Scene, unit: &str) -> f64 {
+    let (length, time) = (scene.reference_length, scene.duration.seconds().unwrap_or(1.0));
+    let mass = scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
+    match unit {
+        "m" => length,
+        "m/s" => length / time,
+        "rad" | "1" => 1.0,
+        "rad/s" => 1.0 / time,
+        "N" => mass * length / (time * time),
+        "N s" | "kg m/s" => mass * length / time,
+        "J" => mass * (length / time).powi(2),
+        "kg m²/s" => mass * length * length / time,
+        _ => 0.0,
+    }
+}
+
+/// Returns the change of the mean of a column over time, relative to the scale of [`farthest`].
 ///
 /// The result is NaN or `None` as for [`farthest`].
 #[must_use]
-pub fn change_of_mean(whole: &Record, other: &Record, column: usize) -> Option<f64> {
-    let pointwise = farthest(whole, other, column)?;
+pub fn change_of_mean(scene: &Scene, whole: &Record, other: &Record, column: usize) -> Option<f64> {
+    let pointwise = farthest(scene, whole, other, column)?;
     let values = whole.series.values.get(column)?;
     let others = other.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
-    let scale = scale_of(whole, column);
+    let scale = scale_of_changes(scene, whole, column);
     if scale == 0.0 || !pointwise.is_finite() {
         return Some(pointwise);
     }
@@ -66,17 +95,18 @@ pub fn change_of_mean(whole: &Record, other: &Record, column: usize) -> Option<f
     Some((off.sum::<f64>() / values.len() as f64).abs() / scale)
 }
 
-/// Returns the largest difference of a column between two runs at equal samples, relative to [`scale_of`] the first run.
+/// Returns the largest difference of a column between two runs at equal samples, relative to [`scale_of`] the first run. If
+/// the first run has only rounding noise, the scale is the natural one of the unit.
 ///
 /// The result is NaN if the other run has another number of samples or a value that is NaN. It is `None` if the column is
 /// empty.
 #[must_use]
-pub fn farthest(whole: &Record, other: &Record, column: usize) -> Option<f64> {
+pub fn farthest(scene: &Scene, whole: &Record, other: &Record, column: usize) -> Option<f64> {
     let values = whole.series.values.get(column)?;
-    let scale = scale_of(whole, column);
+    let scale = scale_of_changes(scene, whole, column);
     let others = other.series.column(&whole.series.columns.get(column)?.name).unwrap_or_default();
     if scale == 0.0 {
-        // If the probe is zero in the first run, any other value counts as a relative change of 1.
+        // Without a natural scale, any other value than zero counts as a relative change of 1.
         let largest = others.iter().fold(0.0_f64, |largest, value| largest.max(value.abs()));
         return (!values.is_empty()).then_some(if largest > 0.0 { 1.0 } else { 0.0 });
     }

@@ -3,9 +3,9 @@
 use super::convergence::{LevelValue, Reference, deviation, ensemble, reference, scatter};
 use super::ladder::{Ladder, soften};
 use super::schedule::{self, Finished};
-use super::stored_run::{StoredColumn, StoredRun, columns, failure, natural, wall_seconds};
+use super::stored_run::{StoredColumn, StoredRun, columns, failure, wall_seconds};
 use super::within::Within;
-use crate::chaos::perturbed_runs;
+use crate::chaos::{ZERO, natural, perturbed_runs};
 use crate::run_cache::key_of_run;
 use grainbench_harness::evidence::Evidence;
 use grainbench_harness::solvers::Solvers;
@@ -39,8 +39,6 @@ const REPETITIONS: usize = 9;
 const ENOUGH: f64 = 1e-7;
 /// Difference relative to the scale of the probe that counts as rounding error.
 const ROUNDING: f64 = 1e-12;
-/// Value relative to the scale of the probe below which a column is zero apart from rounding.
-const ZERO: f64 = 1e-9;
 /// Factors by which the stiffness of contacts is divided.
 const SOFTER: [f64; 2] = [10.0, 100.0];
 /// Number of failures in a row after which a solver gets no further level: with time steps or substeps, and with cells,

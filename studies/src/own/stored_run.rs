@@ -3,7 +3,6 @@
 use crate::chaos::scale_of;
 use grainbench_reports::number;
 use grainbench_reports::study::point::PointStatus;
-use grainbench_scene::scene::Scene;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::record::{Column, Record};
 use grainbench_solver::resolution::Resolution;
@@ -104,22 +103,4 @@ pub(super) fn failure(
         _ => PointStatus::Failed,
     };
     (status, Some(error.to_string()))
-}
-
-/// Returns the natural scale of a unit in a scene, from its largest mass, its reference length and its duration; zero for other
-/// units.
-pub(super) fn natural(scene: &Scene, unit: &str) -> f64 {
-    let (length, time) = (scene.reference_length, scene.duration.seconds().unwrap_or(1.0));
-    let mass = scene.grains.iter().map(|grain| grain.mass).fold(0.0, f64::max);
-    match unit {
-        "m" => length,
-        "m/s" => length / time,
-        "rad" | "1" => 1.0,
-        "rad/s" => 1.0 / time,
-        "N" => mass * length / (time * time),
-        "N s" | "kg m/s" => mass * length / time,
-        "J" => mass * (length / time).powi(2),
-        "kg m²/s" => mass * length * length / time,
-        _ => 0.0,
-    }
 }
