@@ -336,6 +336,7 @@ pub(crate) fn effects() -> Study {
         counts: Some(1.1),
         time: None,
         tried: Vec::new(),
+        detail: None,
     };
     let ledger = vec![
         entry("friction", true, EffectResult::Needed, vec![shift(0.5), shift(-0.1), shift(0.2)]),

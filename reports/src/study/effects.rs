@@ -86,6 +86,9 @@ pub struct Entry {
     /// Solvers that ran the scene with a neutral value of an effect that is off.
     #[serde(default)]
     pub tried: Vec<String>,
+    /// Error of the run without the effect, if it ended with one. Such a run shows no influence of the effect.
+    #[serde(default, skip_serializing_if = "Option::is_none")]
+    pub detail: Option<String>,
 }
 
 pub(crate) fn render(ledger: &[Entry]) -> Markup {
@@ -220,7 +223,8 @@ fn table(ledger: &[Entry]) -> Markup {
         });
         let red = entry.shifts.iter().filter(|shift| shift.red).count();
         let red = entry.on.then(|| format!("{red} of {}", entry.shifts.len()));
-        let (scene, change) = (scene_name(&entry.case, &entry.variant), change.unwrap_or_default());
+        let change = change.or_else(|| entry.detail.clone()).unwrap_or_default();
+        let scene = scene_name(&entry.case, &entry.variant);
         row![scene, &entry.effect, key, result, change, red, entry.counts, entry.time].class(class)
     };
     Table::new("All effects", columns, ledger.iter().map(row)).page("rows")

@@ -40,6 +40,7 @@ fn untested(case: &str, variant: &str, effect: Effect, key: Option<String>) -> E
         counts: None,
         time: None,
         tried: Vec::new(),
+        detail: None,
     }
 }
 

@@ -52,7 +52,7 @@ impl StudyInput<'_> {
     }
 
     /// Evaluates an effect. An effect that the scene uses is switched off; another effect is tested with its neutral
-    /// value.
+    /// value. If the run without the effect ends with an error, the influence of the effect is unknown.
     ///
     /// Returns `None` if the effect has no neutral value or the solver does not support the effect.
     #[must_use]
@@ -79,12 +79,18 @@ impl StudyInput<'_> {
             Ok((step, _)) => Resolution::TimeStep(step),
             Err(_) => self.resolution,
         };
-        let record = self.solver.run(&without, &resolution, &mut ()).ok();
+        let record = match self.solver.run(&without, &resolution, &mut ()) {
+            Ok(record) => record,
+            Err(error) => {
+                entry.detail = Some(format!("no result without it: {error}"));
+                return;
+            }
+        };
+        let difference = |other: &Record, at: usize| difference(self.scene, whole, other, at);
         for (at, column) in whole.series.columns.iter().enumerate() {
-            let moved = record.as_ref().map_or(Some(f64::NAN), |record| difference(whole, record, at));
             // Columns without values are skipped.
-            let Some(moved) = moved else { continue };
-            let scatter = runs.perturbed.iter().filter_map(|other| difference(whole, other, at)).fold(0.0, f64::max);
+            let Some(moved) = difference(&record, at) else { continue };
+            let scatter = runs.perturbed.iter().filter_map(|other| difference(other, at)).fold(0.0, f64::max);
             let allowed = self.matters.max(SCATTER * scatter);
             entry.shifts.push(Shift {
                 quantity: column.name.clone(),
@@ -95,7 +101,7 @@ impl StudyInput<'_> {
                 red: !moved.is_finite() || moved > allowed,
             });
         }
-        conclude(entry, record.as_ref().map(|record| [whole, record]));
+        conclude(entry, Some([whole, &record]));
     }
 
     /// Tests the neutral value of an effect, if the method of the solver leaves the effect out when it is off. A rigid-body
@@ -145,6 +151,27 @@ mod tests {
         assert_eq!(worth(Effect::Cohesion, 0.01), EffectResult::Inert);
         // With a very large limit, no effect is needed.
         assert_eq!(worth(Effect::Friction, 1e3), EffectResult::NotWorthSimulating);
+    }
+
+    /// A distant disc falls with damping. Without damping it moves by more than its radius in a step, and the run ends with an
+    /// error. The probed disc is at rest, so the error does not show that it needs the damping.
+    #[test]
+    fn an_error_without_an_effect_is_no_need_for_it() {
+        let text = "title = 'Two discs'\ndimension = 2\ngravity = [0.0, -10.0]\nduration = 12.0\n\
+            global_damping = 100.0\nmaterials.m.density = 1000.0\n[contacts.m]\nbetween = ['m', 'm']\nnormal_stiffness = 1.0e7\n\
+            restitution = 0.5\n\
+            [grains.a]\nmaterial = 'm'\nradius = 0.1\nposition = [0.0, 0.1]\n\
+            [grains.b]\nmaterial = 'm'\nradius = 1.0e-3\nposition = [5.0, 500.0]\n\
+            [walls.floor]\nmaterial = 'm'\nplane = { point = [0.0, 0.0], normal = [0.0, 1.0] }\n\
+            [output]\nevery = 0.1\n[probes]\na = { grain = 'a' }\n";
+        let scene = Scene::from_text("scene", text).unwrap();
+        let solver = Dem::new(Convention::DEFAULT);
+        let resolution = Resolution::CriticalFraction(0.5);
+        let asked = StudyInput { name: "two".to_owned(), scene: &scene, solver: &solver, resolution, matters: 0.01 };
+        let whole = asked.whole().unwrap();
+        let entry = asked.entry(&whole, Effect::GlobalDamping).unwrap();
+        assert_eq!((entry.worth, entry.shifts.len()), (EffectResult::Untold, 0), "{entry:?}");
+        assert!(entry.detail.is_some_and(|detail| detail.contains("radius")));
     }
 
     /// In a gas of discs, a restitution of 1 − 10⁻⁹ changes all later positions but no mean. A lower one takes energy.
