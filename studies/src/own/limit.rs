@@ -5,17 +5,19 @@ use super::ladder::Ladder;
 use super::network::largest_stable_step;
 use super::within::Within;
 use crate::run_cache::key_of_run;
+use crate::stability::assembly::dice;
 use crate::stability::failure::{Failure, confirmed, of_error};
 use crate::stability::limit::{Stop, fill};
 use grainbench_reports::study::stability::Limit;
 use grainbench_scene::contact_law::{ContactLaw, SpringsKind};
-use grainbench_scene::scene::{Probe, ProbeTarget, Scene};
+use grainbench_scene::scene::{Duration, Probe, ProbeTarget, Scene};
 use grainbench_solver::Solver;
 use grainbench_solver::failure::RunError;
 use grainbench_solver::observer::RunOptions;
 use grainbench_solver::record::Record;
 use grainbench_solver::resolution::Resolution;
 use grainbench_store::WriteError;
+use nalgebra::Vector3;
 use std::time::Instant;
 
 /// Relative precision of a limit.
@@ -25,6 +27,11 @@ const CELLS: f64 = 4.0;
 /// Energies, and the ratio of the largest value to that at the smallest step above which a run is unstable. The elastic energy
 /// of contacts that vibrate with the time step grows even if the grains hardly move.
 const GROWTH: [(&str, f64); 2] = [("kinetic_energy", 10.0), ("elastic_energy", 3.0)];
+/// Smallest number of steps of a run. Longer steps are not tried, because a short run shows no growth.
+const FEWEST: f64 = 10.0;
+/// Largest velocity that is added to each component of the velocity of a grain, relative to a radius per critical step, or per
+/// duration in a scene without springs. A grain at rest would otherwise stay at rest with any step.
+const PERTURBATION: f64 = 1e-6;
 /// Name of the probe that records the energies.
 const PROBE: &str = "stability";
 /// Number of snapshots whose contacts give the exact limit.
@@ -37,6 +44,8 @@ struct Parameter {
     range: [f64; 2],
     default: f64,
     resolution: fn(f64) -> Resolution,
+    /// Returns the time step at the value 1 (s); none if the scene does not determine it.
+    unit_step: fn(&Scene) -> Option<f64>,
 }
 
 /// Fraction of the critical time step.
@@ -45,6 +54,7 @@ const FRACTION: Parameter = Parameter {
     range: [0.1, 2.5],
     default: Resolution::FRACTION,
     resolution: Resolution::CriticalFraction,
+    unit_step: |scene| Some(scene.critical_time_step()),
 };
 /// Courant number of a grid.
 const COURANT: Parameter = Parameter {
@@ -52,6 +62,12 @@ const COURANT: Parameter = Parameter {
     range: [0.1, 2.0],
     default: Resolution::COURANT,
     resolution: |courant| Resolution::Grid { cells: CELLS, points: Resolution::POINTS, courant },
+    unit_step: |scene| {
+        // In a long scene, the step is hardly shortened to a whole number of steps.
+        let long = scene.duration.seconds().map(|seconds| Duration::Seconds(1e3 * seconds))?;
+        let courant = Resolution::Grid { cells: CELLS, points: Resolution::POINTS, courant: 1.0 };
+        courant.steps_on_grid(&Scene { duration: long, ..scene.clone() }).ok().map(|(step, _)| step)
+    },
 };
 /// Time step of a rigid-body engine (s).
 const STEP: Parameter = Parameter {
@@ -59,7 +75,28 @@ const STEP: Parameter = Parameter {
     range: [1.0 / 240.0, 0.1],
     default: Resolution::RIGID_STEP / Resolution::SUBSTEPS as f64,
     resolution: |step| Resolution::Rigid { step, substeps: 1, iterations: Resolution::RIGID_ITERATIONS },
+    unit_step: |_| Some(1.0),
 };
+
+/// Adds small random velocities and spins to the grains without prescribed motion.
+fn perturb(scene: &mut Scene) {
+    let (groups, critical) = (scene.driven_group_of_grains(), scene.critical_time_step());
+    let time = if critical.is_finite() { critical } else { scene.duration.seconds().unwrap_or(1.0) };
+    let (is_flat, mut dice) = (scene.dimension.count() == 2, dice());
+    for (at, grain) in scene.grains.iter_mut().enumerate() {
+        if groups.get(at).is_some_and(Option::is_some) {
+            continue;
+        }
+        let mut vector = |largest: f64| Vector3::from_fn(|_, _| largest * dice());
+        let (mut velocity, mut spin) = (vector(PERTURBATION * grain.radius / time), vector(PERTURBATION / time));
+        if is_flat {
+            velocity.z = 0.0;
+            spin = Vector3::new(0.0, 0.0, spin.z);
+        }
+        grain.velocity += velocity;
+        grain.spin += spin;
+    }
+}
 
 /// Returns the largest stable time step of a solver in the scene of a study. No run continues after the deadline, or when the
 /// user stops the study. The limit is then a lower bound, and its detail says so.
@@ -116,9 +153,23 @@ fn bisect(
 ) -> bool {
     let mut scene = Scene { snapshots: SNAPSHOTS, snapshot_times: Vec::new(), ..scene.clone() };
     scene.probes.push(Probe { name: PROBE.to_owned(), target: ProbeTarget::System });
+    perturb(&mut scene);
     let within = Within::new(solver, deadline, stop);
     let (mut energies, mut exact, mut unstable) = (None, None, None);
-    let is_concluded = fill(limit, parameter.range, (PRECISION, 0), |value| {
+    let [low, high] = parameter.range;
+    // Without a duration in seconds, the scene lasts a number of steps of any length.
+    let seconds_and_unit = scene.duration.seconds().zip((parameter.unit_step)(&scene));
+    let longest = seconds_and_unit.map_or(high, |(seconds, unit)| seconds / (FEWEST * unit));
+    if longest < low {
+        limit.detail = format!("the scene is too short: its duration is less than {FEWEST} steps");
+        return true;
+    }
+    let is_concluded = fill(limit, [low, high.min(longest)], (PRECISION, 0), |value| {
+        if let Some((seconds, unit)) = seconds_and_unit {
+            // A whole number of steps, which the solver would otherwise shorten.
+            let step = value * unit;
+            scene.duration = Duration::Seconds((seconds / step).ceil() * step);
+        }
         let record = confirmed(|| within.run(&scene, &(parameter.resolution)(value), &mut RunOptions::unstable()));
         let record = record.map_err(|error| match of_error(&error) {
             Some(failure) => Stop::Unstable(shortened(failure, &error)),
@@ -145,7 +196,9 @@ fn bisect(
         }
         now
     });
-    let is_linear = |law: &ContactLaw| law.springs.kind() == SpringsKind::Linear && !law.has_damping();
+    let is_linear = |law: &ContactLaw| {
+        law.springs.kind() == SpringsKind::Linear && !law.has_damping() && law.rolling_friction == 0.0
+    };
     let exact = if has_springs { exact.map(|step| step / scene.critical_time_step()) } else { None };
     let is_exact = scene.laws.iter().flatten().all(is_linear);
     let mut is_whole = is_concluded || !within.0.is_cut();
@@ -179,8 +232,8 @@ fn shortened(failure: Failure, error: &RunError) -> Failure {
     }
 }
 
-/// Returns the largest value of an energy (J); infinity if a value is infinite, and zero if the solver does not report it.
+/// Returns the largest value of an energy (J); infinity if a value is not finite, and zero if the solver does not report it.
 fn largest_energy(record: &Record, name: &str) -> f64 {
     let values = record.series.column(&format!("{PROBE}.{name}")).unwrap_or_default();
-    values.iter().copied().fold(0.0, f64::max)
+    values.iter().fold(0.0, |most: f64, value| if value.is_nan() { f64::INFINITY } else { most.max(*value) })
 }

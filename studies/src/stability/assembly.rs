@@ -174,11 +174,7 @@ fn finish(
 ///
 /// Grains in a row are displaced only along x, because the row would buckle otherwise.
 fn perturb(scene: &mut Scene, turns: bool) {
-    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
-    let mut dice = move || {
-        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
-        2.0 * (state >> 11) as f64 / (1_u64 << 53) as f64 - 1.0
-    };
+    let mut dice = dice();
     let row = scene.grains.len() > 1 && scene.grains.iter().all(|grain| grain.position.y == scene.grains[0].position.y);
     let dimensions = scene.dimension.count();
     for grain in scene.grains.iter_mut() {
@@ -190,6 +186,15 @@ fn perturb(scene: &mut Scene, turns: bool) {
         } else if turns {
             grain.spin.y = PERTURBATION * dice();
         }
+    }
+}
+
+/// Returns a linear congruential generator of numbers from −1 to 1.
+pub(crate) fn dice() -> impl FnMut() -> f64 {
+    let mut state = 0x9e37_79b9_7f4a_7c15_u64;
+    move || {
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        2.0 * (state >> 11) as f64 / (1_u64 << 53) as f64 - 1.0
     }
 }
 

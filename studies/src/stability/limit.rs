@@ -83,7 +83,7 @@ fn vibrate(solver: &dyn Solver, scene: &Scene, cells: f64, courant: f64) -> Resu
         .run(&scene, &Resolution::Grid { cells, points: 2, courant }, &mut RunOptions::unstable())
         .map_err(stop)?;
     let energy = record.series.column("all.total_energy").unwrap_or_default();
-    let start = energy.first().copied().unwrap_or(f64::NAN);
+    let start = *energy.first().ok_or_else(|| Stop::Cannot("the record has no energy".to_owned()))?;
     let most = energy
         .iter()
         .map(|energy| energy / start)
