@@ -1,6 +1,7 @@
 //! Resolution levels of a solver for any scene, from coarse to fine.
 
 use grainbench_harness::solvers::{ExternalSolver, Solvers};
+use grainbench_scene::contact_law::SpringsKind;
 use grainbench_scene::method::Method;
 use grainbench_scene::scene::{Duration, Scene};
 use grainbench_solver::resolution::Resolution;
@@ -128,11 +129,15 @@ fn listed(refined: Refined, values: &[f64], are_steps: bool) -> (Refined, Vec<f6
 
 /// Divides the stiffness of all contacts by a factor. Dashpots that are not relative to the stiffness change so that the
 /// coefficient of restitution stays.
+///
+/// The duration of a contact with mass m and impact speed v is proportional to √(m/k) for linear springs, and to
+/// (m²/(E*² R v))^{1/5} for Hertz contacts. The damping rates c/m are divided by the factor of the duration.
 pub(super) fn soften(scene: &mut Scene, factor: f64) {
     scene.change_laws(|law| {
+        let longer = if law.springs.kind() == SpringsKind::Linear { factor.sqrt() } else { factor.powf(0.4) };
         law.springs = law.springs.scaled([1.0 / factor; 2]);
-        law.normal_damping /= factor.sqrt();
-        law.tangential_damping /= factor.sqrt();
-        law.stiffness_damping *= factor.sqrt();
+        law.normal_damping /= longer;
+        law.tangential_damping /= longer;
+        law.stiffness_damping *= longer;
     });
 }
