@@ -104,7 +104,8 @@ impl LoadCost {
         let more = long.processor - short.processor;
         let step = more / (long.steps - short.steps) as f64;
         let start_up = (short.processor - short.steps as f64 * step).max(0.0);
-        TimingDifference { start_up, step, second: more / (long.seconds - short.seconds) }
+        // The short run of a rigid-body engine has more steps than its duration needs.
+        TimingDifference { start_up, step, second: step * long.steps as f64 / long.seconds }
     }
 }
 
