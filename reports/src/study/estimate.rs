@@ -240,14 +240,15 @@ impl SceneCost {
         }
     }
 
-    /// Returns the fastest setting whose errors of all quantities are certainly at most `target`, and its time (s).
+    /// Returns the fastest setting whose errors of all quantities are certainly at most `target`, and its time (s). There is
+    /// none if the solver has no value of a quantity.
     #[must_use]
     pub fn cheapest_for_all(&self, solver: &str, target: f64) -> Option<(&str, f64)> {
-        let quantities = || self.quantities.iter().filter(|quantity| quantity.of_solver(solver).next().is_some());
         let is_enough = |setting: &str| {
-            quantities().all(|quantity| quantity.within(solver, target).any(|point| point.setting == setting))
+            let mut quantities = self.quantities.iter();
+            quantities.all(|quantity| quantity.within(solver, target).any(|point| point.setting == setting))
         };
-        let settings = quantities().next()?.of_solver(solver).filter(|point| is_enough(&point.setting));
+        let settings = self.quantities.first()?.of_solver(solver).filter(|point| is_enough(&point.setting));
         let best = settings.min_by(|a, b| a.wall_seconds.total_cmp(&b.wall_seconds))?;
         Some((&best.setting, best.wall_seconds))
     }
@@ -300,11 +301,15 @@ impl SceneCost {
             let Some((quantity, error)) = own().max_by(|a, b| a.1.total_cmp(&b.1)) else {
                 return format!("{solver} has no value ({})", self.reason(solver));
             };
-            let (within, all) = (own().filter(|(_, error)| *error <= target).count(), own().count());
+            let (within, all) = (own().filter(|(_, error)| *error <= target).count(), quantities.len());
             let at_best = format!("at best {}", number::fraction(error));
-            match all {
-                1 => format!("{solver} does not reach it ({at_best})"),
-                _ => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
+            let without = quantities.iter().find(|quantity| least(quantity, solver).is_none());
+            match (all, without) {
+                (1, _) => format!("{solver} does not reach it ({at_best})"),
+                (_, Some(quantity)) => {
+                    format!("{solver} reaches it in {within} of {all} ({}: no value)", quantity.name)
+                }
+                (_, None) => format!("{solver} reaches it in {within} of {all} ({} {at_best})", quantity.name),
             }
         };
         let others = solvers.iter().filter(|solver| reached.iter().all(|(name, ..)| name != *solver));
