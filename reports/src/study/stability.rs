@@ -151,7 +151,7 @@ fn map(rows: &[&Limit], unit: &str) -> Option<Figure> {
          freedom. Dashed lines join the exact limits. The parameter is the ratio of tangential and \
          normal stiffness, and m is the mass of a grain."
     } else {
-        "Largest Courant number for which the energy of a vibrating bar changes by less than a tenth over two periods."
+        "Largest Courant number for which the energy of a vibrating bar grows by at most a tenth over two periods."
     };
     let x = if exact { Axis::linear(&knob) } else { Axis::log(&knob) };
     let y = if unit.starts_with('√') { format!("Δt / {unit}") } else { format!("Δt / ({unit})") };
