@@ -1,6 +1,7 @@
 //! Friction and restitution of every pair, from the contact laws of the scene.
 
 use grainbench_scene::contact_law::ContactLaw;
+use grainbench_scene::release::no_tension_ratio;
 use grainbench_scene::scene::Scene;
 
 /// One partner of a contact.
@@ -83,19 +84,24 @@ pub(crate) fn common_coefficients(scene: &Scene) -> Option<Coefficients> {
 /// Maximum number of kinds of grains, distinguished by material and mass, for which pairs are compared.
 const MOST_KINDS: usize = 16;
 
-/// Returns the coefficient of restitution of the spring and dashpot of a law: e = exp(−πζ/√(1−ζ²)).
+/// Returns the coefficient of restitution of the spring and dashpot of a law.
 ///
-/// ζ is the law's own damping ratio plus, for linear springs, c/(2√(k_n m)) with c = β k_n + γ_n m and the effective
-/// mass m of the pair. The contact lasts until the overlap is zero, so its force may be tensile at the end. Without
-/// damping e is 1; with critical or larger damping it is 0.
+/// The damping ratio of the law states e = exp(−πζ/√(1−ζ²)), as `restitution` in the scene requires. A linear spring with
+/// dashpots c = β k_n + γ_n m has ζ = c/(2√(k_n m)), with the effective mass m of the pair. Its contact ends when the force is
+/// zero, because contacts do not pull (see [`no_tension_ratio`]):
+///
+/// ```text
+/// e = exp(−2ζ acos ζ/√(1 − ζ²))   below critical damping, exp(−2ζ acosh ζ/√(ζ² − 1)) above it
+/// ```
 fn restitution(law: &ContactLaw, mass: f64) -> f64 {
     let viscosity = law.stiffness_damping * law.normal_stiffness() + law.normal_damping * mass;
-    let linear = if viscosity == 0.0 { 0.0 } else { viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt()) };
-    let ratio = law.damping_ratio + linear;
-    if ratio == 0.0 {
-        return 1.0;
+    if viscosity == 0.0 {
+        return law.restitution();
     }
-    if ratio < 1.0 { libm::exp(-std::f64::consts::PI * ratio / (1.0 - ratio * ratio).sqrt()) } else { 0.0 }
+    let ratio = no_tension_ratio(law.damping_ratio) + viscosity / (2.0 * (law.normal_stiffness() * mass).sqrt());
+    let root = (1.0 - ratio * ratio).abs().sqrt();
+    let arc = if ratio < 1.0 { libm::atan2(root, ratio) } else { libm::log1p(ratio - 1.0 + root) };
+    libm::exp(-2.0 * ratio * if root > 0.0 { arc / root } else { 1.0 })
 }
 
 #[cfg(test)]
@@ -115,11 +121,20 @@ mod tests {
         // With k m* = 1 (m*: effective mass), ζ = c/2.
         let springs = Springs::Linear { normal: 2.0, tangential: 0.0 };
         let law = ContactLaw { springs, normal_damping: 0.4, ..ContactLaw::default() };
-        let expected = (-std::f64::consts::PI * 0.1 / 0.99_f64.sqrt()).exp();
-        assert!((restitution(&law, 0.5) - expected).abs() < 1e-15);
-        let same = ContactLaw { stiffness_damping: 0.1, normal_damping: 0.0, ..law };
-        assert!((restitution(&same, 0.5) - expected).abs() < 1e-15);
+        let expected = (-0.2 * 0.1_f64.acos() / 0.99_f64.sqrt()).exp();
+        let is_near = |law: &ContactLaw, expected: f64| (restitution(law, 0.5) - expected).abs() < 1e-12;
+        assert!(is_near(&law, expected));
+        assert!(is_near(&ContactLaw { stiffness_damping: 0.1, normal_damping: 0.0, ..law }, expected));
         assert_eq!(restitution(&ContactLaw { normal_damping: 0.0, ..law }, 0.5), 1.0);
-        assert_eq!(restitution(&ContactLaw { normal_damping: 40.0, ..law }, 0.5), 0.0);
+        assert!(is_near(&ContactLaw { normal_damping: 4.0, ..law }, (-2.0_f64).exp()));
+        assert!(is_near(
+            &ContactLaw { normal_damping: 40.0, ..law },
+            (-20.0 * 10.0_f64.acosh() / 99.0_f64.sqrt()).exp()
+        ));
+        let mut stated = ContactLaw { normal_damping: 0.0, ..law };
+        stated.set_restitution(0.5);
+        assert!(is_near(&stated, 0.5));
+        // A dashpot of negligible viscosity leaves the stated coefficient.
+        assert!(is_near(&ContactLaw { normal_damping: 1e-14, ..stated }, 0.5));
     }
 }

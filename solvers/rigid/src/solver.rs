@@ -45,18 +45,6 @@ impl Rigid {
              points that separate by about v Δt",
         ),
         Limitation::new(
-            "galilean-invariance",
-            "",
-            1e-9,
-            "tolerances of the engine are absolute lengths and speeds, which act differently in a moving frame",
-        ),
-        Limitation::new(
-            "rotation-invariance",
-            "",
-            1e-9,
-            "tolerances of the engine are absolute lengths and speeds, which act differently in a rotated scene",
-        ),
-        Limitation::new(
             "permutation",
             "",
             3e-3,

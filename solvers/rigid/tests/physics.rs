@@ -33,7 +33,7 @@ fn slope(angle_deg: f64, friction: f64) -> Scene {
     let mut scene = scene(&format!("{GRAIN}{plane}"));
     let (sine, cosine) = angle_deg.to_radians().sin_cos();
     scene.gravity = Vector3::new(9.8 * sine, -9.8 * cosine, 0.0);
-    // Damping with a coefficient of restitution e = .16.
+    // A damping ratio of ½, with a coefficient of restitution e = exp(−acos ½/√¾) = .30.
     let damping = (1e6 / scene.grains[0].mass).sqrt();
     scene.change_laws(|law| (law.friction, law.normal_damping) = (friction, damping));
     scene.duration = grainbench_scene::scene::Duration::Seconds(1.0);
@@ -107,7 +107,7 @@ fn restitution_is_that_of_each_pair() {
     let (a, b) = (scene.grains[0].mass, scene.grains[1].mass);
     let mass = a * b / (a + b);
     let ratio = 20.0 * mass / (2.0 * (1e4 * mass).sqrt());
-    let expected = (-PI * ratio / (1.0 - ratio * ratio).sqrt()).exp();
+    let expected = (-2.0 * ratio * ratio.acos() / (1.0 - ratio * ratio).sqrt()).exp();
     scene.walls.clear();
     let record = run(&scene, 4);
     assert!(((last(&record, "b.vx") - last(&record, "a.vx")) / 3.0 - expected).abs() < 1e-12);
@@ -340,8 +340,8 @@ fn a_pushed_grain_goes_as_far_as_its_wall() {
         let text = GRAIN.replace("dimension = 2", &format!("dimension = {dimension}")).replace("[0.0, 0.5]", position);
         let mut scene = scene(&format!("{text}{wall}"));
         let mass = scene.grains[0].mass;
-        // Critical damping prevents a rebound.
-        scene.change_laws(|law| law.normal_damping = 2.0 * (1e6 / mass).sqrt());
+        // A damping ratio of 30 prevents a rebound: e = exp(−60 acosh 30/√899) = 3·10⁻⁴.
+        scene.change_laws(|law| law.normal_damping = 60.0 * (1e6 / mass).sqrt());
         let record = run(&scene, 4);
         let allowed = 0.3 * record.provenance.time_step / f64::from(Resolution::RIGID_ITERATIONS);
         let way = along.map(f64::abs).imax();
