@@ -58,8 +58,8 @@ fn enskog(scene: &Scene) -> f64 {
 /// Returns ω t_c, the number of collisions of a disc during a contact, for a stiffness k (N/m). The temperature is the
 /// mean of the run, with T = 1/(1 + 0.058 t)² from t = 2 to 12.
 fn in_contact(stiffness: f64) -> f64 {
-    // The scene has φ = 0.2 and d = m = 1; the time average of √T is 0.73.
-    let (packing_fraction, mean_root) = (0.2_f64, 0.73);
+    // The scene has φ = 0.2 and d = m = 1; the time average of √T is 0.721.
+    let (packing_fraction, mean_root) = (0.2_f64, 0.721);
     let correlation = (1.0 - 7.0 / 16.0 * packing_fraction) / (1.0 - packing_fraction).powi(2);
     2.0 * PI.sqrt() * correlation * 4.0 * packing_fraction / PI * mean_root * PI * (0.5 / stiffness).sqrt()
 }
