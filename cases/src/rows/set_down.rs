@@ -47,8 +47,9 @@ const STICKING: f64 = 5.0;
 const TIMES: [f64; 2] = [40.0, 0.2];
 
 const SOURCE: Source = Source::Derived("damped oscillators along the normal and along the slope (derivation)");
-const BECAUSE: &str = "steps of a hundredth of the critical one: the dashpot is late by half a step, 1 % of ζ; the \
-                       lever arm is between R and R − overlap";
+const BECAUSE: &str = "steps of a hundredth of the critical one, ωΔt ≤ .02: the dashpot is late by half a step, which \
+                       increases the frequency by ζωΔt/2; until the vibration has decayed as e^(−ζωt), this is less \
+                       than ωΔt/2 = .01 of the amplitude; the lever arm is between R and R − overlap, 1.5e-4 R";
 
 /// Damped oscillator that is released at unit distance from equilibrium.
 #[derive(Clone, Copy)]
