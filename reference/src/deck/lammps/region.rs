@@ -110,7 +110,7 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     } else {
         Matrix3::from_columns(&[u.normalize(), v.normalize(), u.cross(&v).normalize()])
     };
-    let rotation = Rotation3::from_matrix_unchecked(axes).scaled_axis();
+    let rotation = scaled_axis(axes);
     if let Some(spin) = spin
         && rotation.cross(&spin).norm() > 1e-12 * rotation.norm() * spin.norm()
     {
@@ -125,6 +125,19 @@ fn rectangle(wall: &Wall, corner: Vector3<f64>, [u, v]: [Vector3<f64>; 2]) -> Re
     high[flat] = low[flat];
     (low, high) = (low.inf(&high), low.sup(&high));
     Ok(PlacedRegion { shape: block(low, high), centre, rotation })
+}
+
+/// Returns the rotation vector of a rotation matrix R: the axis times the angle.
+///
+/// A rotation by π about a unit vector n has R = 2nnᵀ − 1, a symmetric matrix, in whose antisymmetric part the axis is lost.
+/// The largest column of R + 1 = 2nnᵀ is then parallel to n.
+fn scaled_axis(axes: Matrix3<f64>) -> Vector3<f64> {
+    let twice = axes + Matrix3::identity();
+    let is_half_turn = (axes - axes.transpose()).norm() < 1e-12 && axes.trace() < 0.0;
+    match twice.column_iter().max_by(|a, b| a.norm().total_cmp(&b.norm())) {
+        Some(column) if is_half_turn => column.normalize() * std::f64::consts::PI,
+        _ => Rotation3::from_matrix_unchecked(axes).scaled_axis(),
+    }
 }
 
 /// Returns a block between two corners. Grains are outside the block and in contact with its nearest point.
