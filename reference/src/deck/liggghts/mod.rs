@@ -146,12 +146,13 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
 /// Rounding error of a bound, as a fraction of the period.
 const PRINTED: f64 = 1e-9;
 
-/// Returns an upper bound on the displacement of a grain without contacts during the run (m). The meshes of planes must
-/// extend at least so far.
+/// Returns an upper bound on the displacement of a grain relative to a wall during the run (m), if no contact pushes it. The
+/// meshes of planes must extend at least so far. Walls can drag grains, so the largest velocity of a wall counts for both.
 fn way(scene: &Scene, stepping: &Stepping) -> f64 {
     let time = stepping.steps as f64 * stepping.time_step;
     let speed = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
-    time * (speed + 0.5 * scene.gravity.norm() * time)
+    let of_walls = scene.walls.iter().map(|wall| wall.motion.fastest()).fold(0.0, f64::max);
+    time * (speed + 2.0 * of_walls + 0.5 * scene.gravity.norm() * time)
 }
 
 /// Returns the corners of a box around the grains and all meshes during the whole run (m).
