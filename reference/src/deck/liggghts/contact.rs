@@ -42,10 +42,10 @@ impl Model {
         if self.has_moduli() { " tangential_damping off" } else { "" }
     }
 
-    /// Returns the command that must precede the model. Without this command, LIGGGHTS refuses Young's moduli above 1
-    /// GPa.
+    /// Returns the commands that must precede the model. Without these commands, LIGGGHTS refuses Young's moduli above 1
+    /// GPa and below 5 MPa.
     pub(crate) fn preparation(self) -> Option<&'static str> {
-        self.has_moduli().then_some("hard_particles yes")
+        self.has_moduli().then_some("hard_particles yes\nsoft_particles yes")
     }
 
     /// Returns the properties of all atom types and pairs of types. There is one type per material for grains, followed
