@@ -69,8 +69,8 @@ fn start(scene: &Scene) -> Result<(Vector3<f64>, usize), String> {
                     in"
         .to_owned(),
     )?;
-    // Near zero, a small displacement is printed with the most digits.
-    let start = low.zip_map(&high, |low, high| 0.0_f64.clamp(low, high));
+    // Near zero, a small displacement is printed with the most digits. LAMMPS creates no atom on the upper side of the box.
+    let start = low.zip_map(&high, |low, high| if low <= 0.0 && 0.0 < high { 0.0 } else { 0.5 * (low + high) });
     Ok((start, axis))
 }
 
