@@ -164,10 +164,17 @@ pub(crate) fn in_order(named: &[PathBuf]) -> Result<Vec<RunFile>, ReadError> {
                 files.push(RunFile { path: path.clone(), format, is_moment: false, first_step, time: None });
             }
             FileContent::Moment => files.push(of_moment(path, None)?),
-            FileContent::List(listed) => {
+            FileContent::List(mut listed) => {
+                listed.sort_by(|a, b| a.0.total_cmp(&b.0));
+                let mut moments = Vec::new();
                 for (time, path) in listed {
-                    files.push(of_moment(&path, Some(time))?);
+                    moments.push(of_moment(&path, Some(time))?);
                 }
+                // Names such as `grains_0.05.vtu` contain times. Such files are numbered in the order of their times.
+                if !moments.is_sorted_by(|a, b| a.first_step < b.first_step) {
+                    (0..).zip(&mut moments).for_each(|(number, file)| file.first_step = Some(number));
+                }
+                files.extend(moments);
             }
         }
     }
