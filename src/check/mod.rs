@@ -36,7 +36,7 @@ use grainbench_solver::resolution::Resolution;
 use horizon::OwnRuns;
 use judgement::is_outside;
 use ours::Plan;
-use start::{adopt, distance, misplaced};
+use start::{adopt, continuous, distance, misplaced};
 use std::sync::Arc;
 use subject::Candidate;
 
@@ -68,7 +68,7 @@ pub fn check(subject: &DeclaredScene<'_>, outputs: &Outputs, options: Options) -
     let mut matching: Vec<(Candidate, DumpRecord)> = Vec::new();
     for mut candidate in subject.candidates()? {
         let observed = match outputs.observe(&candidate.scene) {
-            Ok(observed) => observed,
+            Ok(observed) => DumpRecord { series: continuous(&candidate.scene, observed.series), ..observed },
             // Variants may differ in their numbers of grains. Only the first error is reported.
             Err(error) => {
                 first_miss.get_or_insert(error.into());

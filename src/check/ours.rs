@@ -2,6 +2,7 @@
 
 use super::covered::CheckedOutput;
 use super::judgement::{Between, ErrorAllowance, judged_in_time};
+use super::start::continuous;
 use grainbench_dem::convention::Convention;
 use grainbench_dem::solver::Dem;
 use grainbench_harness::compare::peers::{ColumnComparison, Peer, against};
@@ -111,7 +112,8 @@ impl Plan {
             scene.probes.push(Probe { name: String::new(), target: ProbeTarget::System });
         }
         let (scene, resolution) = refined(&scene, self.step, self.counts, parts);
-        Dem::new(convention).run(&scene, &resolution, &mut ()).map_err(|error| error.to_string())
+        let record = Dem::new(convention).run(&scene, &resolution, &mut ()).map_err(|error| error.to_string())?;
+        Ok(Record { series: continuous(&scene, record.series), ..record })
     }
 }
 

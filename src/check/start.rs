@@ -5,6 +5,7 @@ use grainbench_reference::outputs::{Origin, Outputs};
 use grainbench_scene::dimension::Dimension;
 use grainbench_scene::nalgebra::Vector3;
 use grainbench_scene::scene::{ProbeTarget, Scene};
+use grainbench_solver::record::Series;
 
 /// Accepted deviation from the initial state in addition to the printed digits. It is a fraction of the radius for
 /// positions, and of the largest surface speed for velocities.
@@ -111,6 +112,28 @@ pub(super) fn to_nearest_image(scene: &Scene, axis: usize, off: f64) -> f64 {
     }
 }
 
+/// Removes the jumps by whole periods from the positions of grains along periodic axes, from the start of the scene on. Programs
+/// wrap grains into the box at different times, or not at all.
+pub(super) fn continuous(scene: &Scene, mut series: Series) -> Series {
+    let Some(domain) = &scene.domain else { return series };
+    for (probe, axis) in scene.probes.iter().flat_map(|probe| [0, 1, 2].map(|axis| (probe, axis))) {
+        let ProbeTarget::Grain(grain) = probe.target else { continue };
+        let name = format!("{}.{}", probe.name, AXES[axis]);
+        let column = series.columns.iter().position(|column| column.name == name);
+        let (Some(column), true) = (column, domain.periodic[axis]) else { continue };
+        let (period, mut before) = ((domain.high - domain.low)[axis], scene.grains[grain].position[axis]);
+        for value in &mut series.values[column] {
+            let periods = ((*value - before) / period).round();
+            // A value without a jump keeps its bits. NaN is the value of a grain that has left the scene.
+            if periods != 0.0 && periods.is_finite() {
+                *value -= periods * period;
+            }
+            before = if value.is_nan() { before } else { *value };
+        }
+    }
+    series
+}
+
 /// Returns the largest deviation of a coordinate from the initial state of a scene, in grain radii.
 pub(super) fn distance(scene: &Scene, observed: &DumpRecord) -> f64 {
     let starts = probed(scene, observed).chain(of_snapshot(scene, None, observed)).filter(|start| start.unit == "m");
@@ -137,4 +160,29 @@ pub(super) fn misplaced(scene: &Scene, outputs: &Outputs, observed: &DumpRecord)
 pub(super) fn at(origin: Origin) -> String {
     let time = origin.time.map(|time| format!(" (t = {time} s)")).unwrap_or_default();
     format!("step {}{time}", origin.step)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_solver::record::Column;
+
+    /// A disc flies across the side of a box of 1 m. One program wraps it at once, one later, and one never.
+    #[test]
+    fn positions_across_a_periodic_side_are_one_path() {
+        let text = "title = 'a disc'\ndimension = 2\nduration = 1.0\nmaterials.m.density = 1.0\n\
+            domain = { low = [0.0, 0.0], high = [1.0, 1.0], periodic = [true, false] }\n\
+            grains.a = { material = 'm', radius = 0.1, position = [0.75, 0.5] }\nprobes.a.grain = 'a'\n";
+        let scene = Scene::from_text("a", text).unwrap();
+        let path = |values: [f64; 4]| {
+            let columns = ["a.x", "a.y"].map(|name| Column { name: name.to_owned(), unit: "m".to_owned() });
+            let series = Series { columns: columns.into(), values: vec![values.to_vec(); 2], ..Series::default() };
+            continuous(&scene, series).values
+        };
+        let whole = vec![0.75, 1.0, 1.25, 1.5];
+        for printed in [[0.75, 0.0, 0.25, 0.5], [0.75, 1.0, 0.25, 0.5], [0.75, 1.0, 1.25, 1.5], [-0.25, 0.0, 0.25, 0.5]]
+        {
+            assert_eq!(path(printed), [whole.clone(), printed.to_vec()], "{printed:?}");
+        }
+    }
 }

@@ -3,6 +3,7 @@
 use super::covered::CheckedOutput;
 use super::judgement::{Between, ErrorAllowance, judged_in_time};
 use super::ours::{FLOOR, is_compared, truncated};
+use super::start::continuous;
 use super::subject::Candidate;
 use grainbench_cases::stored;
 use grainbench_harness::case::Case;
@@ -71,8 +72,8 @@ fn runs(case: &Case, candidate: &Candidate) -> Vec<Peer> {
             };
             Some(Peer {
                 name: format!("{}, stored run of {}", provenance.version, provenance.date),
-                series: predictable(stored.series(&scene)),
-                half_step: Some(predictable(stored.half_step(&scene))),
+                series: continuous(&scene, predictable(stored.series(&scene))),
+                half_step: Some(continuous(&scene, predictable(stored.half_step(&scene)))),
             })
         })
         .collect()
