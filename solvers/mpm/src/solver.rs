@@ -90,6 +90,28 @@ impl Mpm {
 /// Maximum number of steps between two progress reports.
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
 
+/// Smallest distance of a body from its own periodic image, in cells. With fewer cells, both act on the same nodes and stick
+/// together. A body that spans the period is continuous.
+const FROM_IMAGE: f64 = 4.0;
+
+/// Returns the first grain or body that is too near to its own periodic image, with the distance in words.
+fn near_own_image(scene: &Scene, lattice: &Lattice) -> Option<String> {
+    let domain = scene.domain?;
+    let grains = scene.grains.iter().zip(1..).map(|(grain, id)| (format!("grain {id}"), [2.0 * grain.radius; 3]));
+    let bodies = scene.bodies.iter().map(|body| {
+        let (low, high) = body.shape.corners();
+        (format!("`{}`", body.name), [0, 1, 2].map(|axis| high[axis] - low[axis]))
+    });
+    grains.chain(bodies).find_map(|(name, size)| {
+        (0..scene.dimension.count()).filter(|&axis| domain.periodic[axis]).find_map(|axis| {
+            let gap = (domain.high - domain.low)[axis] - size[axis];
+            // The tolerance covers rounding errors of lengths.
+            let is_near = gap > 1e-9 * size[axis] && gap < FROM_IMAGE * lattice.cell[axis];
+            is_near.then(|| format!("{name} with {:.3} along {}", gap / lattice.cell[axis], ["x", "y", "z"][axis]))
+        })
+    })
+}
+
 /// Memory of a material point, including tracers and springs per point (bytes).
 const BYTES_OF_A_POINT: f64 = 600.0;
 /// Memory of a node (bytes). A node is stored once for each body that uses it.
@@ -182,6 +204,11 @@ fn plan(setting: &Setting, scene: &Scene, resolution: &Resolution) -> Result<Pla
                 (SMALLEST * scene.reference_length / length).ceil()
             ));
         }
+    }
+    if let Some(found) = near_own_image(scene, &lattice) {
+        return Err(format!(
+            "expected at least {FROM_IMAGE} cells between a body and its own periodic image, found {found}"
+        ));
     }
     for (body, axis) in scene.bodies.iter().flat_map(|body| (0..dimensions).map(move |axis| (body, axis))) {
         let BlockShape::Box { low, high } = body.shape else { continue };
