@@ -327,11 +327,12 @@ fn least(quantity: &Quantity, solver: &str) -> Option<f64> {
     quantity.of_solver(solver).last().map(EstimatedPoint::at_most)
 }
 
-/// Returns a remark about a time step near the largest stable step of the solver.
+/// Returns a remark about a time step near the largest stable step of the solver: near the smallest step that failed, because
+/// the largest one that passed may be a lower bound.
 fn margin_words(solver: &str, setting: &str, limits: &[Limit]) -> Option<String> {
     let step: f64 = setting.strip_prefix("dt=")?.parse().ok()?;
     let limit = limits.iter().find(|limit| limit.solver == solver && limit.unit == CRITICAL_STEP)?;
-    let share = step / limit.found?;
+    let share = step / limit.unstable?;
     (share > MARGIN).then(|| format!(", which is {} of the largest stable step", number::significant(share, 2)))
 }
 

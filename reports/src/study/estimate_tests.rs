@@ -104,7 +104,20 @@ fn a_solver_without_a_value_is_named() {
     }
 }
 
-/// A step of 0.4 is 0.87 of a largest stable step of 0.46. Negative controls: a limit of 1, and the limit of another solver.
+/// A solver without a value of one of two quantities does not reach the target in both.
+#[test]
+fn a_target_in_all_quantities_needs_a_value_of_each() {
+    let mut other = ladder(&[0.004, 0.002]);
+    other.name = "other".to_owned();
+    other.points.iter_mut().for_each(|point| point.solver = "mpm".to_owned());
+    let cost = cost(vec![ladder(&[0.004, 0.002]), other]);
+    assert_eq!(cost.cheapest_for_all("rigid", 0.01), None);
+    let sentence = cost.sentence(0.01, &[]);
+    assert!(sentence.contains("rigid reaches it in 1 of 2 (other: no value)"), "{sentence}");
+}
+
+/// A step of 0.4 is 0.87 of the smallest failed step of 0.46. Negative controls: a failed step of 1, the limit of another solver,
+/// and a limit that is a lower bound because no step failed.
 #[test]
 fn a_step_near_the_stable_one_has_a_remark() {
     let mut quantity = ladder(&[0.002, 0.001]);
@@ -112,11 +125,12 @@ fn a_step_near_the_stable_one_has_a_remark() {
         (point.solver, point.setting) = ("dem".to_owned(), step.to_owned());
     }
     let cost = SceneCost { names: vec!["dem".to_owned()], ..cost(vec![quantity]) };
-    let limit = |solver: &str, found| Limit {
+    let limit = |solver: &str, unstable| Limit {
         scene: cost.scene.clone(),
         solver: solver.to_owned(),
         unit: CRITICAL_STEP.to_owned(),
-        found,
+        found: Some(0.45),
+        unstable,
         ..Limit::default()
     };
     let remark = "with dt=0.4, which is 0.87 of the largest stable step.";

@@ -196,15 +196,19 @@ fn bisect(
         }
         now
     });
-    let is_linear = |law: &ContactLaw| {
-        law.springs.kind() == SpringsKind::Linear && !law.has_damping() && law.rolling_friction == 0.0
-    };
-    let exact = if has_springs { exact.map(|step| step / scene.critical_time_step()) } else { None };
+    let is_linear = |law: &ContactLaw| law.springs.kind() == SpringsKind::Linear && !law.has_damping();
+    // The matrix of the contacts has no rolling springs.
+    let rolls = scene.laws.iter().flatten().any(|law| law.rolling_friction > 0.0);
+    let exact = if has_springs && !rolls { exact.map(|step| step / scene.critical_time_step()) } else { None };
     let is_exact = scene.laws.iter().flatten().all(is_linear);
     let mut is_whole = is_concluded || !within.0.is_cut();
     if let Some(found) = limit.found {
         limit.exact = exact.filter(|_| is_exact);
         limit.error = limit.exact.map(|exact| (found - exact) / exact);
+        if limit.unstable.is_none() && longest < high {
+            limit.error = None;
+            limit.detail += &format!("; longer steps are fewer than {FEWEST}: the limit is a lower bound");
+        }
         if !is_concluded {
             is_whole = false;
             limit.detail += "; the limit is a lower bound";
@@ -236,4 +240,43 @@ fn shortened(failure: Failure, error: &RunError) -> Failure {
 fn largest_energy(record: &Record, name: &str) -> f64 {
     let values = record.series.column(&format!("{PROBE}.{name}")).unwrap_or_default();
     values.iter().fold(0.0, |most: f64, value| if value.is_nan() { f64::INFINITY } else { most.max(*value) })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use grainbench_dem::convention::Convention;
+    use grainbench_dem::solver::Dem;
+    use std::time::Duration as Time;
+
+    /// Returns the limit of a disc in equilibrium between two planes. Its stiffness is 2k, so the exact limit is √½.
+    fn limit_at_rest(duration: f64) -> Limit {
+        let text = format!(
+            "title = 'rest'\ndimension = 2\nduration = {duration:?}\nmaterials.m.density = 1000.0\n\
+             contacts.m = {{ between = ['m', 'm'], normal_stiffness = 1.0e5 }}\n\
+             grains.a = {{ material = 'm', radius = 0.05, position = [0.0, 0.0499] }}\n\
+             walls.floor = {{ material = 'm', plane = {{ point = [0.0, 0.0], normal = [0.0, 1.0] }} }}\n\
+             walls.lid = {{ material = 'm', plane = {{ point = [0.0, 0.0998], normal = [0.0, -1.0] }} }}\n\
+             output.every = 0.001\n"
+        );
+        let scene = Scene::from_text("rest", &text).unwrap();
+        let (mut limit, deadline) = (Limit::default(), Instant::now() + Time::from_secs(600));
+        bisect(&mut limit, (&Dem::new(Convention::DEFAULT), &scene), (&FRACTION, true), (deadline, &|| false));
+        limit
+    }
+
+    #[test]
+    fn a_grain_at_rest_is_not_stable_at_any_step() {
+        let limit = limit_at_rest(10.0);
+        assert!(limit.error.unwrap().abs() < PRECISION && limit.unstable.is_some(), "{limit:?}");
+        assert!((limit.exact.unwrap() - 0.5_f64.sqrt()).abs() < 1e-6, "{limit:?}");
+    }
+
+    /// A duration of .1 s is five critical steps, so that ten steps are half as long.
+    #[test]
+    fn the_limit_of_a_short_scene_is_a_lower_bound() {
+        let limit = limit_at_rest(0.1);
+        assert!(limit.found.unwrap() < 0.6 && limit.unstable.is_none() && limit.error.is_none(), "{limit:?}");
+        assert!(limit.detail.contains("lower bound"), "{limit:?}");
+    }
 }
