@@ -27,6 +27,10 @@ const STRAINED: &str = "the prototype ends at 14 τ. Afterwards the packing frac
                         to 0.018, because these elements are strained further and φ is a function of |I₀| only in \
                         steady shear";
 
+/// Reason for the known error of the angle in the pushed bed.
+const SCATTERED: &str = "the mean of 136 blocks in 48 frames scatters by more than the tolerance: with an earlier order of \
+                         rounding errors it was 11.4° and not 15.5°";
+
 /// Returns the claim that φ agrees with the prototype in each bin of |I₀|, for frames up to `until` (τ).
 fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity
@@ -49,13 +53,20 @@ impl Silo {
         Run::new(self.variants[1], "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().paper_size()
     }
 
+    /// Returns the run for the angle of single frames, of which the pushed bed has too few blocks.
+    fn run_of_angle(&self, averaged: bool) -> Run {
+        let is_scattered = self.drained.is_none() && !averaged;
+        if is_scattered { self.paper_size().known(SCATTERED).up_to(0.5) } else { self.paper_size() }
+    }
+
     fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
         claim(format!("{quantity}{SUFFIX}"), unit).run(self.paper_size())
     }
 
     pub(super) fn of_paper_size(&self) -> Vec<Claim> {
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
-            self.claim(quantity, "deg")
+            claim(format!("{quantity}{SUFFIX}"), "deg")
+                .run(self.run_of_angle(averaged))
                 .equals_cited(cited, cited.value, move |done| ensemble::angle(&done[0], averaged))
                 .within(asked(allowed / cited.value, TENTH))
                 .refuses(ensemble::STRESS_ELSEWHERE)
