@@ -1,4 +1,4 @@
-//! A disc hits a frictional wall at an angle and slips during the whole impact. The final velocities have exact values.
+//! A disc hits a frictional wall at an angle and slips during nearly the whole impact. Its final velocities are exact.
 
 use crate::exact::dashpot::lag;
 use crate::rows::on_plane::stronger_friction;
