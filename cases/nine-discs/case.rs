@@ -268,9 +268,10 @@ fn continuous() -> Vec<Claim> {
                 Ok(slope(&done.chunks(SPEEDS.len()).map(error).collect::<Result<Vec<_>, _>>()?))
             })
             .within(computed(
-                2.0 * 9.0 / 80.0 * 0.2_f64.powi(2),
+                2.0 * 9.0 / 80.0 * 0.465_f64.powi(2),
                 "next power of ωΔt: a step advances the phase of a mode by 2 arcsin(ωΔt/2) = ωΔt (1 + (ωΔt)²/24 (1 + 9 \
-                 (ωΔt)²/80)), which changes the order by 2 × 9 (ωΔt)²/80, with ωΔt ≤ .2 at the coarsest",
+                 (ωΔt)²/80)), which changes the order by at most 2 × 9 (ωΔt)²/80, with ωΔt = .465 for the coarsest step \
+                 and the fast mode at κ = 1",
             ))
             .refuses(lighter());
         claims.push(order);
