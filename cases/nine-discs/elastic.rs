@@ -46,5 +46,5 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats, with the transverse pair of forces \
              (derivation)",
     allowed: 0.15,
-    because: "contact areas of half a cell, with springs as soft as .4 cells of material",
+    because: "contact areas one cell wide, with springs as soft as .4 cells of material",
 };

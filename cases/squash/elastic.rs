@@ -35,7 +35,7 @@ pub(super) const DISCS: FreeVibration = FreeVibration {
     share: 2.0 / 3.0,
     source: "Johnson, Contact Mechanics, §5.6: a cylinder between two flats (derivation)",
     allowed: 0.15,
-    because: "contact areas of a third of a cell, with springs as soft as .4 cells of material",
+    because: "contact areas .8 of a cell wide, with springs as soft as .4 cells of material",
 };
 
 pub(super) fn figure(runner: &Runner) -> Result<Figure, RunError> {

@@ -70,7 +70,7 @@ fn claims() -> Vec<Claim> {
             .within(tolerance)
             .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)))
     };
-    let soft = "springs are as soft as .4 cells of material, and the contact area is a quarter of a cell wide";
+    let soft = "springs are as soft as .4 cells of material, and the contact area is half a cell wide";
     vec![
         claim("largest deviation of the 24 contact forces from their mean", "1")
             .run(Run::new(PLAIN, "mpm", LEVELS[1].resolution).slow())

@@ -90,7 +90,7 @@ impl Setting {
     /// Best known setting, used for all scenes.
     ///
     /// Hat functions cost half as much and are as good for rolling and impacts. However, with hat functions, points with
-    /// a spin become unstable after some thousand steps. With softer springs, contacts that are a quarter of a cell wide
+    /// a spin become unstable after some thousand steps. With softer springs, contacts that are half a cell wide
     /// are more than a tenth too soft. With stiffer springs or fewer tracers, discs and spheres roll too slowly at two to
     /// four cells per radius.
     pub const BEST: Self = Self {
