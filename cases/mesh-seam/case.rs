@@ -6,7 +6,7 @@ use crate::rows::programs::{row, same_cycle};
 use grainbench_harness::prelude::*;
 
 const LEVELS: &[Level] = &[fraction("dt=.1", 0.1), fraction("dt=.03", 0.03), fraction("dt=.01", 0.01)];
-/// Time step (s): 1/65 of the critical time step.
+/// Time step (s): 1/63 of the critical time step.
 const STEP: Resolution = Resolution::TimeStep(1e-4);
 const FLOORS: [&str; 2] = ["two-triangles", "many-triangles"];
 const AXES: [&str; 3] = ["ball.x", "ball.y", "ball.z"];
@@ -112,9 +112,9 @@ fn held(at: &'static SeamPosition) -> Claim {
             1e-13,
             "rounding of positions near 1 m, 2e-16 in each of three directions, relative to an overlap of 5 mm",
         ))
-        .refuses(Control::scene("the plane of the face above for the cube", move |scene| {
+        .refuses(Control::scene("a plane for the cube, sphere 1e-9 m higher", move |scene| {
             scene.walls[0].shape = WallShape::Plane { point: Vector3::z(), normal: Vector3::z() };
-            // On the upper face, the plane gives the right force, so the control also raises the sphere by 1e-9 m.
+            // On the upper face, the plane gives the right force, so the control also raises the sphere.
             scene.grains[0].position.z += 1e-9;
         }))
 }
