@@ -28,8 +28,8 @@ impl RollToRest {
         let yields = limit / rolling;
         let way = 0.7 * grain.mass * speed * speed * radius / limit + 0.5 * radius * yields;
         let soft = rolling / (law.tangential_stiffness() * radius * radius);
-        let swing =
-            2.0 / 7.0 * law.rolling_friction * gravity / (3.5 * law.tangential_stiffness() / grain.mass).sqrt() / speed;
+        // Bound of the velocity of the tangential spring's vibration after the moment has grown, over the initial speed.
+        let swing = 20.0 / 49.0 * soft;
         let step = STEP.step(scene);
         // Samples are ten steps apart, so the turning points of the oscillation, 2Rθ apart, lie between samples.
         let phase = (10.0 * step).powi(2) * rolling / (1.4 * grain.mass * radius * radius) / 8.0;
@@ -59,8 +59,8 @@ fn back() -> Claim {
         })
         .within(computed(
             CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[0]),
-            "compliance of the tangential spring, k_r/k_tR²; its vibration at the start; turning points between \
-             samples, (ω_rΔt)²/8",
+            "compliance of the tangential spring, k_r/k_tR²; its vibration at the start, (20/49) k_r/k_tR² of the \
+             velocity, times x_s/Rθ_y; turning points between samples, (ω_rΔt)²/8",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .solver_independent_springs()
@@ -74,7 +74,7 @@ fn way() -> Claim {
         })
         .within(computed(
             CASE.number("to-rest", |scene| RollToRest::from_scene(scene).off[1]),
-            "vibration of the tangential spring at the start, twice (2/7) μ_r g/ω_t of the velocity; and k_r/k_tR²",
+            "vibration of the tangential spring at the start, twice (20/49) k_r/k_tR² of the velocity; and k_r/k_tR²",
         ))
         .refuses(Control::contact_law("rolling resistance × 1.1", |law| law.rolling_friction *= 1.1))
         .solver_independent_springs()
