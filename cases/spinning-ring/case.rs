@@ -85,7 +85,7 @@ fn claims() -> Vec<Claim> {
             .within(computed(
                 0.01 + 2.0 * growth,
                 "twice the error of half a per cent of a period at four cells through a ring (expanding-ring), and \
-                 twice the growth for nonlinear terms",
+                 twice the growth, by which Ω² decreases; nonlinear terms act in the opposite sense (derivation)",
             ))
             .refuses(
                 Control::scene("five per cent denser", |scene| {
