@@ -1,6 +1,6 @@
 //! `grainbench check`: judges the output of any program against a case or scene.
 
-use super::exit::{Fault, Outcome, check_writable, refuse};
+use super::exit::{Fault, Outcome, check_writable, refuse, refuse_inputs};
 use super::pattern;
 use super::provenance::provenance;
 use super::publish::ReportArguments;
@@ -86,6 +86,9 @@ pub(crate) struct Arguments {
 /// Checks one output or all outputs of a directory, and writes the report.
 pub(crate) fn check(arguments: &Arguments) -> Outcome {
     let start = Instant::now();
+    let Arguments { dump, like, log, all: folder, report, .. } = arguments;
+    check_writable(&report.out)?;
+    refuse_inputs(&report.out, dump.iter().chain(like).chain(log).chain(folder))?;
     let mut words = vec!["check".to_owned()];
     let sections = match (&arguments.scene, &arguments.all) {
         (Some(scene), _) => {
@@ -101,7 +104,6 @@ pub(crate) fn check(arguments: &Arguments) -> Outcome {
         }
         (None, None) => Vec::new(),
     };
-    check_writable(&arguments.report.out)?;
     let report = Report::new(provenance(words, start.elapsed().as_secs_f64()), sections);
     // Each section needs at least one judged result about a quantity, because the coverage alone does not show that the
     // content is right.

@@ -1,6 +1,6 @@
 //! `grainbench compare`: compares the outputs of two runs.
 
-use super::exit::{Fault, Outcome, check_writable, refuse};
+use super::exit::{Fault, Outcome, check_writable, refuse, refuse_inputs};
 use super::provenance::provenance;
 use super::publish::ReportArguments;
 use super::value::{path_and_value, positive};
@@ -50,6 +50,8 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         let found = arguments.time_step.len();
         refuse!("--time-step: expected one time step for both files or one for each, found {found}");
     }
+    check_writable(&arguments.report.out)?;
+    refuse_inputs(&arguments.report.out, [&arguments.a, &arguments.b])?;
     let options = comparison::Options {
         columns: arguments.columns.clone(),
         names: Names(arguments.map.clone()),
@@ -57,7 +59,6 @@ pub(crate) fn compare(arguments: &Arguments) -> Outcome {
         partial: arguments.partial,
     };
     let comparison = comparison::compare(&arguments.a, &arguments.b, &options).map_err(Fault::reading)?;
-    check_writable(&arguments.report.out)?;
     let section = section(arguments, &comparison);
     let [a, b] = names(arguments);
     let words = vec!["compare".to_owned(), a, b];

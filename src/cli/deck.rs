@@ -1,6 +1,6 @@
 //! `grainbench deck`: writes the input files of another program for a scene.
 
-use super::exit::{Fault, Outcome, check_folder, print};
+use super::exit::{DECK, Fault, Outcome, check_output, print};
 use super::publish::write_files;
 use super::subject;
 use super::value::{path_and_value, positive};
@@ -60,7 +60,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Unsupported { .. } => Fault::input(format!("unsupported: {error}")),
         DeckError::Resolution(_) => Fault::input(error),
     })?;
-    check_folder(&arguments.out)?;
+    check_output(&arguments.out, &DECK)?;
     write_files(StagedDir::new(&arguments.out)?, &deck.files)?;
     let (stepping, out) = (&deck.stepping, shell_word(&arguments.out.to_string_lossy()));
     print(&format!(

@@ -5,11 +5,12 @@ use grainbench::jobs;
 use grainbench::reference::ReadError;
 use grainbench::scene::error::did_you_mean;
 use grainbench::scene::text::{shortened, tamed};
+use grainbench::store::written_files;
 use std::collections::BTreeSet;
 use std::error::Error;
 use std::fmt::Display;
 use std::io::{self, ErrorKind, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::process::ExitCode;
 
 /// Result of a command.
@@ -197,9 +198,47 @@ pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
     grainbench::store::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
 }
 
-/// Checks an output directory before any computation. The directory must be writable and must not contain a page or
-/// manifest of another program.
+/// Kind of output of a command: words for a message, and files of which a directory with this output has at least one.
+#[derive(PartialEq)]
+pub(crate) struct OutputKind(&'static str, &'static [&'static str]);
+
+pub(crate) const RECORD: OutputKind = OutputKind("a record of `simulate`", &["record.json", "broken.json"]);
+pub(crate) const DECK: OutputKind = OutputKind("a deck", &["in.lammps", "in.liggghts"]);
+pub(crate) const FIELDS: OutputKind = OutputKind("continuum fields", &["summary.json"]);
+pub(crate) const THROUGHPUT: OutputKind = OutputKind("a throughput benchmark", &["race.json"]);
+// Records and fields may have a page too, so reports are the last kind.
+pub(crate) const REPORT: OutputKind = OutputKind("a report", &["index.html"]);
+
+/// Checks the output directory of a report before any computation, as [`check_output`].
 pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
+    check_output(out, &REPORT)
+}
+
+/// Checks an output directory before any computation. The directory must be writable. It must not contain a page or manifest
+/// of another program, or output of another kind, which would be removed.
+pub(crate) fn check_output(out: &Path, kind: &OutputKind) -> Result<(), Fault> {
     check_folder(out)?;
-    grainbench::store::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))
+    grainbench::store::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))?;
+    let files = written_files(out);
+    let is_there =
+        |OutputKind(_, names): &&OutputKind| names.iter().any(|name| files.iter().any(|file| file == Path::new(name)));
+    let found = [&RECORD, &DECK, &FIELDS, &THROUGHPUT, &REPORT].into_iter().find(is_there);
+    if let Some(other) = found.filter(|other| *other != kind) {
+        refuse!("--out: {}: expected a new directory or one with {}, found {}", out.display(), kind.0, other.0);
+    }
+    Ok(())
+}
+
+/// Checks that an output directory does not contain an input of the command. The output could replace or remove the input.
+pub(crate) fn refuse_inputs<'a>(out: &Path, inputs: impl IntoIterator<Item = &'a PathBuf>) -> Result<(), Fault> {
+    let Ok(folder) = out.canonicalize() else { return Ok(()) };
+    let is_inside = |input: &&PathBuf| {
+        let path = input.canonicalize().unwrap_or_default();
+        let name = path.strip_prefix(&folder);
+        name.is_ok_and(|name| name.components().count() < 2 || written_files(&folder).iter().any(|file| file == name))
+    };
+    if let Some(input) = inputs.into_iter().find(is_inside) {
+        refuse!("--out: {}: expected a directory without input, found the input {}", out.display(), input.display());
+    }
+    Ok(())
 }

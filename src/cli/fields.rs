@@ -1,6 +1,6 @@
 //! `grainbench fields`: computes continuum fields from grains or material points, cell by cell.
 
-use super::exit::{Fault, Outcome, check_writable, print, print_json, refuse, say};
+use super::exit::{FIELDS, Fault, Outcome, check_output, print, print_json, refuse, refuse_inputs, say};
 use super::value::{path_and_value, positive, whole};
 use grainbench::fields::column::COLUMNS;
 use grainbench::fields::contact_stress::Stress;
@@ -111,7 +111,8 @@ const MOST_ELEMENTS: usize = 20_000_000;
 
 /// Reads the snapshots, computes the fields in all cells, and writes them.
 pub(crate) fn fields(arguments: &Arguments) -> Outcome {
-    check_writable(&arguments.out)?;
+    check_output(&arguments.out, &FIELDS)?;
+    refuse_inputs(&arguments.out, std::iter::once(&arguments.source).chain(&arguments.contacts))?;
     let mut course: Option<Course> = None;
     let mut take = |snapshot: Snapshot| -> Result<(), Fault> {
         let (from, to) = (arguments.from.unwrap_or(f64::NEG_INFINITY), arguments.to.unwrap_or(f64::INFINITY));

@@ -1,6 +1,6 @@
 //! `grainbench race`: measures the throughput of our solvers and of other programs, in turn on the same scenes.
 
-use super::exit::{Fault, Outcome, check_writable, exit_code, print, print_text, refuse};
+use super::exit::{Fault, Outcome, THROUGHPUT, check_output, exit_code, print, print_text, refuse};
 use super::progress::Progress;
 use super::provenance::provenance;
 use super::publish::write_files;
@@ -77,7 +77,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     if let Some(unknown) = named.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Fault::unknown("a solver or program", unknown, known.iter().copied()));
     }
-    check_writable(&arguments.out)?;
+    check_output(&arguments.out, &THROUGHPUT)?;
     let names: Vec<&str> = if arguments.tracks.is_empty() {
         TRACKS.to_vec()
     } else {

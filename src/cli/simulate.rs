@@ -2,7 +2,7 @@
 
 use super::checkpoint::{self, refuse_others};
 use super::cores::{MOST_THREADS, cores};
-use super::exit::{Fault, Outcome, check_writable, print, print_json, refuse};
+use super::exit::{Fault, Outcome, RECORD, check_output, print, print_json, refuse};
 use super::interrupt::Interrupt;
 use super::jobs;
 use super::jobs::collect::{CollectOptions, collect};
@@ -95,7 +95,7 @@ pub(crate) struct Arguments {
     #[arg(long, requires = "state")]
     rounded: bool,
     /// Directory of the record.
-    #[arg(long, value_name = "DIR", default_value = "grainbench-out")]
+    #[arg(long, value_name = "DIR", default_value = "grainbench-simulate")]
     out: PathBuf,
     /// Formats of the snapshots. Default: `dump` and `vtk` for at most 200 000 rows of grains, contacts and points. For
     /// more rows: `parquet` if the scene requests snapshots besides the first and the last, otherwise none.
@@ -182,7 +182,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         let solver = &arguments.solver;
         refuse!("--state: expected `dem`, found `{solver}`, which does not report its final state");
     }
-    check_writable(&arguments.out)?;
+    check_output(&arguments.out, &RECORD)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
     let store = arguments.checkpoint.as_deref().map(|path| Place { path, every: arguments.checkpoint_every });

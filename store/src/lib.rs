@@ -13,7 +13,7 @@ mod staged;
 mod write;
 
 pub use artifact::ReadError;
-pub use manifest::refuse_mixed;
+pub use manifest::{refuse_mixed, written_files};
 pub use scratch::{is_scratch, remove_leftovers, temporary_in};
 pub use staged::{StagedDir, refuse_other_programs};
 pub use write::{WriteError, parent_of, write_file};

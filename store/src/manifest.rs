@@ -33,6 +33,12 @@ impl Manifest {
     }
 }
 
+/// Returns the names of the files that this program wrote to a directory, relative to it. Without a manifest, there are none.
+#[must_use]
+pub fn written_files(directory: &Path) -> Vec<PathBuf> {
+    Manifest::read(directory).map(|manifest| manifest.files).unwrap_or_default()
+}
+
 /// Checks that a directory does not contain files of two runs.
 ///
 /// # Errors

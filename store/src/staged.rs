@@ -9,7 +9,7 @@ use std::time::Duration;
 use tempfile::TempDir;
 
 use crate::lock::{Lock, LockTerms};
-use crate::manifest::{MANIFEST, Manifest};
+use crate::manifest::{MANIFEST, Manifest, written_files};
 use crate::scratch::{remove_leftovers, temporary_in};
 use crate::write::{WriteError, parent_of};
 
@@ -172,7 +172,7 @@ impl StagedDir {
             self.made.0.clear();
             return Ok(());
         }
-        let stood = Manifest::read(&self.target).map(|before| before.files).unwrap_or_default();
+        let stood = written_files(&self.target);
         let stale: Vec<PathBuf> = stood.iter().filter(|name| !self.names.contains(*name)).cloned().collect();
         if keep {
             manifest.files.extend(stale.iter().cloned());

@@ -221,7 +221,7 @@ fn simulate_prints_the_run_as_json() {
     // The impact of two equal discs is elastic and conserves the energy ρπR² v²/2.
     let energy = run["end"]["kinetic_energy"].as_f64().unwrap();
     assert!((energy / (0.5 * 1000.0 * std::f64::consts::PI * 0.01) - 1.0).abs() < 1e-2, "{energy}");
-    assert!(directory.join("grainbench-out/record.json").is_file());
+    assert!(directory.join("grainbench-simulate/record.json").is_file());
 }
 
 #[test]
