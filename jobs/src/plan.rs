@@ -231,7 +231,7 @@ pub fn check_place(path: &Path) -> Result<(), Fault> {
             // Temporary files of killed processes are ignored.
             let is_left =
                 |entry: std::io::Result<fs::DirEntry>| entry.is_ok_and(|entry| is_scratch(&entry.file_name()));
-            let is_ours = path.join(HEAD).is_file() || entries.all(is_left);
+            let is_ours = read_toml::<Head>(&path.join(HEAD)).is_ok() || entries.all(is_left);
             if is_ours { Ok(()) } else { Err(Fault::in_file(path, expected, "other files")) }
         }
         Err(error) if error.kind() == std::io::ErrorKind::NotFound => Ok(()),

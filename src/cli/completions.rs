@@ -1,6 +1,6 @@
 //! `grainbench completions` and `grainbench man`: shell completions and manual pages, generated from the commands.
 
-use super::exit::{Fault, Outcome, check_folder, print};
+use super::exit::{Fault, MANUAL, Outcome, check_output, print};
 use super::publish::write_files;
 use grainbench::store::StagedDir;
 use std::path::Path;
@@ -24,7 +24,7 @@ pub(crate) fn man(out: Option<&Path>, mut command: clap::Command) -> Outcome {
     let Some(out) = out else {
         return print(&String::from_utf8_lossy(&page(command)?));
     };
-    check_folder(out)?;
+    check_output(out, &MANUAL, &[])?;
     let mut pages = Vec::new();
     for subcommand in command.get_subcommands() {
         let name = subcommand.get_display_name().unwrap_or_else(|| subcommand.get_name());

@@ -60,7 +60,8 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         DeckError::Unsupported { .. } => Fault::input(format!("unsupported: {error}")),
         DeckError::Resolution(_) => Fault::input(error),
     })?;
-    check_output(&arguments.out, &DECK)?;
+    let names: Vec<&str> = deck.files.iter().map(|(name, _)| name.as_str()).collect();
+    check_output(&arguments.out, &DECK, &names)?;
     write_files(StagedDir::new(&arguments.out)?, &deck.files)?;
     let (stepping, out) = (&deck.stepping, shell_word(&arguments.out.to_string_lossy()));
     print(&format!(
@@ -68,7 +69,7 @@ pub(crate) fn deck(arguments: &Arguments) -> Outcome {
         scene.title,
         stepping.time_step,
         grainbench::reports::number::count(stepping.steps),
-        deck.files.iter().map(|(name, _)| name.as_str()).collect::<Vec<_>>().join(", "),
+        names.join(", "),
         program.command(),
     ))
 }

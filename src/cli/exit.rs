@@ -193,36 +193,37 @@ pub(crate) fn print_json(value: &impl serde::Serialize) -> Outcome {
 }
 
 /// Returns an error if an output directory cannot be written. The directory may contain other files of the user.
-pub(crate) fn check_folder(out: &Path) -> Result<(), Fault> {
+fn check_folder(out: &Path) -> Result<(), Fault> {
     // The temporary directory is removed immediately, so that an interrupted run leaves nothing beside the output directory.
     grainbench::store::StagedDir::new(out).map(drop).map_err(|error| Fault::input(format!("--out: {error}")))
 }
 
 /// Kind of output of a command: words for a message, and files of which a directory with this output has at least one.
-#[derive(PartialEq)]
+#[derive(PartialEq, Eq)]
 pub(crate) struct OutputKind(&'static str, &'static [&'static str]);
 
 pub(crate) const RECORD: OutputKind = OutputKind("a record of `simulate`", &["record.json", "broken.json"]);
 pub(crate) const DECK: OutputKind = OutputKind("a deck", &["in.lammps", "in.liggghts"]);
 pub(crate) const FIELDS: OutputKind = OutputKind("continuum fields", &["summary.json"]);
 pub(crate) const THROUGHPUT: OutputKind = OutputKind("a throughput benchmark", &["race.json"]);
+pub(crate) const MANUAL: OutputKind = OutputKind("manual pages", &["grainbench.1"]);
 // Records and fields may have a page too, so reports are the last kind.
 pub(crate) const REPORT: OutputKind = OutputKind("a report", &["index.html"]);
 
 /// Checks the output directory of a report before any computation, as [`check_output`].
 pub(crate) fn check_writable(out: &Path) -> Result<(), Fault> {
-    check_output(out, &REPORT)
+    check_output(out, &REPORT, REPORT.1)
 }
 
-/// Checks an output directory before any computation. The directory must be writable. It must not contain a page or manifest
-/// of another program, or output of another kind, which would be removed.
-pub(crate) fn check_output(out: &Path, kind: &OutputKind) -> Result<(), Fault> {
+/// Checks an output directory before any computation. The directory must be writable. It must not contain a
+/// manifest or one of the named files of another program, or output of another kind, which would be removed.
+pub(crate) fn check_output(out: &Path, kind: &OutputKind, names: &[&str]) -> Result<(), Fault> {
     check_folder(out)?;
-    grainbench::store::refuse_other_programs(out).map_err(|error| Fault::input(format!("--out: {error}")))?;
+    grainbench::store::refuse_other_programs(out, names).map_err(|error| Fault::input(format!("--out: {error}")))?;
     let files = written_files(out);
     let is_there =
         |OutputKind(_, names): &&OutputKind| names.iter().any(|name| files.iter().any(|file| file == Path::new(name)));
-    let found = [&RECORD, &DECK, &FIELDS, &THROUGHPUT, &REPORT].into_iter().find(is_there);
+    let found = [&RECORD, &DECK, &FIELDS, &THROUGHPUT, &MANUAL, &REPORT].into_iter().find(is_there);
     if let Some(other) = found.filter(|other| *other != kind) {
         refuse!("--out: {}: expected a new directory or one with {}, found {}", out.display(), kind.0, other.0);
     }

@@ -10,7 +10,7 @@ use grainbench::fields::mask::{Masks, Orifice};
 use grainbench::fields::trails::Trails;
 use grainbench::reference::grain_dump::{DumpOptions, GrainDump};
 use grainbench::reference::observer::Names;
-use grainbench::reports::elements::{ElementMean, Summary, write_elements};
+use grainbench::reports::elements::{self, ElementMean, Summary, write_elements};
 use grainbench::reports::table::{Column, Format, Table};
 use grainbench::reports::{each_snapshot, number, row};
 use grainbench::scene::dimension::Dimension;
@@ -111,7 +111,7 @@ const MOST_ELEMENTS: usize = 20_000_000;
 
 /// Reads the snapshots, computes the fields in all cells, and writes them.
 pub(crate) fn fields(arguments: &Arguments) -> Outcome {
-    check_output(&arguments.out, &FIELDS)?;
+    check_output(&arguments.out, &FIELDS, &elements::FILES)?;
     refuse_inputs(&arguments.out, std::iter::once(&arguments.source).chain(&arguments.contacts))?;
     let mut course: Option<Course> = None;
     let mut take = |snapshot: Snapshot| -> Result<(), Fault> {

@@ -77,7 +77,7 @@ pub(crate) fn race(arguments: &Arguments) -> Outcome {
     if let Some(unknown) = named.iter().find(|name| !known.contains(&name.as_str())) {
         return Err(Fault::unknown("a solver or program", unknown, known.iter().copied()));
     }
-    check_output(&arguments.out, &THROUGHPUT)?;
+    check_output(&arguments.out, &THROUGHPUT, &["race.json", "race.md"])?;
     let names: Vec<&str> = if arguments.tracks.is_empty() {
         TRACKS.to_vec()
     } else {

@@ -182,7 +182,7 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         let solver = &arguments.solver;
         refuse!("--state: expected `dem`, found `{solver}`, which does not report its final state");
     }
-    check_output(&arguments.out, &RECORD)?;
+    check_output(&arguments.out, &RECORD, &export::FILES)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
     let store = arguments.checkpoint.as_deref().map(|path| Place { path, every: arguments.checkpoint_every });

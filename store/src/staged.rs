@@ -311,20 +311,21 @@ const PAGE: &str = "index.html";
 /// Start of the title of all pages of this project.
 const TITLE: &str = "<title>grainbench";
 
-/// Checks that a directory contains no page and no manifest of another program, which would be replaced. Files of this
-/// program are recognized by their content.
+/// Checks that a directory contains no manifest and none of the named files of another program, which would be replaced.
+/// Pages and manifests of this program are recognized by their content, other files by the manifest.
 ///
 /// # Errors
 /// When the directory contains such a file of another program.
-pub fn refuse_other_programs(directory: &Path) -> Result<(), WriteError> {
-    [PAGE, MANIFEST].into_iter().try_for_each(|name| refuse_foreign(directory, name))
+pub fn refuse_other_programs(directory: &Path, names: &[&str]) -> Result<(), WriteError> {
+    std::iter::once(&MANIFEST).chain(names).try_for_each(|name| refuse_foreign(directory, name))
 }
 
 fn refuse_foreign(directory: &Path, name: &str) -> Result<(), WriteError> {
     let path = directory.join(name);
     let is_ours = || match name {
         MANIFEST => Manifest::read(directory).is_some(),
-        _ => fs::read(&path).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains(TITLE)),
+        PAGE => fs::read(&path).is_ok_and(|bytes| String::from_utf8_lossy(&bytes).contains(TITLE)),
+        _ => written_files(directory).iter().any(|file| file == Path::new(name)),
     };
     if fs::symlink_metadata(&path).is_err() || is_ours() {
         return Ok(());

@@ -17,6 +17,17 @@ use grainbench_store::StagedDir;
 use std::io::{self, Write};
 use std::path::Path;
 
+/// Names of the tables, the summary and the page.
+pub const FILES: [&str; 8] = [
+    "index.html",
+    "summary.json",
+    "elements.csv",
+    "means.csv",
+    "tracers.csv",
+    "elements.parquet",
+    "means.parquet",
+    "tracers.parquet",
+];
 /// Column names of the plotted quantities.
 const DRAWN: [&str; 4] = ["speed", "sine_of_friction", "packing_fraction", "shear_rate"];
 

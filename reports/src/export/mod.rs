@@ -72,6 +72,9 @@ pub fn write_run(
     write_series(&record.series, snapshots, formats, out)
 }
 
+/// Names of the files of a run outside its folders, with the page of `report`.
+pub const FILES: [&str; 6] =
+    [record_json::RECORD_FILE, BROKEN_FILE, "series.csv", "series.parquet", "snapshots.dump", "index.html"];
 /// Name of the file that describes a crashed run.
 pub const BROKEN_FILE: &str = "broken.json";
 
