@@ -339,6 +339,14 @@ impl Frames {
         }
     }
 
+    /// Returns true if the file, or its last frame, has a column with this name.
+    fn has(&self, name: &str) -> bool {
+        match &self.from {
+            FrameSource::Grains { snapshot, .. } => snapshot.column(name).is_some(),
+            FrameSource::Table { table, .. } => table.column(name).is_some(),
+        }
+    }
+
     /// Reads the next frame. Returns `None` at the end of the file. A frame that repeats the previous one is skipped.
     fn next(&mut self) -> Result<Option<Frame>, ReadError> {
         loop {
@@ -488,6 +496,14 @@ fn survey(mut files: [Frames; 2], options: &Options) -> Result<Survey, ReadError
     for (asked, has) in options.columns.iter().flat_map(|name| [(name, 0), (name, 1)]) {
         if ![&a, &b][has].contains(asked) {
             return Err(missing(has, format!("the column {}", quoted(asked))));
+        }
+    }
+    for (ours, theirs) in &options.names.0 {
+        if !a.contains(ours) && !["time", "step"].contains(&ours.as_str()) && !files[0].has(ours) {
+            return Err(missing(0, format!("the column {} of --map", quoted(ours))));
+        }
+        if !files[1].has(theirs) {
+            return Err(missing(1, format!("the column {} of --map", quoted(theirs))));
         }
     }
     let is_asked = |name: &String| options.columns.is_empty() || options.columns.contains(name);

@@ -5,6 +5,10 @@ use crate::read::snapshot::{Coordinate, DumpSnapshot};
 /// Our names of the coordinates.
 pub(crate) const AXES: [&str; 3] = ["x", "y", "z"];
 
+/// Our names of the columns of grains and of contacts, besides forces of walls such as `WALL.force_x`.
+pub(crate) const OURS: &str = "id type x y z vx vy vz omegax omegay omegaz angle radius diameter mass density id1 id2 \
+                               force_x force_y force_z tangential_x tangential_y tangential_z";
+
 /// Names of columns in a file that differ from those of LAMMPS. Each entry is a pair of our name, such as `x`, `vx` or
 /// `omegaz`, and the name in the file.
 ///

@@ -1,5 +1,6 @@
 //! Outputs of a run as dumps or as one table. The files are read twice: first for their properties, then for a record.
 
+use std::collections::BTreeSet;
 use std::path::{Path, PathBuf};
 
 use grainbench_scene::dimension::Dimension;
@@ -11,7 +12,7 @@ use grainbench_solver::resolution::Resolution;
 use crate::clock::Clock;
 use crate::contacts::PairForces;
 use crate::deck::{Deck, Program, logged, write_deck};
-use crate::names::{GrainColumns, Names};
+use crate::names::{GrainColumns, Names, OURS};
 use crate::observer::{DumpObserver, DumpRecord};
 use crate::read::digits::Digits;
 use crate::read::format::{RunFile, Snapshots, format_of, in_order, shown};
@@ -113,6 +114,8 @@ pub struct Outputs {
     /// Digits of the columns of each file, from all of its snapshots of contacts.
     contact_digits: Vec<Vec<Digits>>,
     table: Option<Table>,
+    /// Names of the columns in all files.
+    columns: BTreeSet<String>,
     log: Option<Log>,
     clock: Option<Clock>,
     /// First and last step.
@@ -156,6 +159,7 @@ impl Outputs {
         {
             let table = read_table(file)?;
             outputs.significant_digits = table.digits().significant();
+            outputs.columns = table.columns.iter().map(|column| column.name.clone()).collect();
             let names = &outputs.sources.names;
             let times = ends(&table, time_column(&table, names));
             let steps = ends(&table, table.column(names.in_file("step")));
@@ -204,6 +208,9 @@ impl Outputs {
         let (mut snapshot, mut of_contacts) = (DumpSnapshot::default(), Vec::new());
         let digits = |snapshot: &DumpSnapshot| snapshot.columns.iter().map(|column| column.digits).collect();
         while reader.read(&mut snapshot)? {
+            let is_new = |name: &&String| !self.columns.contains(*name);
+            let new: Vec<String> = snapshot.columns.iter().map(|column| &column.name).filter(is_new).cloned().collect();
+            self.columns.extend(new);
             if snapshot.kind == DumpKind::Entries {
                 of_contacts = digits(&snapshot);
             } else {
@@ -234,6 +241,31 @@ impl Outputs {
         self.significant_digits = self.significant_digits.max(snapshot.digits().significant());
         self.contact_digits.push(of_contacts);
         Ok(digits(&snapshot))
+    }
+
+    /// Checks that our names in `--map` are known and that the files have columns with the other names. For a table, our
+    /// names are not checked, because they may be those of probes.
+    ///
+    /// # Errors
+    /// If a name would have no effect.
+    pub fn check_names(&self) -> Result<(), OutputError> {
+        let is_ours =
+            |name: &str| self.table.is_some() || name.contains('.') || OURS.split(' ').any(|ours| ours == name);
+        for (ours, theirs) in &self.sources.names.0 {
+            if !is_ours(ours) {
+                let expected = format!("one of our names {OURS} or WALL.force_x");
+                return Err(OutputError::run("--map", expected, quoted(ours)));
+            }
+            if !self.columns.contains(theirs) {
+                let columns = self.columns.iter().map(String::as_str).collect::<Vec<_>>().join(" ");
+                return Err(OutputError::run(
+                    "--map",
+                    format!("one of the columns {}", quoted(&columns)),
+                    quoted(theirs),
+                ));
+            }
+        }
+        Ok(())
     }
 
     /// Sets the time step from the option, the log or the files, in this order. The option must agree with log and

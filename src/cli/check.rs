@@ -149,6 +149,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
         snapshot_steps: Vec::new(),
     };
     let outputs = Outputs::survey(sources)?;
+    outputs.check_names()?;
     let power = match arguments.power.as_str() {
         "off" => Power::Off,
         "full" => Power::Full,
