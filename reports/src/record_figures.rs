@@ -7,7 +7,7 @@ use crate::{distinct, number};
 use grainbench_fields::picture::{Shot, film, fringe_constant, pictures};
 use grainbench_fields::profile::{Motion, profile};
 use grainbench_fields::quantity::Quantity;
-use grainbench_harness::figure::{Axis, Curve, Figure, Stroke};
+use grainbench_harness::figure::{Axis, Curve, Drawing, Figure, Stroke};
 use grainbench_harness::force_plot::force_plot;
 use grainbench_solver::record::{Record, Series, Snapshot};
 
@@ -197,7 +197,8 @@ fn forces(named: &NamedRecord<'_>, several: bool, end: f64) -> Option<Figure> {
     ))
 }
 
-/// Returns profiles of velocity and displacement across the flow, whose direction is the only periodic axis.
+/// Returns profiles of velocity and displacement across the flow, whose direction is the only periodic axis. A profile
+/// that no record has is left out.
 fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
     let Some(last) = records.first().and_then(|named| named.at(end)) else { return Vec::new() };
     let (across, along) = match last.periodic {
@@ -207,10 +208,10 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
     };
     let (from, to) = (["x", "y"][across], ["x", "y"][along]);
     let graph = |(motion, word, unit): (Motion, &str, &str)| {
-        let curves = records.iter().map(|named| {
+        let curves = records.iter().filter_map(|named| {
             let until = named.record.snapshots.iter().filter(|snapshot| snapshot.time <= end);
             let points = profile(&until.cloned().collect::<Vec<_>>(), motion, across, along, SLICES);
-            Curve::new(named.name.clone(), Stroke::Line, points)
+            (!points.is_empty()).then(|| Curve::new(named.name.clone(), Stroke::Line, points))
         });
         Figure::graph(
             word,
@@ -220,7 +221,10 @@ fn profiles(records: &[NamedRecord<'_>], end: f64) -> Vec<Figure> {
             curves.collect(),
         )
     };
-    [(Motion::Displacement, "displacement", "m"), (Motion::Velocity, "velocity", "m/s")].map(graph).into()
+    let mut figures =
+        Vec::from([(Motion::Displacement, "displacement", "m"), (Motion::Velocity, "velocity", "m/s")].map(graph));
+    figures.retain(|figure| matches!(&figure.drawing, Drawing::Graph(graph) if !graph.curves.is_empty()));
+    figures
 }
 
 /// Returns the file name, the title and the caption of a quantity's figure.
@@ -296,7 +300,6 @@ fn probe_figure(records: &[NamedRecord<'_>], (quantity, unit): (&str, &str), (fr
 mod tests {
     use super::*;
     use crate::export::sample;
-    use grainbench_harness::figure::Drawing;
 
     fn named<'a>(name: &str, record: &'a Record) -> NamedRecord<'a> {
         NamedRecord { name: name.to_owned(), record }

@@ -17,7 +17,7 @@ const BUDGETS: [(&str, usize, usize); 16] = [
     ("store", 1_920, 0),
     ("reference", 13_915, 0),
     ("cases", 18_690, 0),
-    ("fields", 3_170, 0),
+    ("fields", 3_175, 0),
     ("reports", 13_980, 0),
     ("studies", 6_070, 0),
     ("jobs", 2_685, 0),
