@@ -3,7 +3,7 @@
 use crate::fault::Fault;
 use crate::lease::{self, LeaseContents};
 use crate::plan::Plan;
-use grainbench_store::log::State;
+use grainbench_store::log::{Entry, State};
 use grainbench_store::results::FinishedTasks;
 use serde::Serialize;
 
@@ -42,8 +42,13 @@ impl Status {
     /// # Errors
     /// When a file of the plan cannot be read.
     pub fn from_plan(plan: &Plan) -> Result<Self, Fault> {
-        let workers = lease::held(&plan.path, plan.head.lease_seconds)?;
+        let mut workers = lease::held(&plan.path, plan.head.lease_seconds)?;
         let finished = FinishedTasks::read(&plan.path, false).map_err(Fault::Input)?;
+        // A lease is renewed every few seconds. The result file of its worker is newer.
+        for worker in &mut workers {
+            let is_own = |entry: &&Entry| finished.workers[entry.worker].name == worker.worker;
+            worker.done = worker.done.max(finished.entries.values().filter(is_own).count());
+        }
         let mut status = Self { tasks: plan.tasks.len(), damaged: finished.damaged, ..Self::default() };
         let (mut left, mut took, mut expected) = (0.0, 0.0, 0.0);
         for (place, task) in plan.tasks.iter().enumerate() {

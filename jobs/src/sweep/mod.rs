@@ -230,7 +230,8 @@ impl Sweep {
                     seconds = once * f64::from(self.file.repetitions);
                     patience -= start.elapsed().as_secs_f64();
                 }
-                let key = serde_json::to_string(&set).map_err(|error| Fault::Input(error.to_string()))?;
+                // Points may differ only in a factor that no key of the scene depends on. An expected value may contain it.
+                let key = serde_json::to_string(&(&set, point)).map_err(|error| Fault::Input(error.to_string()))?;
                 let id = Id::of_words(program, &["sweep", &common, &key, name, &edition, &step]);
                 tasks.push(Task {
                     scene: self.file.scene.clone(),
@@ -562,6 +563,12 @@ levels = ['dt=.1']
         }
         write("s.toml", SWEEP);
         assert_eq!(whole, id(folder.path()));
+        // An expected value may contain a factor that does not change the scene.
+        write("s.toml", &SWEEP.replace("[[record]]", "factors.e = { values = [1.0, 2.0] }\n[[record]]"));
+        let tasks =
+            Sweep::read(&folder.path().join("s.toml")).unwrap().tasks("", &Registry, &["dem".to_owned()]).unwrap();
+        assert!(tasks.len() == 2 && tasks[0].set == tasks[1].set && tasks[0].id != tasks[1].id);
+        write("s.toml", SWEEP);
         write("f.stl", &FLOOR.replace("5 0\n", "5 -0.05\n"));
         assert_ne!(whole, id(folder.path()), "the mesh is another");
         let files = Sweep::read(&folder.path().join("s.toml")).unwrap().files().unwrap();
