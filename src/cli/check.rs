@@ -166,7 +166,7 @@ fn one(arguments: &Arguments, scene: &str) -> Result<(Section, String), Fault> {
 const LOGS: [&str; 2] = ["log.lammps", "log.liggghts"];
 
 /// Files that `deck` writes; they are input of a program, not output.
-const INPUTS: [&str; 4] = ["in.lammps", "in.liggghts", "data.grains", "wall-*.stl"];
+const INPUTS: [&str; 5] = ["in.lammps", "in.liggghts", "data.grains", "wall-*.stl", "manifest.json"];
 
 /// Checks all outputs in the folders of cases and variants. The content of a file decides whether the file is output.
 fn all(arguments: &Arguments, folder: &Path) -> Result<Vec<Section>, Fault> {

@@ -110,7 +110,7 @@ fn a_folder_of_outputs_is_judged_together() {
     // The content of a file decides if it is output, not its name. A file that is not judged is red, unless its name is ignored.
     let place = directory.join("runs/incline-disc/60deg-mu.9");
     fs::rename(place.join("lammps-incline.dump.gz"), place.join("dump.grains")).unwrap();
-    for input in ["in.lammps", "data.grains"] {
+    for input in ["in.lammps", "data.grains", "manifest.json"] {
         place.write(input, "units si\n");
     }
     let (code, rows) = judged(&format!("--all {runs}"));
