@@ -97,7 +97,7 @@ fn section(arguments: &Arguments, comparison: &Comparison) -> Section {
     Section {
         name: "compare".to_owned(),
         title: format!("{b} against {a}"),
-        claim: format!("Both outputs have the same values: {}.", counts(comparison)),
+        claim: format!("Claim: both outputs have the same values. {}.", counts(comparison)),
         derivation:
             "Rows are matched by id, and coordinates are unscaled. Each tolerance is widened by half a unit of the \
              last printed digit of each file. If the steps differ, the second file is interpolated linearly, and the \
@@ -121,7 +121,7 @@ fn counts(comparison: &Comparison) -> String {
     let Comparison { compared, interpolated, samples: [a, b], key, .. } = comparison;
     let between = if *interpolated > 0 { format!(", {interpolated} of them interpolated") } else { String::new() };
     let noun = if *key == Key::Row { "rows" } else { "samples" };
-    format!("{compared} {noun} compared by {}{between}, of {a} and {b}", key.word())
+    format!("{compared} {noun} are compared by {}{between}, of {a} and {b}", key.word())
 }
 
 /// Returns two results about the coverage: the number of compared samples, and the time or step of the last compared sample.
