@@ -41,6 +41,9 @@ const PRINTED: f64 = 1e-6;
 /// often. Samples farther apart can hide an excursion.
 const PART: f64 = 0.1;
 
+/// First words of the detail of a result whose samples are too far apart.
+pub(super) const SPARSE: &str = "no sample for ";
+
 /// Interval between two consecutive samples (s).
 #[derive(Clone, Copy, Debug, PartialEq)]
 struct Gap {
@@ -192,7 +195,7 @@ impl Coverage {
         if row.outcome != Outcome::Pass || self.gap.length() <= most {
             return row;
         }
-        let found = format!("no sample for {length} s from t = {from} s; at most {limit} s is allowed");
+        let found = format!("{SPARSE}{length} s from t = {from} s; at most {limit} s is allowed");
         if self.partial {
             return row.left(Outcome::Known, format!("{found}; accepted because of --partial"));
         }

@@ -1,5 +1,6 @@
 //! Summary of a check in one sentence.
 
+use super::covered::SPARSE;
 use super::judgement::{OUTSIDE, is_outside};
 use super::power::{HIDDEN, is_of_power};
 use grainbench_harness::evidence::Evidence;
@@ -14,11 +15,20 @@ const MOST_NAMES: usize = 3;
 #[must_use]
 pub fn sentence(section: &Section) -> String {
     let Some((coverage, rows)) = section.verdicts.split_first() else { return "Nothing was judged.".to_owned() };
-    let rows: Vec<&Verdict> = rows.iter().filter(|row| !is_of_power(row)).collect();
+    // A result that is red only because of the interval between samples shows no difference.
+    let is_sparse = |row: &&Verdict| {
+        row.outcome == Outcome::Fail && row.detail.as_deref().is_some_and(|detail| detail.starts_with(SPARSE))
+    };
+    let (sparse, rows): (Vec<&Verdict>, Vec<&Verdict>) =
+        rows.iter().filter(|row| !is_of_power(row)).partition(is_sparse);
     let of = |is_of: &dyn Fn(&Verdict) -> bool| rows.iter().copied().filter(|row| is_of(row)).collect::<Vec<_>>();
     let mut parts = Vec::new();
     if coverage.outcome != Outcome::Pass {
         parts.extend(coverage.detail.as_deref().map(|detail| capital(detail.split("; ").next().unwrap_or(detail))));
+    }
+    if let Some(detail) = sparse.first().and_then(|row| row.detail.as_deref()) {
+        let interval = detail.split("; --partial").next().unwrap_or(detail);
+        parts.push(format!("The samples are too far apart: {interval}"));
     }
     let ours = of(&|row| row.source.contains(" convention, at the time step"));
     let convention = ours.first().map_or("", |row| convention_words(row.source.split(", ").next().unwrap_or_default()));
@@ -140,5 +150,10 @@ mod tests {
         let words = "This output cannot reveal a change of friction (a quarter more or less).";
         assert_eq!(sentence(&hidden), format!("{agreement} {words}"));
         assert_eq!(sentence(&section("friction: the work limit is reached")), agreement);
+        let mut sparse = section("friction: the work limit is reached");
+        let interval = "no sample for 0.5 s from t = 0 s; at most 0.05 s is allowed";
+        sparse.verdicts[1] = judged(ours, Outcome::Fail, Some(&format!("{interval}; --partial judges the samples")));
+        let words = format!("The samples are too far apart: {interval}. No quantity could be judged.");
+        assert_eq!(sentence(&sparse), words);
     }
 }
