@@ -182,6 +182,11 @@ pub(crate) fn simulate(arguments: &Arguments) -> Outcome {
         let solver = &arguments.solver;
         refuse!("--state: expected `dem`, found `{solver}`, which does not report its final state");
     }
+    let has_checkpoints = matches!(Method::from_name(&arguments.solver), Some(Method::Dem | Method::Grid));
+    if arguments.checkpoint.is_some() && !has_checkpoints {
+        let solver = &arguments.solver;
+        refuse!("--checkpoint: expected `dem` or `mpm`, found `{solver}`, which writes no checkpoints");
+    }
     check_output(&arguments.out, &RECORD, &export::FILES)?;
     let header = if arguments.json { None } else { Some(header(&scene, solver.as_ref())) };
     let from = arguments.restart.as_deref().map(checkpoint::read).transpose()?;
