@@ -89,9 +89,6 @@ pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadErro
     let reading = |error| ReadError::reading(&name, 1, error);
     let (mut bytes, mut unpacked) = (Vec::new(), Vec::new());
     opened(path)?.take(HEAD).read_to_end(&mut bytes).map_err(reading)?;
-    if bytes.starts_with(MARK) {
-        return Ok(None);
-    }
     let find = |unpacked: &[u8], line: &str| {
         let beginning = Beginning { path, bytes: &bytes, unpacked, line };
         FORMATS.iter().copied().find(|format| (format.is_it)(&beginning))
@@ -99,6 +96,9 @@ pub(crate) fn format_of(path: &Path) -> Result<Option<&'static Format>, ReadErro
     // `unpacked` is empty at first, so that archives and containers are identified before decompression.
     if let Some(format) = find(&[], "") {
         return Ok(Some(format));
+    }
+    if bytes.starts_with(MARK) {
+        return Ok(None);
     }
     if let Ok(reader) = decoded(opened(path)?).map_err(reading)? {
         reader.take(HEAD).read_to_end(&mut unpacked).map_err(reading)?;

@@ -34,13 +34,31 @@ pub fn read_table(path: &Path) -> Result<Table, ReadError> {
     parse_table(file, &name)
 }
 
+/// Returns the names of the columns of a Parquet file; none if the file cannot be read.
+pub(crate) fn parquet_names(path: &Path) -> Vec<String> {
+    let names = || {
+        let reader = SerializedFileReader::new(opened(path)?.into_inner()).map_err(|_| damaged("", ""))?;
+        Ok(column_names(&reader))
+    };
+    without_panic("", names).unwrap_or_default()
+}
+
+fn column_names(reader: &SerializedFileReader<File>) -> Vec<String> {
+    let columns = reader.metadata().file_metadata().schema_descr().columns();
+    columns.iter().map(|column| column.name().to_owned()).collect()
+}
+
 /// Reads the table of a Parquet file. `name` is the name of the file in error messages.
 ///
 /// # Errors
 /// If the file is damaged or too large, a column has a type other than numbers, or a number is missing or not finite.
 fn read_parquet(file: File, name: &str) -> Result<Table, ReadError> {
-    // The `parquet` crate trusts some lengths in a file, so a damaged file can cause a panic, which is converted to an
-    // error.
+    without_panic(name, || whole(file, name))
+}
+
+/// Reads a Parquet file. The `parquet` crate trusts some lengths in a file, so a damaged file can cause a panic, which
+/// is converted to an error.
+fn without_panic<T>(name: &str, read: impl FnOnce() -> Result<T, ReadError>) -> Result<T, ReadError> {
     static HUSHED: Once = Once::new();
     HUSHED.call_once(|| {
         let previous_hook = panic::take_hook();
@@ -51,7 +69,7 @@ fn read_parquet(file: File, name: &str) -> Result<Table, ReadError> {
         }));
     });
     READING.set(true);
-    let read = panic::catch_unwind(AssertUnwindSafe(|| whole(file, name)));
+    let read = panic::catch_unwind(AssertUnwindSafe(read));
     READING.set(false);
     read.unwrap_or_else(|_: Box<dyn Any + Send>| Err(damaged(name, "a truncated or damaged file")))
 }
@@ -69,9 +87,10 @@ fn whole(file: File, name: &str) -> Result<Table, ReadError> {
     let damage = |error: ParquetError| damaged(name, &quoted(&error.to_string()));
     let reader = SerializedFileReader::new(file).map_err(damage)?;
     let about = reader.metadata();
-    let names = about.file_metadata().schema_descr().columns().iter().map(|column| column.name().to_owned());
-    let columns: Vec<NumberColumn> =
-        names.map(|name| NumberColumn { digits: Digits::exact(), ..NumberColumn::new(&name) }).collect();
+    let columns: Vec<NumberColumn> = column_names(&reader)
+        .into_iter()
+        .map(|name| NumberColumn { digits: Digits::exact(), ..NumberColumn::new(&name) })
+        .collect();
     let rows = usize::try_from(about.file_metadata().num_rows()).unwrap_or(usize::MAX);
     let bytes = about.row_groups().iter().map(|group| group.total_byte_size()).fold(0_i64, i64::saturating_add);
     if rows.saturating_mul(columns.len()) > MOST_NUMBERS || !(0..=MOST).contains(&bytes) {
@@ -120,6 +139,7 @@ fn number(field: &Field) -> Option<f64> {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::comparison::{Key, Options, compare};
     use std::fs;
     use std::path::PathBuf;
 
@@ -139,6 +159,9 @@ mod tests {
         assert_eq!(column("x")[3], 0.25);
         assert_eq!(column("vx"), [0.25, 0.5, 0.25, 0.5, 0.25, 0.5]);
         assert_eq!(column("omegaz")[5], -1.0);
+        // The rows of a step are a snapshot of grains.
+        let found = compare(&data(), &data(), &Options::default()).unwrap();
+        assert_eq!((found.key, found.compared, found.samples), (Key::Step, 3, [3, 3]));
     }
 
     /// A file that is truncated or has one changed bit yields a table or an error, but no panic.

@@ -1,17 +1,23 @@
-//! Tables of grains from ParaView, pandas or any other program. Each row is one grain at one moment. Rows with the same
-//! step or time form a snapshot. Columns have the names used in dumps or in ParaView.
+//! Tables of grains from ParaView, pandas or any other program, as text or Parquet. Each row is one grain at one moment.
+//! Rows with the same step or time form a snapshot. Columns have the names used in dumps or in ParaView.
 
 use crate::read::format::{FileContent, Format, check_grains, indexed};
 use crate::read::number_table::{Table, header};
 use crate::read::read_error::ReadError;
 use crate::read::snapshot::{DumpSnapshot, Numbering};
-use crate::read::table::read_table;
+use crate::read::table::{MARK, parquet_names, read_table};
 use crate::read::vtk::{component, is_id};
 use std::path::Path;
 
 pub(crate) static FORMAT: Format = Format {
     words: "a table of grains",
-    is_it: |beginning| is_of_grains(&header(beginning.line).1),
+    is_it: |beginning| {
+        if !beginning.bytes.starts_with(MARK) {
+            return is_of_grains(&header(beginning.line).1);
+        }
+        let names = parquet_names(beginning.path);
+        is_of_grains(&names.iter().map(String::as_str).collect::<Vec<_>>())
+    },
     numbering: Numbering::Frames,
     holds: |path| {
         let (snapshots, is_keyed) = read_snapshots(path)?;
