@@ -502,13 +502,18 @@ mod tests {
             let page = "<title>grainbench · 2 pass</title>";
             let commit = || staged_files(dir.path(), &["index.html"], page).commit();
             fs::write(&place, foreign).unwrap();
-            assert!(refuse_other_programs(dir.path()).is_err());
+            assert!(refuse_other_programs(dir.path(), &[PAGE]).is_err());
             let message = commit().unwrap_err().to_string();
             assert!(message.contains(&format!("a `{name}` that grainbench wrote")), "{message}");
             assert_eq!(fs::read_to_string(&place).unwrap(), foreign);
             fs::write(&place, ours).unwrap();
-            assert!(refuse_other_programs(dir.path()).is_ok());
+            assert!(refuse_other_programs(dir.path(), &[PAGE]).is_ok());
             commit().unwrap();
+            // Other files are ours if the manifest lists them.
+            fs::write(dir.path().join("a.csv"), "").unwrap();
+            assert!(refuse_other_programs(dir.path(), &["a.csv"]).is_err());
+            staged_files(dir.path(), &["a.csv"], "").commit().unwrap();
+            assert!(refuse_other_programs(dir.path(), &["a.csv"]).is_ok());
         }
     }
 
