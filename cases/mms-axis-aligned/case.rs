@@ -13,8 +13,8 @@ const HATS: &str = "mpm+linear+flip";
 const POINTS_OF_SPLINES: u32 = 10;
 /// Points per cell and axis for uGIMP, enough for a small quadrature error.
 const POINTS_OF_GIMP: u32 = 4;
-/// Courant number at which the error of the time step is below the error of the cell length. With 0.4, the orders of
-/// uGIMP and of B-splines fall to 1.6 and 1.7 between 32 and 128 cells. With 0.1, the order of uGIMP rises to 1.99.
+/// Courant number at which the error of the time step is below the error of the cell length. With 0.4, the order of
+/// B-splines falls to 1.7 between 32 and 128 cells. The order of uGIMP is 1.98 to 2.00 with 0.4 and with 0.1.
 const SMALL_STEP: f64 = 0.1;
 const SOURCE: Source = Source::Derived("manufactured solution (derivation)");
 
