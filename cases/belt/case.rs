@@ -219,9 +219,8 @@ fn stopped() -> Vec<Claim> {
     );
     let rest = || {
         computed(
-            NEARLY_RIGID,
-            "lever arms of the two slides that differ by the overlap leave i/(1+i)² < 1/4 of overlap/R = 1e-5, in \
-             units of the speed of the belt",
+            2.0 * NEARLY_RIGID,
+            "overlap/R = 1e-5, because the lever arms of the two slides may differ; in units of the speed of the belt",
         )
     };
     vec![
