@@ -220,7 +220,8 @@ fn stopped() -> Vec<Claim> {
     let rest = || {
         computed(
             2.0 * NEARLY_RIGID,
-            "overlap/R = 1e-5, because the lever arms of the two slides may differ; in units of the speed of the belt",
+            "overlap/R = 1e-5 for the lever arm of each of the two slides, an upper bound: an arm that differs leaves \
+             i/(1 + i)² < 1/4 of it; in units of the speed of the belt",
         )
     };
     vec![

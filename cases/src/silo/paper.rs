@@ -27,10 +27,6 @@ const STRAINED: &str = "the prototype ends at 14 τ. Afterwards the packing frac
                         to 0.018, because these elements are strained further and φ is a function of |I₀| only in \
                         steady shear";
 
-/// Reason for the known error of the angle in the pushed bed.
-const SCATTERED: &str = "the mean of 136 blocks in 48 frames scatters by more than the tolerance: with an earlier order of \
-                         rounding errors it was 11.4° and not 15.5°";
-
 /// Returns the claim that φ agrees with the prototype in each bin of |I₀|, for frames up to `until` (τ).
 fn over_inertia(quantity: Quantity, bins: &'static [CitedNumber], until: f64, control: Control) -> Claim {
     quantity
@@ -53,20 +49,13 @@ impl Silo {
         Run::new(self.variants[1], "dem", LEVELS[0].resolution).read_by(ELEMENTS).kept().paper_size()
     }
 
-    /// Returns the run for the angle of single frames, of which the pushed bed has too few blocks.
-    fn run_of_angle(&self, averaged: bool) -> Run {
-        let is_scattered = self.drained.is_none() && !averaged;
-        if is_scattered { self.paper_size().known(SCATTERED).up_to(0.5) } else { self.paper_size() }
-    }
-
     fn claim(&self, quantity: &str, unit: &'static str) -> Quantity {
         claim(format!("{quantity}{SUFFIX}"), unit).run(self.paper_size())
     }
 
     pub(super) fn of_paper_size(&self) -> Vec<Claim> {
         let angle = |quantity: &str, cited: CitedNumber, allowed: f64, averaged: bool| {
-            claim(format!("{quantity}{SUFFIX}"), "deg")
-                .run(self.run_of_angle(averaged))
+            self.claim(quantity, "deg")
                 .equals_cited(cited, cited.value, move |done| ensemble::angle(&done[0], averaged))
                 .within(asked(allowed / cited.value, TENTH))
                 .refuses(ensemble::STRESS_ELSEWHERE)
@@ -81,10 +70,11 @@ impl Silo {
                     "required in advance: the source states the range but not the fraction of elements in it",
                 ))
                 .refuses(TANGENT),
-            angle("angle between the axes of largest T and D in blocks of 5 d", paper::LARGEST, 3.0, false),
         ];
-        // In a pushed silo, only few blocks flow in all twenty frames of a window.
+        // In a pushed silo, few blocks flow. The mean angle of so few blocks scatters by more than the tolerance.
         let drained = self.drained.iter();
+        let of_frames = "angle between the axes of largest T and D in blocks of 5 d";
+        all.extend(drained.clone().map(|_| angle(of_frames, paper::LARGEST, 3.0, false)));
         all.extend(drained.clone().map(|_| angle("the same angle of means over 20 frames", paper::WINDOW, 2.5, true)));
         all.extend(drained.flat_map(|drained| self.of_paper_size_drains(drained)));
         all

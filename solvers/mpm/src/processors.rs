@@ -6,8 +6,8 @@ use grainbench_lanes::{Processor, Team};
 use grainbench_solver::drive::Stepper;
 use grainbench_solver::space::{Plane, Solid, Space};
 
-/// Returns the state of the points, as text, after some steps of a round body. The body spins, crosses the faces of a
-/// periodic domain and shares nodes with its image.
+/// Returns the state of the points, as text, after some steps of a round body. The body spins and crosses the faces of a
+/// periodic domain.
 fn state<S: Space>(processor: Processor, threads: usize, setting: Setting) -> String {
     let (dimension, axes, spin) = if S::DIMENSION == 2 { (2, 2, "0.3") } else { (3, 3, "[0.3, 0.1, -0.2]") };
     let vector = |value: &str| format!("[{}]", vec![value; axes].join(", "));
@@ -16,8 +16,8 @@ fn state<S: Space>(processor: Processor, threads: usize, setting: Setting) -> St
          domain = {{ low = {}, high = {}, periodic = [{}] }}\n\
          materials.m = {{ density = 1.0, bulk_modulus = 10.0, shear_modulus = 6.0 }}\n\
          grains.g = {{ material = 'm', radius = 1.0, position = {}, velocity = {}, spin = {spin} }}\n",
-        vector("-1.1"),
-        vector("1.1"),
+        vector("-1.5"),
+        vector("1.5"),
         vec!["true"; axes].join(", "),
         vector("0.1"),
         vector("0.7"),

@@ -91,8 +91,8 @@ impl Mpm {
 const STEPS_BETWEEN_PROGRESS: u64 = 500;
 
 /// Smallest distance of a body from its own periodic image, in cells. With fewer cells, both act on the same nodes and stick
-/// together. A body that spans the period is continuous.
-const FROM_IMAGE: f64 = 4.0;
+/// together: the basis functions of a point reach at most one and a half cells. A body that spans the period is continuous.
+const FROM_IMAGE: f64 = 3.0;
 
 /// Returns the first grain or body that is too near to its own periodic image, with the distance in words.
 fn near_own_image(scene: &Scene, lattice: &Lattice) -> Option<String> {
