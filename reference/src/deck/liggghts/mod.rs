@@ -14,7 +14,7 @@ use std::fmt::Write as _;
 
 use grainbench_scene::effects::Effects;
 use grainbench_scene::motion::Motion;
-use grainbench_scene::scene::{Scene, Wall};
+use grainbench_scene::scene::{Scene, Wall, WallShape};
 use nalgebra::{Unit, Vector3};
 
 use crate::deck::data::{GROWING, boundary, box_of, data_file, of_disc, of_sphere, skin};
@@ -77,6 +77,8 @@ fn files(scene: &Scene, stepping: &Stepping) -> Result<DeckFiles, String> {
             // A rotating plane may come into contact with grains at a point that is far away from the grains at the
             // start.
             let aside = if turns(&wall.motion) { 2.0 * (wall.motion.centre - centre).norm() } else { 0.0 };
+            // All grains are within half the diagonal of the box at the start.
+            let reach = reach.max(reach - 0.5 * (high - low).norm() + slide(scene, wall, stepping));
             meshes.push(Mesh { number, wall, triangles: triangles(&wall.shape, centre, reach + aside) });
         }
     }
@@ -146,13 +148,23 @@ fn forces_of_wall(number: usize, meshes: &[Mesh<'_>]) -> (String, [String; 3]) {
 /// Rounding error of a bound, as a fraction of the period.
 const PRINTED: f64 = 1e-9;
 
-/// Returns an upper bound on the displacement of a grain relative to a wall during the run (m), if no contact pushes it. The
-/// meshes of planes must extend at least so far. Walls can drag grains, so the largest velocity of a wall counts for both.
+/// Returns an upper bound on the displacement of a grain without contacts during the run (m). The meshes of planes must
+/// extend at least so far.
 fn way(scene: &Scene, stepping: &Stepping) -> f64 {
     let time = stepping.steps as f64 * stepping.time_step;
     let speed = scene.grains.iter().map(|grain| grain.velocity.norm()).fold(0.0, f64::max);
-    let of_walls = scene.walls.iter().map(|wall| wall.motion.fastest()).fold(0.0, f64::max);
-    time * (speed + 2.0 * of_walls + 0.5 * scene.gravity.norm() * time)
+    time * (speed + 0.5 * scene.gravity.norm() * time)
+}
+
+/// Returns an upper bound on the displacement of a wall along its plane relative to grains that other walls move (m).
+fn slide(scene: &Scene, wall: &Wall, stepping: &Stepping) -> f64 {
+    let across = if let WallShape::Plane { normal, .. } = wall.shape { normal } else { Vector3::zeros() };
+    let along = |other: &Wall| {
+        let phases = other.motion.phases.iter().map(|phase| phase.velocity);
+        phases.map(|velocity| (velocity - across * across.dot(&velocity)).norm()).sum::<f64>()
+    };
+    let fastest = scene.walls.iter().map(along).fold(0.0, f64::max);
+    stepping.steps as f64 * stepping.time_step * (along(wall) + fastest)
 }
 
 /// Returns the corners of a box around the grains and all meshes during the whole run (m).
