@@ -68,7 +68,7 @@ fn claims() -> Vec<Claim> {
                 Ok(Measurement::relative(mean(&forces), exact(&done[0].scene)))
             })
             .within(tolerance)
-            .refuses(Control::scene("an eighth softer", |scene| stiffen(scene, 0.875)))
+            .refuses(Control::scene("a tenth softer", |scene| stiffen(scene, 0.9)))
     };
     let soft = "springs are as soft as .4 cells of material, and the contact area is half a cell wide";
     vec![
@@ -83,7 +83,7 @@ fn claims() -> Vec<Claim> {
                 scene.walls[0].motion.phases[0].velocity *= 2.0;
             })),
         over_grid_positions(LEVELS[1], required(0.1, soft)),
-        over_grid_positions(LEVELS[2], computed(0.091, "springs reduce the force by 9.1 % (derivation)")),
+        over_grid_positions(LEVELS[2], judged(0.08, "springs alone reduce the force by 9.1 % (derivation)")),
         claim("contact force over the exact one, R/6", "1")
             .run(Run::new(PLAIN, "mpm:gap", LEVELS[1].resolution).slow())
             .between([LEAST_NODAL_FORCE.value, MOST_NODAL_FORCE.value], MOST_NODAL_FORCE.source(), |done| {
