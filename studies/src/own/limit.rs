@@ -29,8 +29,8 @@ const CELLS: f64 = 4.0;
 const GROWTH: [(&str, f64); 2] = [("kinetic_energy", 10.0), ("elastic_energy", 3.0)];
 /// Smallest number of steps of a run. Longer steps are not tried, because a short run shows no growth.
 const FEWEST: f64 = 10.0;
-/// Largest velocity that is added to each component of the velocity of a grain, relative to a radius per critical step, or per
-/// duration in a scene without springs. A grain at rest would otherwise stay at rest with any step.
+/// Largest velocity along an axis that perturbs a grain, in radii per critical step. In a scene without springs, the unit is a
+/// radius per duration. A grain at rest would otherwise stay at rest with any step.
 const PERTURBATION: f64 = 1e-6;
 /// Name of the probe that records the energies.
 const PROBE: &str = "stability";
@@ -207,7 +207,8 @@ fn bisect(
         limit.error = limit.exact.map(|exact| (found - exact) / exact);
         if limit.unstable.is_none() && longest < high {
             limit.error = None;
-            limit.detail += &format!("; longer steps are fewer than {FEWEST}: the limit is a lower bound");
+            limit.detail +=
+                &format!("; with longer steps the scene has fewer than {FEWEST}, so the limit is a lower bound");
         }
         if !is_concluded {
             is_whole = false;
